@@ -1,0 +1,66 @@
+// Operations common to all SIMD targets; included once per target (see base/simd.h).
+#if defined(VERNIER_BASE_SIMD_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef VERNIER_BASE_SIMD_INL_H
+#undef VERNIER_BASE_SIMD_INL_H
+#else
+#define VERNIER_BASE_SIMD_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace vernier {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_TARGET == HWY_SSE4
+/// One lane-half of the fused multiply-add below. The product of two floats is exact in double (24 + 24 <= 53 bits); the sum
+/// is rounded to odd, after which rounding to float is correct (Boldo and Melquiond, "Emulation of FMA and correctly
+/// rounded sums: proved algorithms using rounding to odd", IEEE TC 57(4), 2008).
+template <class DD, class VD = hn::Vec<DD>>
+HWY_INLINE VD addRoundToOdd(DD dd, VD x, VD y) {
+    const hn::RebindToSigned<DD> di;
+    const VD sum = hn::Add(x, y);
+    // TwoSum (Knuth): the exact rounding error of the sum.
+    const VD yy = hn::Sub(sum, x);
+    const VD error = hn::Add(hn::Sub(x, hn::Sub(sum, yy)), hn::Sub(y, yy));
+    const auto bits = hn::BitCast(di, sum);
+    const auto one = hn::Set(di, 1);
+    const auto even = hn::Eq(hn::And(bits, one), hn::Zero(di));
+    // error != error (NaN) happens only when the sum is not finite: leave that alone.
+    const auto inexact = hn::RebindMask(di, hn::Or(hn::Lt(error, hn::Zero(dd)), hn::Gt(error, hn::Zero(dd))));
+    // Towards the error when the sum is even: one step up in magnitude when both signs agree, else one step down.
+    const auto opposite = hn::Lt(hn::BitCast(di, hn::Xor(sum, error)), hn::Zero(di));
+    const auto step = hn::IfThenElse(opposite, hn::Set(di, -1), one);
+    const auto moved = hn::Add(bits, step);
+    return hn::BitCast(dd, hn::IfThenElse(hn::And(even, inexact), moved, bits));
+}
+#endif
+
+/// a * b + c with one rounding, the same bits on every target. Float lanes only. On SSE4 (no FMA instruction) it is
+/// emulated exactly and slowly.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V fusedMulAdd(D d, V a, V b, V c) {
+#if HWY_TARGET == HWY_SSE4
+    static_assert(sizeof(hn::TFromD<D>) == 4, "float lanes");
+    const hn::Half<D> dh;
+    const hn::RepartitionToWide<D> dd;
+    const auto half = [&](auto va, auto vb, auto vc) {
+        const auto product = hn::Mul(hn::PromoteTo(dd, va), hn::PromoteTo(dd, vb));
+        return hn::DemoteTo(dh, addRoundToOdd(dd, product, hn::PromoteTo(dd, vc)));
+    };
+    const auto lower = half(hn::LowerHalf(dh, a), hn::LowerHalf(dh, b), hn::LowerHalf(dh, c));
+    const auto upper = half(hn::UpperHalf(dh, a), hn::UpperHalf(dh, b), hn::UpperHalf(dh, c));
+    return hn::Combine(d, upper, lower);
+#else
+    (void)d;
+    return hn::MulAdd(a, b, c);
+#endif
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace vernier
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard

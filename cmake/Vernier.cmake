@@ -1,0 +1,66 @@
+# Build settings shared by every target, and the three ways a folder declares what it builds:
+#   vernier_library(name SOURCES ... [PUBLIC ...] [PRIVATE ...])   a static library of the house
+#   vernier_executable(name SOURCES ... [LIBS ...])                a program
+#   vernier_test(name LABELS ... SOURCES ... [LIBS ...])           a GoogleTest program run by CTest
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_C_STANDARD 99)
+set(CMAKE_C_EXTENSIONS OFF)
+# The driver is loaded into other people's processes: everything in it is position independent and hidden.
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_C_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+    set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+
+find_program(VERNIER_CCACHE ccache)
+if(VERNIER_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    set(CMAKE_C_COMPILER_LAUNCHER ${VERNIER_CCACHE})
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${VERNIER_CCACHE})
+endif()
+
+set(VERNIER_SANITIZE "" CACHE STRING "Sanitizers for every target, e.g. address,undefined or thread")
+
+add_library(vernier_settings INTERFACE)
+target_include_directories(vernier_settings INTERFACE ${PROJECT_SOURCE_DIR})
+# One scene gives one image on every CPU: the compiler may neither fuse nor reorder floating-point operations.
+target_compile_options(vernier_settings INTERFACE
+    -ffp-contract=off -fno-fast-math -Wall -Wextra -Wshadow -Werror
+    $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor -Woverloaded-virtual>)
+if(VERNIER_SANITIZE)
+    target_compile_options(vernier_settings INTERFACE
+        -fsanitize=${VERNIER_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
+    target_link_options(vernier_settings INTERFACE -fsanitize=${VERNIER_SANITIZE})
+endif()
+
+find_package(Threads REQUIRED)
+
+function(vernier_library name)
+    cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+    add_library(${name} STATIC ${ARG_SOURCES})
+    target_link_libraries(${name} PUBLIC $<BUILD_INTERFACE:vernier_settings> ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+endfunction()
+
+function(vernier_executable name)
+    cmake_parse_arguments(ARG "" "" "SOURCES;LIBS" ${ARGN})
+    add_executable(${name} ${ARG_SOURCES})
+    target_link_libraries(${name} PRIVATE vernier_settings ${ARG_LIBS})
+endfunction()
+
+function(vernier_test name)
+    cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBS;LABELS" ${ARGN})
+    find_package(GTest REQUIRED)
+    add_executable(${name} ${ARG_SOURCES})
+    target_link_libraries(${name} PRIVATE vernier_settings ${ARG_LIBS} GTest::gtest GTest::gmock GTest::gtest_main)
+    if(NOT ARG_TIMEOUT)
+        set(ARG_TIMEOUT 300)
+    endif()
+    add_test(NAME ${name} COMMAND ${name})
+    set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT})
+endfunction()

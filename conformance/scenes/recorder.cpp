@@ -1,0 +1,312 @@
+#include "conformance/scenes/recorder.h"
+
+#include <vernier/vernier_glsl.h>
+
+#include <algorithm>
+#include <bit>
+#include <memory>
+
+namespace vernier::conformance {
+namespace {
+
+constexpr VkColorComponentFlags kAllComponents =
+    VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+
+VkPipelineColorBlendAttachmentState unblended() {
+    VkPipelineColorBlendAttachmentState state{};
+    state.colorWriteMask = kAllComponents;
+    return state;
+}
+
+template <class T>
+uint32_t append(std::vector<T>& list, T element) {
+    list.push_back(std::move(element));
+    return static_cast<uint32_t>(list.size() - 1);
+}
+
+}  // namespace
+
+PipelineRecorder& PipelineRecorder::binding(uint32_t stride, VkVertexInputRate rate) {
+    const uint32_t number = static_cast<uint32_t>(state().vertexBindings.size());
+    state().vertexBindings.push_back({number, stride, rate});
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::attribute(VkFormat format, uint32_t offset) {
+    const uint32_t location = static_cast<uint32_t>(state().vertexAttributes.size());
+    state().vertexAttributes.push_back({location, state().vertexBindings.back().binding, format, offset});
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::topology(VkPrimitiveTopology topology, bool primitiveRestart) {
+    state().topology = topology;
+    state().primitiveRestart = primitiveRestart;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::cull(VkCullModeFlags mode, VkFrontFace frontFace) {
+    state().cullMode = mode;
+    state().frontFace = frontFace;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::depth(VkCompareOp compare, bool write) {
+    state().depthTest = true;
+    state().depthWrite = write;
+    state().depthCompare = compare;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::depthBias(float constant, float slope, float clamp) {
+    state().depthBias = true;
+    state().depthBiasConstant = constant;
+    state().depthBiasSlope = slope;
+    state().depthBiasClamp = clamp;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::stencil(const VkStencilOpState& front, const VkStencilOpState& back) {
+    state().stencilTest = true;
+    state().front = front;
+    state().back = back;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::samples(VkSampleCountFlagBits samples) {
+    state().samples = samples;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::targets(uint32_t count) {
+    state().blend.assign(count, unblended());
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::blend(const VkPipelineColorBlendAttachmentState& blend, uint32_t target) {
+    state().blend[target] = blend;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::blendConstants(const std::array<float, 4>& constants) {
+    state().blendConstants = constants;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::writeMask(VkColorComponentFlags mask, uint32_t target) {
+    state().blend[target].colorWriteMask = mask;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::pushConstants(uint32_t bytes) {
+    state().pushConstantBytes = bytes;
+    return *this;
+}
+
+PassRecorder& PassRecorder::color(uint32_t image, const std::array<float, 4>& clear, uint32_t resolveImage) {
+    SceneAttachment attachment;
+    attachment.image = image;
+    std::copy(clear.begin(), clear.end(), attachment.clear.color.float32);
+    attachment.resolveImage = resolveImage;
+    pass().colors.push_back(attachment);
+    return *this;
+}
+
+PassRecorder& PassRecorder::loadColor(uint32_t image) {
+    SceneAttachment attachment;
+    attachment.image = image;
+    attachment.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
+    pass().colors.push_back(attachment);
+    return *this;
+}
+
+PassRecorder& PassRecorder::depthStencil(uint32_t image, float depth, uint32_t stencil) {
+    pass().depthStencil.image = image;
+    pass().depthStencil.clear.depthStencil = {depth, stencil};
+    return *this;
+}
+
+DrawRecorder& DrawRecorder::vertices(uint32_t buffer, uint32_t binding) {
+    draw_->vertexBuffers.push_back({binding, buffer, 0});
+    return *this;
+}
+
+DrawRecorder& DrawRecorder::indices(uint32_t buffer, VkIndexType type) {
+    draw_->indexBuffer = buffer;
+    draw_->indexType = type;
+    return *this;
+}
+
+DrawRecorder& DrawRecorder::first(uint32_t first, int32_t vertexOffset) {
+    draw_->first = first;
+    draw_->vertexOffset = vertexOffset;
+    return *this;
+}
+
+DrawRecorder& DrawRecorder::instances(uint32_t count, uint32_t firstInstance) {
+    draw_->instances = count;
+    draw_->firstInstance = firstInstance;
+    return *this;
+}
+
+DrawRecorder& DrawRecorder::uniform(uint32_t binding, uint32_t buffer) {
+    SceneBinding entry;
+    entry.binding = binding;
+    entry.buffer = buffer;
+    draw_->bindings.push_back(entry);
+    return *this;
+}
+
+DrawRecorder& DrawRecorder::texture(uint32_t binding, uint32_t image, uint32_t sampler) {
+    SceneBinding entry;
+    entry.binding = binding;
+    entry.type = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    entry.image = image;
+    entry.sampler = sampler;
+    draw_->bindings.push_back(entry);
+    return *this;
+}
+
+DrawRecorder& DrawRecorder::viewport(float x, float y, float width, float height, float minDepth, float maxDepth) {
+    draw_->viewport = {x, y, width, height, minDepth, maxDepth};
+    return *this;
+}
+
+DrawRecorder& DrawRecorder::scissor(int32_t x, int32_t y, uint32_t width, uint32_t height) {
+    draw_->scissor = {{x, y}, {width, height}};
+    return *this;
+}
+
+SceneRecorder::SceneRecorder(std::string_view name, std::string_view description) {
+    scene_.name = name;
+    scene_.description = description;
+}
+
+uint32_t SceneRecorder::addBuffer(std::string_view name, VkBufferUsageFlags usage, Bytes data) {
+    return append(scene_.buffers, {std::string(name), usage, std::move(data)});
+}
+
+uint32_t SceneRecorder::addImage(SceneImage image) { return append(scene_.images, std::move(image)); }
+
+uint32_t SceneRecorder::colorTarget(std::string_view name, VkFormat format, VkExtent2D extent,
+                                    VkSampleCountFlagBits samples, VkImageUsageFlags moreUsage) {
+    SceneImage image;
+    image.name = name;
+    image.format = format;
+    image.extent = extent;
+    image.samples = samples;
+    image.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | moreUsage;
+    return addImage(std::move(image));
+}
+
+uint32_t SceneRecorder::depthTarget(std::string_view name, VkFormat format, VkExtent2D extent,
+                                    VkSampleCountFlagBits samples, VkImageUsageFlags moreUsage) {
+    SceneImage image;
+    image.name = name;
+    image.format = format;
+    image.extent = extent;
+    image.samples = samples;
+    image.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | moreUsage;
+    return addImage(std::move(image));
+}
+
+uint32_t SceneRecorder::texture(std::string_view name, VkFormat format, VkExtent2D extent,
+                                std::vector<Bytes> levels) {
+    SceneImage image;
+    image.name = name;
+    image.format = format;
+    image.extent = extent;
+    image.mipLevels = static_cast<uint32_t>(levels.size());
+    image.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+    image.data = std::move(levels);
+    return addImage(std::move(image));
+}
+
+uint32_t SceneRecorder::mipmappedTexture(std::string_view name, VkFormat format, VkExtent2D extent, Bytes level0) {
+    SceneImage image;
+    image.name = name;
+    image.format = format;
+    image.extent = extent;
+    image.mipLevels = static_cast<uint32_t>(std::bit_width(std::max(extent.width, extent.height)));
+    image.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+    image.data.resize(image.mipLevels);
+    image.data[0] = std::move(level0);
+    const uint32_t index = addImage(std::move(image));
+    scene_.steps.push_back(SceneGenerateMips{index});
+    return index;
+}
+
+uint32_t SceneRecorder::sampler(const SceneSampler& sampler) { return append(scene_.samplers, sampler); }
+
+uint32_t SceneRecorder::sampler(VkFilter filter, VkSamplerAddressMode address) {
+    SceneSampler state;
+    state.magFilter = state.minFilter = filter;
+    state.addressModeU = state.addressModeV = address;
+    state.maxLod = 0;
+    return sampler(state);
+}
+
+uint32_t SceneRecorder::shader(VkShaderStageFlagBits stage, std::string_view glsl) {
+    SceneShader shader;
+    shader.stage = stage;
+    shader.glsl = glsl;
+    const std::string name =
+        scene_.name + "/shader" + std::to_string(scene_.shaders.size()) +
+        (stage == VK_SHADER_STAGE_VERTEX_BIT ? ".vert" : ".frag");
+    VnGlslDesc desc{};
+    desc.stage = stage;
+    desc.source = shader.glsl.c_str();
+    desc.sourceLength = shader.glsl.size();
+    desc.sourceName = name.c_str();
+    desc.target = VN_GLSL_TARGET_VULKAN_1_0;  // what every driver reads
+    VnGlslOutput* raw = nullptr;
+    const VnGlslResult result = vnCompileGlsl(&desc, &raw);
+    const std::unique_ptr<VnGlslOutput, decltype(&vnFreeGlslOutput)> output(raw, &vnFreeGlslOutput);
+    if (result == VN_GLSL_SUCCESS) {
+        shader.spirv.assign(output->words, output->words + output->wordCount);
+    } else if (status_.ok()) {
+        status_ = invalidArgument(name + " does not compile:\n" + (output ? output->log : "out of memory"));
+    }
+    return append(scene_.shaders, std::move(shader));
+}
+
+void SceneRecorder::specialize(uint32_t shader, uint32_t id, uint32_t value) {
+    SceneShader& target = scene_.shaders[shader];
+    const auto bytes = bytesOf(std::span<const uint32_t>(&value, 1));
+    target.specialization.push_back({id, static_cast<uint32_t>(target.specializationData.size()), bytes.size()});
+    target.specializationData.insert(target.specializationData.end(), bytes.begin(), bytes.end());
+}
+
+PipelineRecorder SceneRecorder::pipeline(uint32_t vertexShader, uint32_t fragmentShader) {
+    ScenePipeline pipeline;
+    pipeline.vertexShader = vertexShader;
+    pipeline.fragmentShader = fragmentShader;
+    pipeline.blend.assign(fragmentShader == kNone ? 0 : 1, unblended());
+    return {scene_, append(scene_.pipelines, std::move(pipeline))};
+}
+
+PassRecorder SceneRecorder::pass(VkExtent2D extent) {
+    ScenePass pass;
+    pass.extent = extent;
+    scene_.steps.push_back(std::move(pass));
+    return PassRecorder(scene_);
+}
+
+DrawRecorder SceneRecorder::draw(uint32_t pipeline, uint32_t count) {
+    ScenePass& pass = std::get<ScenePass>(scene_.steps.back());
+    SceneDraw draw;
+    draw.pipeline = pipeline;
+    draw.count = count;
+    draw.viewport = {0, 0, static_cast<float>(pass.extent.width), static_cast<float>(pass.extent.height), 0, 1};
+    draw.scissor = {{0, 0}, pass.extent};
+    pass.draws.push_back(std::move(draw));
+    return DrawRecorder(pass.draws.back());
+}
+
+void SceneRecorder::output(uint32_t image) { scene_.outputs.push_back(image); }
+
+Result<Scene> SceneRecorder::finish() {
+    if (!status_.ok()) return status_.error();
+    return std::move(scene_);
+}
+
+}  // namespace vernier::conformance

@@ -1,0 +1,44 @@
+// Query pools: occlusion, pipeline statistics, timestamps.
+#pragma once
+
+#include <vulkan/vulkan_core.h>
+
+#include <array>
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+#include "runtime/raster/render_pass.h"
+
+namespace vernier {
+
+/// Thread-safe: the host may read results while a queue writes them.
+class QueryPool {
+  public:
+    QueryPool(VkQueryType type, uint32_t count, VkQueryPipelineStatisticFlags statistics);
+
+    VkQueryType type() const { return type_; }
+    uint32_t count() const { return static_cast<uint32_t>(queries_.size()); }
+
+    void reset(uint32_t first, uint32_t count);
+    void write(uint32_t query, const PassStatistics& difference);
+    void writeTimestamp(uint32_t query, uint64_t nanoseconds);
+
+    /// vkGetQueryPoolResults into `data`. VK_NOT_READY when something is missing and no wait was asked for; a wait is for
+    /// the caller to do.
+    VkResult results(uint32_t first, uint32_t count, std::byte* data, size_t size, VkDeviceSize stride,
+                     VkQueryResultFlags flags) const;
+
+  private:
+    struct Query {
+        bool available = false;
+        std::array<uint64_t, 11> values{};
+    };
+    VkQueryType type_;
+    VkQueryPipelineStatisticFlags statistics_;
+    uint32_t valuesPerQuery_;
+    mutable std::mutex mutex_;
+    std::vector<Query> queries_;
+};
+
+}  // namespace vernier

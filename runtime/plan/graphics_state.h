@@ -1,0 +1,68 @@
+// The state of a graphics pipeline as plain data in Vulkan's own terms, and the state that may change between draws.
+#pragma once
+
+#include <vulkan/vulkan_core.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "runtime/limits.h"
+
+namespace vernier {
+
+/// Everything fixed when a pipeline is created, shaders aside. Values that a draw takes from DynamicState are not here.
+struct GraphicsState {
+    std::vector<VkVertexInputBindingDescription> vertexBindings;
+    std::vector<VkVertexInputAttributeDescription> vertexAttributes;
+    VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    bool primitiveRestart = false;
+
+    bool depthClampEnable = false;
+    bool depthClipEnable = true;  // the specification's default: the opposite of depthClampEnable
+    bool rasterizerDiscard = false;
+    VkPolygonMode polygonMode = VK_POLYGON_MODE_FILL;
+    VkCullModeFlags cullMode = VK_CULL_MODE_NONE;
+    VkFrontFace frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
+    bool depthBiasEnable = false;
+    bool provokingVertexLast = false;
+
+    uint32_t samples = 1;
+    uint32_t sampleMask = ~0u;
+    bool sampleShading = false;
+    float minSampleShading = 0;
+    bool alphaToCoverage = false;
+    bool alphaToOne = false;
+
+    bool depthTest = false;
+    bool depthWrite = false;
+    VkCompareOp depthCompare = VK_COMPARE_OP_ALWAYS;
+    bool depthBoundsTest = false;
+    bool stencilTest = false;
+    VkStencilOpState stencilFront{}, stencilBack{};  // operations; masks and reference are dynamic
+
+    bool logicOpEnable = false;
+    VkLogicOp logicOp = VK_LOGIC_OP_COPY;
+    std::array<VkPipelineColorBlendAttachmentState, kMaxColorAttachments> blend{};
+
+    uint32_t colorCount = 0;
+    std::array<VkFormat, kMaxColorAttachments> colorFormats{};  // VK_FORMAT_UNDEFINED: unused
+    VkFormat depthStencilFormat = VK_FORMAT_UNDEFINED;
+};
+
+/// State that a command may set between draws. A pipeline that fixes some of it copies its values in here when bound.
+struct DynamicState {
+    std::array<VkViewport, kMaxViewports> viewports{};
+    std::array<VkRect2D, kMaxViewports> scissors{};
+    uint32_t viewportCount = 1;
+    float lineWidth = 1;
+    float depthBiasConstant = 0, depthBiasClamp = 0, depthBiasSlope = 0;
+    std::array<float, 4> blendConstants{};
+    float minDepthBounds = 0, maxDepthBounds = 1;
+    struct StencilFace {
+        uint32_t compareMask = 0xFF, writeMask = 0xFF, reference = 0;
+    };
+    StencilFace stencilFront, stencilBack;
+};
+
+}  // namespace vernier

@@ -1,0 +1,88 @@
+// Images and views. Texels lie row by row; the samples of a multisampled image lie in planes, one after the other.
+#pragma once
+
+#include <vulkan/vulkan_core.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "base/result.h"
+#include "runtime/format/format.h"
+#include "runtime/resource/memory.h"
+#include "runtime/texture/texture.h"
+
+namespace vernier {
+
+struct ImageInfo {
+    VkImageType type = VK_IMAGE_TYPE_2D;
+    VkFormat format = VK_FORMAT_UNDEFINED;
+    VkExtent3D extent{1, 1, 1};
+    uint32_t mipLevels = 1;
+    uint32_t arrayLayers = 1;
+    uint32_t samples = 1;
+    VkImageTiling tiling = VK_IMAGE_TILING_OPTIMAL;
+    VkImageUsageFlags usage = 0;
+    VkImageCreateFlags flags = 0;
+};
+
+/// Where one mip level lies inside a layer of the image.
+struct LevelLayout {
+    VkDeviceSize offset = 0;      // from the start of the layer
+    VkExtent3D extent{};          // texels: max(1, size >> level)
+    uint32_t rowPitch = 0;        // bytes
+    VkDeviceSize slicePitch = 0;  // bytes from one depth slice to the next
+    VkDeviceSize samplePitch = 0; // bytes from one sample plane to the next
+};
+
+/// The rows of an attachment are padded to whole blocks of this many texels in both directions, so that the rasteriser
+/// handles whole blocks and never touches memory outside the image.
+inline constexpr uint32_t kAttachmentBlock = 8;
+
+class Image {
+  public:
+    /// Checks the description (sizes, counts, format support) and computes the layout; memory is bound later.
+    static Result<Image> create(const ImageInfo& info);
+
+    const ImageInfo& info() const { return info_; }
+    const FormatInfo& format() const { return *format_; }
+    const LevelLayout& level(uint32_t mip) const { return levels_[mip]; }
+    VkDeviceSize layerPitch() const { return layerPitch_; }
+    VkDeviceSize memorySize() const { return layerPitch_ * info_.arrayLayers; }
+
+    void bind(Memory& memory, VkDeviceSize offset) { data_ = memory.data() + offset; }
+    bool bound() const { return data_ != nullptr; }
+    /// Texel (0, 0, z) of a sample of a subresource.
+    std::byte* address(uint32_t mip, uint32_t layer, uint32_t z = 0, uint32_t sample = 0) const;
+
+  private:
+    ImageInfo info_;
+    const FormatInfo* format_ = nullptr;
+    std::vector<LevelLayout> levels_;
+    VkDeviceSize layerPitch_ = 0;
+    std::byte* data_ = nullptr;
+};
+
+struct ImageViewInfo {
+    VkImageViewType type = VK_IMAGE_VIEW_TYPE_2D;
+    VkFormat format = VK_FORMAT_UNDEFINED;
+    VkComponentMapping components{};
+    VkImageSubresourceRange range{};  // counts resolved: no VK_REMAINING_*
+};
+
+class ImageView {
+  public:
+    static Result<ImageView> create(const Image& image, const ImageViewInfo& info);
+
+    const Image& image() const { return *image_; }
+    const ImageViewInfo& info() const { return info_; }
+    /// The view as the texture units see it. Addresses are resolved now: the image must be bound.
+    const TextureView& texture() const { return texture_; }
+
+  private:
+    const Image* image_ = nullptr;
+    ImageViewInfo info_;
+    TextureView texture_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,63 @@
+// Device memory and buffers. Device memory is host memory: there is one heap, host-visible, coherent and cached.
+#pragma once
+
+#include <vulkan/vulkan_core.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "base/result.h"
+
+namespace vernier {
+
+/// Where big allocations come from; the caller of a device can bring its own. Thread-safe if the callbacks are.
+struct HostAllocator {
+    void* user = nullptr;
+    void* (*allocate)(void* user, size_t bytes, size_t alignment) = nullptr;  // nullptr: operator new
+    void (*release)(void* user, void* memory, size_t bytes) = nullptr;
+
+    void* get(size_t bytes, size_t alignment) const;  // nullptr when out of memory
+    void put(void* memory, size_t bytes) const;
+};
+
+/// One allocation of device memory, 64-byte aligned, with kMemorySlack readable bytes after its end so that a vector load
+/// of the last element stays inside. Zeroed at creation: no program sees another's data.
+class Memory {
+  public:
+    static constexpr size_t kSlack = 64;
+    static Result<std::unique_ptr<Memory>> create(const HostAllocator& allocator, VkDeviceSize size);
+    ~Memory();
+    Memory(const Memory&) = delete;
+    Memory& operator=(const Memory&) = delete;
+
+    std::byte* data() const { return data_; }
+    VkDeviceSize size() const { return size_; }
+
+  private:
+    Memory(const HostAllocator& allocator, std::byte* data, VkDeviceSize size)
+        : allocator_(allocator), data_(data), size_(size) {}
+    HostAllocator allocator_;
+    std::byte* data_;
+    VkDeviceSize size_;
+};
+
+/// A range of memory with a usage. Unbound until bind(): data() is nullptr then.
+class Buffer {
+  public:
+    Buffer(VkDeviceSize size, VkBufferUsageFlags usage) : size_(size), usage_(usage) {}
+
+    void bind(Memory& memory, VkDeviceSize offset) { data_ = memory.data() + offset; }
+    std::byte* data() const { return data_; }
+    VkDeviceSize size() const { return size_; }
+    VkBufferUsageFlags usage() const { return usage_; }
+
+  private:
+    std::byte* data_ = nullptr;
+    VkDeviceSize size_;
+    VkBufferUsageFlags usage_;
+};
+
+inline constexpr VkDeviceSize kBufferAlignment = 64;
+
+}  // namespace vernier

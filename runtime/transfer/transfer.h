@@ -1,0 +1,38 @@
+// Copies, blits, resolves, clears and fills between buffers and images, as the commands of the same names in the Vulkan
+// specification (chapters "Copy Commands" and "Clear Commands"). Regions have been checked by whoever recorded them; each
+// function still clips to the resources, so that no input can make it touch memory outside. Rows are shared out over the
+// pool.
+#pragma once
+
+#include "base/simd.h"
+#include "base/thread_pool.h"
+#include "runtime/resource/image.h"
+#include "runtime/resource/memory.h"
+
+namespace vernier {
+
+struct TransferContext {
+    ThreadPool& pool;
+    Isa isa;
+};
+
+void copyBuffer(const TransferContext&, const Buffer& source, const Buffer& destination, const VkBufferCopy& region);
+void copyImage(const TransferContext&, const Image& source, const Image& destination, const VkImageCopy& region);
+void copyBufferToImage(const TransferContext&, const Buffer& buffer, const Image& image, const VkBufferImageCopy& region);
+void copyImageToBuffer(const TransferContext&, const Image& image, const Buffer& buffer, const VkBufferImageCopy& region);
+/// Scales and converts; nearest or linear filter over the source texels, clamped to the source region's edge.
+void blitImage(const TransferContext&, const Image& source, const Image& destination, const VkImageBlit& region,
+               VkFilter filter);
+/// Averages the samples of float and normalised formats (sRGB: of the linear values), takes sample 0 of integer formats.
+void resolveImage(const TransferContext&, const Image& source, const Image& destination, const VkImageResolve& region);
+void clearColorImage(const TransferContext&, const Image& image, const VkClearColorValue& value,
+                     const VkImageSubresourceRange& range);
+void clearDepthStencilImage(const TransferContext&, const Image& image, const VkClearDepthStencilValue& value,
+                            const VkImageSubresourceRange& range);
+void fillBuffer(const TransferContext&, const Buffer& buffer, VkDeviceSize offset, VkDeviceSize size, uint32_t value);
+void updateBuffer(const Buffer& buffer, VkDeviceSize offset, std::span<const std::byte> bytes);
+
+/// Checks one region against a resource: naming what is outside. Used by both front ends when recording.
+Status checkBufferImageCopy(const Image& image, VkDeviceSize bufferSize, const VkBufferImageCopy& region);
+
+}  // namespace vernier

@@ -1,0 +1,64 @@
+// What is known about operations beyond ops.def: names of the closed sets, how an immediate is read, operand types.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "spirv_interp/ir/ir.h"
+
+namespace vernier::ir {
+
+std::string_view typeName(Type type);
+std::optional<Type> typeFromName(std::string_view name);
+std::optional<Op> opFromName(std::string_view name);
+
+/// How Inst::imm of an operation is read.
+enum class ImmKind : uint8_t {
+    none,
+    bits,     // of a constant
+    type,     // the ir::Type of the operands
+    input,    // index into Program::inputs
+    output,   // index into Program::outputs
+    resource, // index into Program::resources
+    imageOp,  // index into Program::imageOps
+    pair,     // two 32-bit numbers, low and high
+};
+ImmKind immKind(Op op);
+
+inline uint32_t immLow(const Inst& inst) { return static_cast<uint32_t>(inst.imm); }
+inline uint32_t immHigh(const Inst& inst) { return static_cast<uint32_t>(inst.imm >> 32); }
+inline uint64_t immPair(uint32_t low, uint32_t high) { return low | static_cast<uint64_t>(high) << 32; }
+
+constexpr bool isFloat(Type type) { return type == Type::f32 || type == Type::f64; }
+constexpr bool isInteger(Type type) { return type == Type::i32 || type == Type::i64; }
+constexpr bool isWide(Type type) { return type == Type::i64 || type == Type::f64; }
+
+/// The types operand `index` may have, as a bit set of 1 << Type; 0 when the instruction has no such operand or its
+/// immediate is out of range.
+uint32_t operandTypes(const Program& program, const Inst& inst, uint32_t index);
+
+/// The types the result may have, as a bit set of 1 << Type; 1 << Type::none for operations without a result.
+uint32_t resultTypes(Op op);
+
+/// The number of operands the instruction must have; kNoIndex for a phi (its block tells) and for an image operation
+/// whose immediate is out of range.
+uint32_t operandCountOf(const Program& program, const Inst& inst);
+
+/// Where the operands of an image instruction stand; kNoIndex = not there. `count` is their number.
+struct ImageOperands {
+    uint32_t image = 0, sampler = kNoIndex, coords = kNoIndex, dref = kNoIndex, lodOrBias = kNoIndex, gradients = kNoIndex,
+             offsets = kNoIndex, sample = kNoIndex, values = kNoIndex;
+    uint32_t count = 0;
+};
+ImageOperands imageOperands(const ImageOp& op);
+
+/// Whether the instruction does something besides defining its results; such a one is never removed.
+bool hasSideEffect(const Program& program, const Inst& inst);
+
+/// Whether equal instructions give equal results anywhere in the program: pure ones, and loads from memory that nothing
+/// in the program writes.
+bool isMovable(const Program& program, const Inst& inst);
+
+inline bool isTerminator(Op op) { return opInfo(op).kind == 'T'; }
+
+}  // namespace vernier::ir

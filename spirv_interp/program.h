@@ -1,0 +1,123 @@
+// The door of spirv_interp: SPIR-V words in, programs that run on batches of lanes out. Everything a pipeline needs is
+// here and in ir/ir.h (reflection) and resources.h (descriptors).
+//
+//   Result<ir::Program> a = loadShader({words, "main", Stage::vertex, specialization});   // validated, lowered
+//   ir::linkStages(a, b)                                                                   // ir/link.h: drop dead varyings
+//   Result<std::shared_ptr<const BatchProgram>> p = BatchProgram::compile(a, {isa, MathTier::standard});
+//   BatchContext context(*p);              // per thread
+//   context.beginDraw(bindings);           // runs draw-rate code once
+//   fill context.input(slot)[lane] ...; context.run(lanes, execMask, storeMask); read context.output(slot)[lane]
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "base/simd.h"
+#include "spirv_interp/ir/ir.h"
+#include "spirv_interp/resources.h"
+
+namespace vernier {
+
+/// Accuracy of transcendental functions, division and square root; see docs/precision.md.
+enum class MathTier : uint8_t { fast, standard, fine, reference };
+
+struct Specialization {
+    struct Entry {
+        uint32_t constantId = 0;
+        uint32_t offset = 0;  // bytes into data
+        uint32_t size = 0;    // bytes
+    };
+    std::span<const Entry> entries;
+    std::span<const std::byte> data;
+};
+
+struct ShaderSource {
+    std::span<const uint32_t> words;
+    std::string entryPoint = "main";
+    ir::Stage stage = ir::Stage::vertex;
+    Specialization specialization;
+};
+
+/// Validates the module (SPIRV-Tools, Vulkan 1.1 rules), specialises it, lowers the entry point to the IR, removes dead
+/// code and verifies the result. An instruction or capability that is not supported is an ErrorCode::unsupported whose
+/// message names it. Thread-safe. Defined in front/.
+Result<ir::Program> loadShader(const ShaderSource& source);
+
+/// Validation alone, as vkCreateShaderModule wants it: the header and the structure of the words.
+Status checkModule(std::span<const uint32_t> words);
+
+struct BatchOptions {
+    Isa isa = Isa::sse4;
+    MathTier tier = MathTier::standard;
+    uint32_t lanes = 0;  // 0 = chosen so that the registers stay in the first-level cache: 16, 32, 64 or 128
+};
+
+struct BatchStatistics {
+    uint32_t instructions = 0;       // per batch
+    uint32_t drawRateInstructions = 0;
+    uint32_t registers = 0;          // of `lanes` 32-bit words each
+    uint32_t lanes = 0;
+};
+
+class BatchContext;
+
+/// A program ready to run: bytecode and register assignment. Immutable and shared between threads.
+class BatchProgram {
+  public:
+    virtual ~BatchProgram() = default;
+    /// `program` must verify and be in loop-closed form. Thread-safe. Defined in batch/.
+    static Result<std::shared_ptr<const BatchProgram>> compile(const ir::Program& program, const BatchOptions& options);
+
+    virtual const BatchStatistics& statistics() const = 0;
+    virtual std::string disassemble() const = 0;
+    uint32_t lanes() const { return statistics().lanes; }
+};
+
+/// The registers of one thread for one program. Not thread-safe; cheap to keep between draws.
+class BatchContext {
+  public:
+    explicit BatchContext(std::shared_ptr<const BatchProgram> program);
+    ~BatchContext();
+    BatchContext(BatchContext&&) noexcept;
+    BatchContext& operator=(BatchContext&&) noexcept;
+
+    /// Names the resources of the draws to come and evaluates everything that cannot change inside a draw. The bindings
+    /// must stay alive and their read-only contents unchanged until the next beginDraw.
+    void beginDraw(const ResourceBindings& bindings);
+
+    /// The lanes of input `slot` (index into Program::inputs), `lanes()` 32-bit words, 64-byte aligned. nullptr when the
+    /// compiled program does not read it. The contents survive run() only until the next run().
+    float* input(uint32_t slot);
+
+    /// Runs `lanes` lanes (a multiple of 4, at most BatchProgram::lanes()). `execMask`: ~0 for every lane that runs,
+    /// helpers included; `storeMask`: ~0 for every lane whose effects count (a subset). Both have room for
+    /// BatchProgram::lanes() words; lanes beyond `lanes` may be computed but have no effects. Returns false if a loop
+    /// passed the back-edge budget (2^24 per lane and run): the device is lost.
+    bool run(uint32_t lanes, const uint32_t* execMask, const uint32_t* storeMask);
+
+    /// After run(): the lanes of output `slot`; lanes that were not live hold arbitrary bits.
+    const float* output(uint32_t slot) const;
+
+    /// After run(): storeMask less the lanes that were killed or demoted.
+    const uint32_t* liveMask() const;
+
+    /// Centroid/sample/offset interpolation asks its caller back; set by the backend before run() when the program has
+    /// such instructions. `where`: 0 centroid, 1 sample (a = i32 sample), 2 offset (a = x, b = y in pixels).
+    struct Interpolator {
+        void* self = nullptr;
+        void (*at)(void* self, uint32_t slot, uint32_t where, uint32_t lanes, const float* a, const float* b,
+                   float* result) = nullptr;
+    };
+    void setInterpolator(const Interpolator& interpolator);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vernier

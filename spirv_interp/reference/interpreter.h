@@ -1,0 +1,204 @@
+// The reference interpreter: SPIR-V vertex and fragment shaders, one invocation at a time, in any of three number types.
+// It is slow, plain and meant to be obviously right: the judge of the batch interpreter, and the shader of the oracle.
+//
+// Where SPIR-V leaves a result open, this is what is done: integer division and remainder by zero give 0, INT_MIN / -1
+// gives INT_MIN; shift counts are taken modulo the width; float to integer truncates, saturates, and NaN gives 0; min and
+// max ignore a NaN; reads outside a buffer or an array give 0 and writes there are dropped; undefined values are 0;
+// GLSL Round is to nearest even; fma has one rounding; a multiply and an add are never contracted. Reaching OpUnreachable
+// is an error.
+//
+// Number types: with float every instruction is IEEE single precision, and each GLSL.std.450 function is computed in double
+// and rounded once. With double and Real every 32-bit float of the module is held in that type: results are not rounded to
+// float unless Options::roundToFloat asks for it (then as if each instruction were computed exactly and rounded once).
+// 64-bit floats of a module are held in Number too: with Number = float they have only float's precision. Bit casts and
+// packing go through the bits of the declared type (float32 or float64), rounding to nearest.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <spirv/unified1/spirv.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.h"
+#include "spirv_interp/reference/number.h"
+#include "spirv_interp/reference/resources.h"
+
+namespace vernier::reference {
+
+struct ModuleData;
+
+/// Execution modes of an entry point.
+struct ExecutionModes {
+    bool originUpperLeft = false;
+    bool originLowerLeft = false;
+    bool pixelCenterInteger = false;
+    bool earlyFragmentTests = false;
+    bool depthReplacing = false;
+    bool depthGreater = false, depthLess = false, depthUnchanged = false;
+};
+
+struct EntryPoint {
+    std::string name;
+    spv::ExecutionModel model = spv::ExecutionModelVertex;
+    ExecutionModes modes;
+};
+
+enum class ScalarKind : uint8_t { boolean, int32, uint32, int64, uint64, float32, float64 };
+
+/// One input or output of an entry point, or one member of an input or output block. Matrices and arrays take one location
+/// per column and element (two for three or four 64-bit components), one after the other.
+struct InterfaceVariable {
+    std::string name;  // may be empty: names are debug information
+    bool output = false;
+    bool isBuiltin = false;
+    spv::BuiltIn builtin = spv::BuiltInMax;  // isBuiltin
+    uint32_t location = 0;                   // !isBuiltin
+    uint32_t component = 0;                  // first component
+    uint32_t index = 0;                      // dual-source blending
+    ScalarKind kind = ScalarKind::float32;
+    uint32_t components = 1;  // of a vector, or of a column
+    uint32_t columns = 1;     // of a matrix
+    uint32_t elements = 1;    // of all array dimensions together
+    bool isArray = false;
+    bool flat = false, noPerspective = false, centroid = false, sample = false;
+    uint32_t locations = 1;  // taken up
+};
+
+enum class DescriptorKind : uint8_t {
+    uniformBuffer,
+    storageBuffer,
+    combinedImageSampler,
+    sampledImage,
+    sampler,
+    storageImage,
+    uniformTexelBuffer,
+    storageTexelBuffer,
+    inputAttachment,
+};
+
+struct DescriptorBinding {
+    std::string name;
+    uint32_t set = 0, binding = 0;
+    DescriptorKind kind = DescriptorKind::uniformBuffer;
+    uint32_t count = 1;     // descriptors in the array; 0 = runtime-sized
+    uint64_t byteSize = 0;  // buffers: size of the block without a trailing runtime array
+    ImageShape shape;       // images
+    uint32_t inputAttachmentIndex = 0;
+};
+
+/// A parsed SPIR-V module with its specialisation applied. Immutable; copies share the contents; thread-safe.
+class Module {
+  public:
+    /// Specialisation constants by SpecId; 64-bit ones take the whole value, booleans 0 or not 0.
+    using Specialization = std::map<uint32_t, uint64_t>;
+
+    /// Accepts any words. An Error names what is broken or which instruction is not supported.
+    static Result<Module> parse(std::span<const uint32_t> words, const Specialization& specialization = {});
+
+    const std::vector<EntryPoint>& entryPoints() const;
+    /// Inputs and outputs of entryPoints()[entryPoint].
+    const std::vector<InterfaceVariable>& interfaceVariables(size_t entryPoint) const;
+    /// All descriptor bindings that the module declares, used or not.
+    const std::vector<DescriptorBinding>& descriptorBindings() const;
+    /// Bytes of the push-constant block up to the end of its last member; 0 without one.
+    uint64_t pushConstantSize() const;
+
+    const ModuleData& data() const { return *data_; }
+
+  private:
+    explicit Module(std::shared_ptr<const ModuleData> data) : data_(std::move(data)) {}
+
+    std::shared_ptr<const ModuleData> data_;
+};
+
+/// A user-defined interface location; `index` is 1 only for the second source of dual-source blending.
+struct Location {
+    uint32_t location = 0;
+    uint32_t index = 0;
+
+    Location() = default;
+    Location(uint32_t location_, uint32_t index_ = 0) : location(location_), index(index_) {}
+    auto operator<=>(const Location&) const = default;
+};
+
+/// The values on one side of an invocation. Inputs that are missing read as 0. Outputs hold exactly the locations and
+/// built-ins of which the invocation has written a component. 64-bit components take two: the value in the even one.
+template <class Number>
+struct InterfaceValues {
+    std::map<Location, Texel<Number>> locations;
+    /// Scalars of the built-in in order: 4 for Position, n for ClipDistance, 1 for VertexIndex...
+    std::map<spv::BuiltIn, std::vector<Scalar<Number>>> builtins;
+
+    void setFloat(spv::BuiltIn builtin, std::initializer_list<Number> values) {
+        auto& scalars = builtins[builtin];
+        scalars.clear();
+        for (const Number& value : values) scalars.push_back(Scalar<Number>::ofNumber(value));
+    }
+    void setInt(spv::BuiltIn builtin, int32_t value) { builtins[builtin] = {Scalar<Number>::ofInt(value)}; }
+    void setFloat(Location location, std::initializer_list<Number> values) {
+        size_t component = 0;
+        for (const Number& value : values)
+            if (component < 4) locations[location][component++] = Scalar<Number>::ofNumber(value);
+    }
+    void setInt(Location location, std::initializer_list<int32_t> values) {
+        size_t component = 0;
+        for (const int32_t value : values)
+            if (component < 4) locations[location][component++] = Scalar<Number>::ofInt(value);
+    }
+};
+
+/// What became of one invocation.
+template <class Number>
+struct Outcome {
+    InterfaceValues<Number> outputs;
+    bool discarded = false;  // by OpKill, OpTerminateInvocation or OpDemoteToHelperInvocation
+    uint64_t steps = 0;      // instructions executed
+};
+
+struct Options {
+    /// Round every 32-bit float result to float32, inputs and image results included. No effect with Number = float.
+    bool roundToFloat = false;
+    /// OpDPdx, OpDPdy, OpFwidth and implicit levels of detail use one difference for the whole quad, the one of its first
+    /// row or column (as the ...Coarse instructions do); otherwise that of the invocation's own row and column.
+    bool coarseDerivatives = false;
+    /// An invocation that executes more instructions ends in an Error. Instructions on large values count for several.
+    uint64_t stepBudget = 10'000'000;
+};
+
+/// Runs one entry point of a module. Immutable after creation and thread-safe, as far as the Resources are.
+/// Instantiated for float, double and Real.
+template <class Number>
+class Interpreter {
+  public:
+    /// Vertex and fragment entry points only.
+    static Result<Interpreter> create(const Module& module, spv::ExecutionModel model,
+                                      std::string_view entryPoint = "main", const Options& options = {});
+
+    /// One invocation on its own: all derivatives are 0.
+    Result<Outcome<Number>> run(const InterfaceValues<Number>& inputs, Resources<Number>& resources) const;
+
+    /// The four fragments (0,0) (1,0) (0,1) (1,1) of a quad, in step at derivatives and implicit levels of detail. Helper
+    /// invocations (and demoted ones) have no effect on memory. An invocation that does not take part in a derivative
+    /// (it has ended, or is elsewhere in the program) leaves the others with the difference of the other row or column
+    /// if that is there (coarse), or with 0.
+    Result<std::array<Outcome<Number>, 4>> runQuad(const std::array<InterfaceValues<Number>, 4>& inputs,
+                                                   const std::array<bool, 4>& helper,
+                                                   Resources<Number>& resources) const;
+
+  private:
+    struct State;
+    explicit Interpreter(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+
+    std::shared_ptr<const State> state_;
+};
+
+extern template class Interpreter<float>;
+extern template class Interpreter<double>;
+extern template class Interpreter<Real>;
+
+}  // namespace vernier::reference
