@@ -41,6 +41,7 @@ struct ShaderSource {
     std::string entryPoint = "main";
     ir::Stage stage = ir::Stage::vertex;
     Specialization specialization;
+    bool contract = false;  // fuse a * b + c where NoContraction does not forbid it
 };
 
 /// Validates the module (SPIRV-Tools, Vulkan 1.1 rules), specialises it, lowers the entry point to the IR, removes dead

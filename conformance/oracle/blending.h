@@ -12,6 +12,15 @@
 
 namespace vernier::conformance::exact {
 
+template <class T>
+T smaller(const T& a, const T& b) {
+    return b < a ? b : a;
+}
+template <class T>
+T larger(const T& a, const T& b) {
+    return a < b ? b : a;
+}
+
 /// Component `channel` of a blend factor (Vulkan, Blend Factors). Dual-source factors take `source1`.
 template <class T>
 T blendFactor(VkBlendFactor factor, size_t channel, const std::array<T, 4>& source, const std::array<T, 4>& destination,
@@ -34,7 +43,7 @@ T blendFactor(VkBlendFactor factor, size_t channel, const std::array<T, 4>& sour
         case VK_BLEND_FACTOR_SRC_ALPHA_SATURATE: {
             if (channel == 3) return one;
             const T room = one - destination[3];
-            return source[3] < room ? source[3] : room;
+            return smaller(source[3], room);
         }
         case VK_BLEND_FACTOR_SRC1_COLOR: return source1[channel];
         case VK_BLEND_FACTOR_ONE_MINUS_SRC1_COLOR: return one - source1[channel];
@@ -53,8 +62,8 @@ T blendComponent(const VkPipelineColorBlendAttachmentState& state, size_t channe
     const VkBlendOp op = alpha ? state.alphaBlendOp : state.colorBlendOp;
     const T& s = source[channel];
     const T& d = destination[channel];
-    if (op == VK_BLEND_OP_MIN) return s < d ? s : d;
-    if (op == VK_BLEND_OP_MAX) return s < d ? d : s;
+    if (op == VK_BLEND_OP_MIN) return smaller(s, d);
+    if (op == VK_BLEND_OP_MAX) return larger(s, d);
     const T ws = s * blendFactor(alpha ? state.srcAlphaBlendFactor : state.srcColorBlendFactor, channel, source,
                                  destination, constants, source1);
     const T wd = d * blendFactor(alpha ? state.dstAlphaBlendFactor : state.dstColorBlendFactor, channel, source,

@@ -7,7 +7,9 @@ namespace vernier::conformance::exact {
 
 namespace {
 
-std::string text(const GridPoint& p) { return "(" + std::to_string(p.x) + ", " + std::to_string(p.y) + ")"; }
+std::string text(const GridPoint& p) {
+    return std::string("(").append(std::to_string(p.x)).append(", ").append(std::to_string(p.y)).append(")");
+}
 
 std::string wrongSample(uint32_t x, uint32_t y, uint32_t observed, const std::string& expected, const std::string& cause) {
     return "pixel (" + std::to_string(x) + ", " + std::to_string(y) + ") is covered " + std::to_string(observed) +

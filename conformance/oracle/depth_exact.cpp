@@ -41,8 +41,8 @@ BiasRange depthBias(VkFormat format, const std::array<Rational, 3>& vertexDepths
     const double steepest = Rational(std::max(Rational(abs(slopeX)), Rational(abs(slopeY)))).get_d();
     const double slope = sqrtEnclosure(slopeX * slopeX + slopeY * slopeY).high;
     const auto [constantLow, constantHigh] =
-        std::minmax(constantFactor * unit.low.get_d(), constantFactor * unit.high.get_d());
-    const auto [slopeLow, slopeHigh] = std::minmax(slopeFactor * steepest, slopeFactor * slope);
+        std::minmax({constantFactor * unit.low.get_d(), constantFactor * unit.high.get_d()});
+    const auto [slopeLow, slopeHigh] = std::minmax({slopeFactor * steepest, slopeFactor * slope});
     BiasRange range{constantLow + slopeLow, constantHigh + slopeHigh};
     if (clamp > 0) range = {std::min<double>(range.low, clamp), std::min<double>(range.high, clamp)};
     if (clamp < 0) range = {std::max<double>(range.low, clamp), std::max<double>(range.high, clamp)};

@@ -57,15 +57,16 @@ struct HomogeneousTriangle {
         return result;
     }
 
-    /// sum(b_i f_i) / sum(b_i): smooth (perspective) interpolation.
+    /// sum(b_i f_i) / sum(b_i): smooth (perspective) interpolation, anchored at vertex 0 so that a constant attribute stays
+    /// constant in rounded number types too.
     T perspective(const std::array<T, 3>& b, const std::array<T, 3>& f) const {
-        return T(b[0] * f[0] + b[1] * f[1] + b[2] * f[2]) / T(b[0] + b[1] + b[2]);
+        return f[0] + T(b[1] * (f[1] - f[0]) + b[2] * (f[2] - f[0])) / T(b[0] + b[1] + b[2]);
     }
 
     /// Linear in window space: noperspective attributes. The weights are b_i w_i.
     T linear(const std::array<T, 3>& b, const std::array<T, 3>& f) const {
         const T b0 = b[0] * vertex[0].w, b1 = b[1] * vertex[1].w, b2 = b[2] * vertex[2].w;
-        return T(b0 * f[0] + b1 * f[1] + b2 * f[2]) / T(b0 + b1 + b2);
+        return f[0] + T(b1 * (f[1] - f[0]) + b2 * (f[2] - f[0])) / T(b0 + b1 + b2);
     }
 
     /// Window depth: linear in window space.

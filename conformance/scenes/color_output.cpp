@@ -144,8 +144,8 @@ void main() { color = texelFetch(codes, ivec2(int(gl_FragCoord.x), 0), 0); }
     const uint32_t ramp = record.pipeline(cover, record.fragment(R"(#version 450
 layout(location = 0) out vec4 color;
 void main() {
-    // Multiples of 1/1024: far from every rounding threshold of the format, by construction exact.
-    float t = floor(gl_FragCoord.x) * 4.0 / 1024.0;
+    // Multiples of 1/256 and their squares are exact: only the encoding rounds.
+    float t = floor(gl_FragCoord.x) * (1.0 / 256.0);
     color = vec4(t, t * t, 1.0 - t, 1.0);
 }
 )"));

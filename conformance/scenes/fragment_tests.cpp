@@ -79,7 +79,7 @@ Result<Scene> scissor_viewport() {
     view(less).viewport(168, 85, 83, 85).scissor(209, 120, 1, 50);
     view(less).viewport(168, 85, 83, 85).scissor(180, 127, 60, 1);
     view(less).viewport(168, 85, 83, 85).scissor(200, 100, 0, 0);
-    view(less).viewport(0, 170, 40, 85).scissor(0, 170, 83, 85);    // sails reach out of the viewport: not cut there
+    view(less).viewport(0, 170, 40, 85).scissor(0, 170, 83, 85);    // cut at the view volume, not by the scissor
     view(less).viewport(-40, 200, 250, 250).scissor(84, 170, 83, 85);  // partly off the target
     view(less).viewport(168, 170, 83, 42.5f).scissor(168, 170, 83, 42);
     view(less).viewport(168, 255, 83, -42.5f).scissor(168, 213, 83, 42);
@@ -146,8 +146,8 @@ Result<Scene> stencil_winding() {
             star.push_back({{pointAt(i + 1), 0.5f}, none});
         }
     };
-    fan([](int i) { return onCircle(3.0 * i / 7 - 0.25, 0.94); }, 7);
-    fan([](int i) { return onCircle(-i / 24.0, 0.17); }, 24);
+    fan([](int i) { return onCircle(-3.0 * i / 7 - 0.25, 0.94); }, 7);
+    fan([](int i) { return onCircle(i / 24.0, 0.17); }, 24);
     std::vector<Vertex> cover;
     const std::array<glm::vec3, 4> palette{
         {{0.95f, 0.75f, 0.25f}, {0.93f, 0.45f, 0.3f}, {0.72f, 0.2f, 0.4f}, {0.25f, 0.65f, 0.7f}}};
@@ -196,7 +196,7 @@ Result<Scene> alpha_test() {
         const glm::vec2 shift(0.13f * i - 0.1f, 0.1f - 0.09f * i);
         const glm::vec3 color = colors[static_cast<size_t>(sheet)];
         const auto corner = [&](float x, float y, float w, float z) {
-            const glm::vec2 uv = glm::vec2(x, y) * (3.5f + i) + shift * 7.0f;
+            const glm::vec2 uv = glm::vec2(x, y) * (2.4f + i) + shift * 7.0f;
             return LeafVertex{{(glm::vec2(x, y) * 0.9f + shift) * w, z * w, w}, uv, color};
         };
         const LeafVertex a = corner(-1, -1, 1.6f, 0.5f + 0.2f * i), b = corner(1, -1, 1.9f, 0.55f + 0.2f * i);
@@ -221,7 +221,7 @@ layout(location = 1) in vec3 vColor;
 layout(location = 0) out vec4 color;
 void main() {
     vec2 p = fract(vUv) * 2.0 - 1.0;
-    float edge = 0.8 - p.y * p.y - 1.9 * abs(p.x);
+    float edge = 0.85 - p.y * p.y - 1.5 * abs(p.x);
     if (edge < 0.0) discard;
     float vein = abs(p.x) < 0.05 ? 0.72 : 1.0;
     color = vec4(vColor * vein * (0.62 + 0.48 * edge), 1.0);

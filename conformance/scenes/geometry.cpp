@@ -370,9 +370,9 @@ Result<Scene> near_plane() {
         vertices.insert(vertices.end(), {v0, v1, v2, v2, v1, v3});
     }
     // A blade that starts behind the eye and pierces the corridor.
-    vertices.insert(vertices.end(), {{{-0.9f, 0.5f, 1.5f}, {0.9f, 0.95f, 0.6f}},
-                                     {{0.8f, -0.75f, -3.0f}, {0.2f, 0.8f, 0.5f}},
-                                     {{0.5f, 0.7f, -5.0f}, {0.95f, 0.3f, 0.4f}}});
+    vertices.insert(vertices.end(), {{{-1.1f, -0.4f, 1.5f}, {0.9f, 0.95f, 0.6f}},
+                                     {{0.4f, -0.8f, -2.2f}, {0.2f, 0.8f, 0.5f}},
+                                     {{1.5f, 0.2f, -5.0f}, {0.95f, 0.3f, 0.4f}}});
     const uint32_t pipeline = record.pipeline(record.vertex(R"(#version 450
 layout(push_constant) uniform Constants { mat4 camera; } push;
 layout(location = 0) in vec3 position;

@@ -34,6 +34,7 @@
     X(texture_lod)         \
     X(texture_trilinear)   \
     X(copy_and_blit)       \
+    X(blit_mirrored)       \
     /* multi_pass.cpp */   \
     X(render_to_texture)   \
     X(shadow_map)          \

@@ -36,7 +36,9 @@ class CommandBuffer {
     }
 
     template <class T>
-    std::span<const T> copy(std::span<const T> source) { return arena_.copy(source); }
+    std::span<const T> copy(std::span<const T> source) {
+        return arena_.copy(source);
+    }
 
     Arena& arena() { return arena_; }
     const CommandHeader* first() const { return first_; }

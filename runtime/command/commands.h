@@ -43,6 +43,8 @@ struct BeginRendering {
     PassStatistics* statistics = nullptr;  // where to add what was counted, or nullptr
 };
 struct EndRendering {};
+/// Finishes the draws of the pass so far: what they wrote can be read by the draws to come.
+struct Flush {};
 struct ClearAttachments {
     std::span<const VkClearAttachment> attachments;
     std::span<const VkClearRect> rects;

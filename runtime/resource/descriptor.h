@@ -11,14 +11,10 @@
 #include "base/arena.h"
 #include "base/simd.h"
 #include "runtime/resource/image.h"
+#include "runtime/resource/texture_unit.h"
 #include "spirv_interp/resources.h"
 
 namespace vernier {
-
-/// A sampler, resolved once from VkSamplerCreateInfo.
-struct Sampler {
-    SamplerState state;
-};
 
 struct DescriptorBinding {
     uint32_t binding = 0;
@@ -26,7 +22,7 @@ struct DescriptorBinding {
     uint32_t count = 0;
     uint32_t firstSlot = 0;      // into DescriptorSet::slots
     uint32_t firstDynamic = 0;   // into the dynamic offsets of the set, for *_DYNAMIC types
-    std::vector<const Sampler*> immutableSamplers;
+    std::vector<const SamplerState*> immutableSamplers;  // empty or `count`
 };
 
 struct DescriptorSetLayout {
@@ -38,13 +34,12 @@ struct DescriptorSetLayout {
     const DescriptorBinding* find(uint32_t binding) const;
 };
 
-/// One descriptor. Which fields count follows from the type of its binding.
+/// One descriptor; plain data, copied freely. Which fields count follows from the type of its binding.
 struct Descriptor {
-    BufferBinding buffer;                 // uniform and storage buffers
-    const ImageView* view = nullptr;
-    const Sampler* sampler = nullptr;
-    ImageBinding image;                   // view and sampler resolved to a routine when written
-    TextureView texelBuffer;              // texel buffers: a view of one row
+    BufferBinding buffer;             // uniform and storage buffers
+    VkDeviceSize bufferBytesLeft = 0; // from buffer.data to the end of the buffer, for dynamic offsets
+    const SamplerState* sampler = nullptr;
+    TextureUnit texture;              // images, combined image samplers, texel buffers
 };
 
 class DescriptorSet {
@@ -55,9 +50,11 @@ class DescriptorSet {
     std::span<Descriptor> slots() { return slots_; }
     std::span<const Descriptor> slots() const { return slots_; }
 
+    /// `buffer` nullptr: an empty binding. `range` may be VK_WHOLE_SIZE.
     void writeBuffer(uint32_t slot, const Buffer* buffer, VkDeviceSize offset, VkDeviceSize range);
-    /// Any of the two may be nullptr (separate images and samplers). Resolves the sampling routine for `isa`.
-    void writeImage(uint32_t slot, const ImageView* view, const Sampler* sampler, Isa isa);
+    /// Either may be nullptr (separate images and samplers; null descriptors). Both must outlive the descriptor. Resolves
+    /// image and sampler to their routines; fails, leaving an empty binding, if the pair cannot be sampled.
+    Status writeImage(uint32_t slot, const TextureView* view, const SamplerState* sampler, Isa isa);
 
   private:
     const DescriptorSetLayout* layout_;
@@ -74,8 +71,5 @@ struct BoundDescriptors {
 /// The bindings of one program: looks up every resource of `program` in `bound` and lays the results out in `arena`.
 /// Unbound or missing descriptors become empty bindings, which read as zero. The result lives as long as the arena.
 ResourceBindings resolveBindings(const ir::Program& program, const BoundDescriptors& bound, Arena& arena);
-
-/// The routine that joins an image call of spirv_interp to a view and a sampler of runtime/texture.
-ImageBinding makeImageBinding(const TextureView* view, const SamplerState* sampler, Isa isa, Arena* arena);
 
 }  // namespace vernier

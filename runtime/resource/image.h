@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "base/simd.h"
 #include "runtime/format/format.h"
 #include "runtime/resource/memory.h"
 #include "runtime/texture/texture.h"
@@ -72,12 +73,15 @@ struct ImageViewInfo {
 
 class ImageView {
   public:
-    static Result<ImageView> create(const Image& image, const ImageViewInfo& info);
+    /// Checks the view against the image. `isa` chooses the conversion routines of the view. The image must be bound.
+    static Result<ImageView> create(const Image& image, const ImageViewInfo& info, Isa isa);
 
     const Image& image() const { return *image_; }
     const ImageViewInfo& info() const { return info_; }
     /// The view as the texture units see it. Addresses are resolved now: the image must be bound.
     const TextureView& texture() const { return texture_; }
+    /// The extent of the view's base level.
+    VkExtent2D extent() const;
 
   private:
     const Image* image_ = nullptr;

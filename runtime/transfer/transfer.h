@@ -4,6 +4,9 @@
 // pool.
 #pragma once
 
+#include <span>
+
+#include "base/result.h"
 #include "base/simd.h"
 #include "base/thread_pool.h"
 #include "runtime/resource/image.h"
@@ -20,7 +23,7 @@ void copyBuffer(const TransferContext&, const Buffer& source, const Buffer& dest
 void copyImage(const TransferContext&, const Image& source, const Image& destination, const VkImageCopy& region);
 void copyBufferToImage(const TransferContext&, const Buffer& buffer, const Image& image, const VkBufferImageCopy& region);
 void copyImageToBuffer(const TransferContext&, const Image& image, const Buffer& buffer, const VkBufferImageCopy& region);
-/// Scales and converts; nearest or linear filter over the source texels, clamped to the source region's edge.
+/// Scales and converts; nearest or linear filter, coordinates clamped to the edge of the source level.
 void blitImage(const TransferContext&, const Image& source, const Image& destination, const VkImageBlit& region,
                VkFilter filter);
 /// Averages the samples of float and normalised formats (sRGB: of the linear values), takes sample 0 of integer formats.
@@ -32,7 +35,8 @@ void clearDepthStencilImage(const TransferContext&, const Image& image, const Vk
 void fillBuffer(const TransferContext&, const Buffer& buffer, VkDeviceSize offset, VkDeviceSize size, uint32_t value);
 void updateBuffer(const Buffer& buffer, VkDeviceSize offset, std::span<const std::byte> bytes);
 
-/// Checks one region against a resource: naming what is outside. Used by both front ends when recording.
+/// Checks one region against an image and a buffer of `bufferSize` bytes, naming what is outside. Both front ends call it
+/// when recording.
 Status checkBufferImageCopy(const Image& image, VkDeviceSize bufferSize, const VkBufferImageCopy& region);
 
 }  // namespace vernier

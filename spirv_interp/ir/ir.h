@@ -118,8 +118,8 @@ enum class AtomicOp : uint8_t { add, sub, smin, smax, umin, umax, iand, ior, ixo
 
 /// The static part of an image instruction. Its operands, in this order, those that are there:
 /// descriptor index of the image (i32), descriptor index of the sampler (i32, when samplerResource is another resource),
-/// `coords` coordinates (f32, or i32 for fetch/read/store; array layer last), dref (f32), lod or bias (f32; i32 for
-/// fetch), gradients d/dx then d/dy (`gradients` f32 each), offsets (`offsets` i32), sample (i32), texel (4 values,
+/// `coords` coordinates (f32, or i32 for fetch/read/store; array layer last), dref (f32), lod or bias (f32; i32 for fetch
+/// and querySize), gradients d/dx then d/dy (`gradients` f32 each), offsets (`offsets` i32), sample (i32), texel (4 values,
 /// store) or value[, comparator] (atomic).
 struct ImageOp {
     ImageKind kind = ImageKind::sampleImplicit;

@@ -8,8 +8,8 @@
 
 namespace vernier::reference {
 
-/// A binary floating-point number with a 128-bit significand and an exponent range far beyond double's; NaN, signed
-/// infinities and signed zeros as in IEEE 754. A plain value: copies are bitwise. Thread-safe like an int.
+/// A binary floating-point number with a 128-bit significand and exponents up to +-20000 (beyond: infinity or zero, so that
+/// argument reduction stays affordable); NaN, signed infinities and signed zeros as in IEEE 754. A plain value: copies are bitwise. Thread-safe like an int.
 class Real {
   public:
     static constexpr int kPrecision = 128;
@@ -45,7 +45,7 @@ class Real {
 
     std::array<uint64_t, kPrecision / 64> limbs_{};
     int64_t exponent_ = 0;
-    int32_t kind_ = 1;  // MPFR_ZERO_KIND; negative for a negative number
+    int32_t kind_ = 2;  // MPFR_ZERO_KIND; negative for a negative number
 };
 
 bool isnan(const Real& x);

@@ -13,6 +13,12 @@
 extern "C" {
 #endif
 
+#if defined(__GNUC__)
+#define VN_GLSL_API __attribute__((visibility("default")))
+#else
+#define VN_GLSL_API
+#endif
+
 /** What a call came to. Zero is success, errors are negative. */
 typedef enum VnGlslResult {
     VN_GLSL_SUCCESS = 0,
@@ -73,17 +79,17 @@ typedef struct VnGlslOutput {
  *
  * Stores an output in `*out` to be freed with vnFreeGlslOutput(), on success and on failure (for its log), except when
  * out of memory: then `*out` is NULL. `desc` and `out` must not be NULL (VN_GLSL_ERROR_INVALID_ARGUMENT). */
-VnGlslResult vnCompileGlsl(const VnGlslDesc* desc, VnGlslOutput** out);
+VN_GLSL_API VnGlslResult vnCompileGlsl(const VnGlslDesc* desc, VnGlslOutput** out);
 
 /** Frees an output; NULL is allowed. */
-void vnFreeGlslOutput(VnGlslOutput* output);
+VN_GLSL_API void vnFreeGlslOutput(VnGlslOutput* output);
 
 /** Keeps the compiler's tables in memory until the matching vnReleaseGlslCompiler(), so that the calls in between need
  * not build them anew (tens of milliseconds each). Calls nest and may come from several threads. Optional. */
-VnGlslResult vnRetainGlslCompiler(void);
+VN_GLSL_API VnGlslResult vnRetainGlslCompiler(void);
 
 /** Undoes one vnRetainGlslCompiler(). A call without a match does nothing. */
-void vnReleaseGlslCompiler(void);
+VN_GLSL_API void vnReleaseGlslCompiler(void);
 
 #ifdef __cplusplus
 }

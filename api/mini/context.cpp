@@ -1,0 +1,224 @@
+// Contexts and passes.
+#include <algorithm>
+
+#include "api/mini/context_guard.h"
+
+using namespace vernier;
+using namespace vernier::mini;
+
+void VnContext_T::submit() {
+    Submission submission;
+    submission.commands = {&recording->commands};
+    const uint64_t number = ++submitted;
+    // The recording, and with it everything it uses, dies on the queue's thread when it has run.
+    submission.done = [this, number, kept = recording]() mutable {
+        kept.reset();
+        done.signal(number);
+    };
+    device->runtime->queue().submit(std::move(submission));
+    newRecording();
+}
+
+VnResult vnCreateContext(VnDevice device, const VnContextDesc* desc, VnContext* context) {
+    return guarded(device, __func__, [&] {
+        const VnContextDesc defaults{};
+        if (VnResult result = checkDesc(device, "vnCreateContext", desc ? desc : &defaults, context)) return result;
+        auto made = std::make_unique<VnContext_T>(device);
+        const std::lock_guard lock(device->contextMutex);
+        device->contexts.push_back(made.get());
+        *context = made.release();
+        return VN_SUCCESS;
+    });
+}
+
+void vnDestroyContext(VnContext context) {
+    if (!context) return;
+    context->waitIdle();
+    {
+        const std::lock_guard lock(context->device->contextMutex);
+        std::erase(context->device->contexts, context);
+    }
+    delete context;
+}
+
+VnResult vnFlush(VnContext context) {
+    return guardedContext(context, __func__, [&] {
+        if (context->inPass) return wrongState(context, "vnFlush", "a pass is open");
+        if (context->recording->commands.first()) context->submit();
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnFinish(VnContext context) {
+    return guardedContext(context, __func__, [&] { return finish(context, "vnFinish"); });
+}
+
+namespace {
+
+/// One attachment of a pass as the recording needs it.
+VnResult attachmentOf(VnContext context, const VnAttachment& from, const char* name, RenderingAttachment& to,
+                      const ViewObject** viewObject) {
+    const auto view = context->device->views.find(from.view.id);
+    if (!view) return badHandle(context->device, "vnBeginPass", (std::string(name) + " view").c_str());
+    if (view->view.info().range.levelCount != 1)
+        return invalid(context->device, "vnBeginPass", std::string(name) + " view has more than one mip level");
+    to.view = &context->recording->keep(view).view;
+    to.loadOp = from.loadOp;
+    to.storeOp = from.storeOp;
+    to.stencilLoadOp = from.stencilLoadOp;
+    to.stencilStoreOp = from.stencilStoreOp;
+    to.clear = from.clear;
+    *viewObject = view.get();
+    if (!from.resolve.id) return VN_SUCCESS;
+    const auto resolve = context->device->views.find(from.resolve.id);
+    if (!resolve) return badHandle(context->device, "vnBeginPass", (std::string(name) + " resolve view").c_str());
+    const VkExtent2D a = view->view.extent(), b = resolve->view.extent();
+    if (resolve->image->image.info().samples != 1 || view->image->image.info().samples == 1 || a.width != b.width ||
+        a.height != b.height || resolve->view.info().format != view->view.info().format)
+        return invalid(context->device, "vnBeginPass",
+                       std::string(name) + " resolve must be single-sampled, of a multisampled view of the same size and format");
+    to.resolve = &context->recording->keep(resolve).view;
+    return VN_SUCCESS;
+}
+
+class PassBuilder {
+  public:
+    explicit PassBuilder(VnContext context) : context_(context) { key_.samples = 0; }
+
+    VnResult add(const VnAttachment& attachment, const char* name, bool depth, RenderingAttachment& to) {
+        const ViewObject* view = nullptr;
+        if (VnResult result = attachmentOf(context_, attachment, name, to, &view)) return result;
+        const FormatInfo& format = view->image->image.format();
+        const VkFormatFeatureFlags wanted = depth ? VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT
+                                                  : VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT;
+        if (!(format.optimalTilingFeatures & wanted))
+            return fail(context_->device, VN_ERROR_UNSUPPORTED,
+                        std::string("vnBeginPass: format ") + format.name + " of " + name + " cannot be drawn to");
+        const uint32_t samples = view->image->image.info().samples;
+        if (key_.samples != 0 && key_.samples != samples)
+            return invalid(context_->device, "vnBeginPass",
+                           std::string(name) + " has " + std::to_string(samples) + " samples, the others have " +
+                               std::to_string(key_.samples));
+        key_.samples = samples;
+        const VkExtent2D extent = view->view.extent();
+        extent_ = {std::min(extent_.width, extent.width), std::min(extent_.height, extent.height)};
+        return VN_SUCCESS;
+    }
+
+    PipelineKey key_;
+    VkExtent2D extent_{UINT32_MAX, UINT32_MAX};
+
+  private:
+    VnContext context_;
+};
+
+VnResult checkRenderArea(VnContext context, const VkRect2D& area, const VkExtent2D& extent) {
+    const auto inside = [](int64_t offset, int64_t size, int64_t limit) {
+        return offset >= 0 && size > 0 && offset + size <= limit;
+    };
+    if (inside(area.offset.x, area.extent.width, extent.width) && inside(area.offset.y, area.extent.height, extent.height))
+        return VN_SUCCESS;
+    return invalid(context->device, "vnBeginPass",
+                   "renderArea is not inside the attachments of " + std::to_string(extent.width) + " x " +
+                       std::to_string(extent.height));
+}
+
+VnResult beginPass(VnContext context, const VnPassDesc& desc) {
+    command::BeginRendering begin;
+    PassBuilder pass(context);
+    for (uint32_t i = 0; i < kMaxColorAttachments; ++i) {
+        if (!desc.colors[i].view.id) continue;
+        const std::string name = "colors[" + std::to_string(i) + "]";
+        if (VnResult result = pass.add(desc.colors[i], name.c_str(), false, begin.colors[i])) return result;
+        pass.key_.colorFormats[i] = begin.colors[i].view->info().format;
+        begin.colorCount = pass.key_.colorCount = i + 1;
+    }
+    if (desc.depthStencil.view.id) {
+        if (VnResult result = pass.add(desc.depthStencil, "depthStencil", true, begin.depthStencil)) return result;
+        pass.key_.depthStencilFormat = begin.depthStencil.view->info().format;
+    }
+    if (pass.key_.samples == 0) return invalid(context->device, "vnBeginPass", "there is no attachment");
+    begin.samples = pass.key_.samples;
+    begin.renderArea = desc.renderArea;
+    if (begin.renderArea.extent.width == 0 && begin.renderArea.extent.height == 0)
+        begin.renderArea = {{0, 0}, pass.extent_};
+    if (VnResult result = checkRenderArea(context, begin.renderArea, pass.extent_)) return result;
+    begin.statistics = &context->statistics;
+    context->recording->commands.record(begin);
+
+    const VkRect2D& area = begin.renderArea;
+    context->inPass = true;
+    context->renderArea = context->scissor = area;
+    context->viewport = {static_cast<float>(area.offset.x),
+                         static_cast<float>(area.offset.y),
+                         static_cast<float>(area.extent.width),
+                         static_cast<float>(area.extent.height),
+                         0,
+                         1};
+    PipelineKey key = context->key;
+    key.colorCount = pass.key_.colorCount;
+    key.colorFormats = pass.key_.colorFormats;
+    key.depthStencilFormat = pass.key_.depthStencilFormat;
+    key.samples = pass.key_.samples;
+    context->key = key;
+    context->pipelineChanged = context->dynamicChanged = true;
+    return VN_SUCCESS;
+}
+
+}  // namespace
+
+VnResult vnBeginPass(VnContext context, const VnPassDesc* desc) {
+    return guardedContext(context, __func__, [&] {
+        if (context->inPass) return wrongState(context, "vnBeginPass", "a pass is open already");
+        if (VnResult result = checkDesc(context->device, "vnBeginPass", desc, desc)) return result;
+        return beginPass(context, *desc);
+    });
+}
+
+VnResult vnEndPass(VnContext context) {
+    return guardedContext(context, __func__, [&] {
+        if (!context->inPass) return wrongState(context, "vnEndPass", "no pass is open");
+        context->recording->commands.record(command::EndRendering{});
+        context->inPass = false;
+        return VN_SUCCESS;
+    });
+}
+
+namespace {
+
+VnResult clearAttachment(VnContext context, const char* function, const VkClearAttachment& clear, const VkRect2D* rect) {
+    if (!context->inPass) return wrongState(context, function, "no pass is open");
+    CommandBuffer& commands = context->recording->commands;
+    const VkClearRect where{rect ? *rect : context->renderArea, 0, 1};
+    command::ClearAttachments command;
+    command.attachments = commands.copy(std::span(&clear, 1));
+    command.rects = commands.copy(std::span(&where, 1));
+    commands.record(command);
+    return VN_SUCCESS;
+}
+
+}  // namespace
+
+VnResult vnClearColor(VnContext context, uint32_t attachment, const VkClearColorValue* value, const VkRect2D* rect) {
+    return guardedContext(context, __func__, [&] {
+        if (!value) return invalid(context->device, "vnClearColor", "value is NULL");
+        if (context->inPass &&
+            (attachment >= kMaxColorAttachments || context->key.colorFormats[attachment] == VK_FORMAT_UNDEFINED))
+            return invalid(context->device, "vnClearColor",
+                           "attachment " + std::to_string(attachment) + " is not in the pass");
+        VkClearAttachment clear{VK_IMAGE_ASPECT_COLOR_BIT, attachment, {}};
+        clear.clearValue.color = *value;
+        return clearAttachment(context, "vnClearColor", clear, rect);
+    });
+}
+
+VnResult vnClearDepthStencil(VnContext context, VkImageAspectFlags aspects, float depth, uint32_t stencil,
+                             const VkRect2D* rect) {
+    return guardedContext(context, __func__, [&] {
+        if (!(depth >= 0 && depth <= 1))
+            return invalid(context->device, "vnClearDepthStencil", "depth is " + std::to_string(depth));
+        VkClearAttachment clear{aspects & (VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT), 0, {}};
+        clear.clearValue.depthStencil = {depth, stencil};
+        return clearAttachment(context, "vnClearDepthStencil", clear, rect);
+    });
+}

@@ -1,0 +1,56 @@
+// Turning what goes wrong into a result code, a text and a message.
+#pragma once
+
+#include <new>
+#include <string>
+
+#include "api/mini/objects.h"
+
+namespace vernier::mini {
+
+/// Remembers `text` as the device's last error, sends it to the message callback, and returns `result`.
+VnResult fail(VnDevice device, VnResult result, const std::string& text);
+
+/// The same for an Error of the runtime; `what` names the object, e.g. "vnCreateImage".
+VnResult fail(VnDevice device, const char* what, const Error& error);
+
+/// Runs `body` (returning VnResult) so that no exception leaves the C boundary. `device` NULL gives INVALID_HANDLE.
+template <class Body>
+VnResult guarded(VnDevice device, const char* function, Body body) {
+    if (!device) return VN_ERROR_INVALID_HANDLE;
+    try {
+        return body();
+    } catch (const std::bad_alloc&) {
+        return fail(device, VN_ERROR_OUT_OF_MEMORY, std::string(function) + ": out of memory");
+    }
+}
+
+/// The common start of every create function: pointers and canaries.
+template <class Desc, class Handle>
+VnResult checkDesc(VnDevice device, const char* function, const Desc* desc, const Handle* handle) {
+    if (!desc) return fail(device, VN_ERROR_INVALID_ARGUMENT, std::string(function) + ": desc is NULL");
+    if (!handle) return fail(device, VN_ERROR_INVALID_ARGUMENT, std::string(function) + ": the place for the handle is NULL");
+    if (desc->_start != 0 || desc->_end != 0)
+        return fail(device, VN_ERROR_INVALID_ARGUMENT,
+                    std::string(function) + ": desc is not initialised (_start is " + std::to_string(desc->_start) +
+                        ", _end is " + std::to_string(desc->_end) + ", both must be 0)");
+    return VN_SUCCESS;
+}
+
+inline VnResult badHandle(VnDevice device, const char* function, const char* kind) {
+    return fail(device, VN_ERROR_INVALID_HANDLE,
+                std::string(function) + ": the " + kind + " is null, destroyed, or of another device");
+}
+
+inline VnResult invalid(VnDevice device, const char* function, const std::string& text) {
+    return fail(device, VN_ERROR_INVALID_ARGUMENT, std::string(function) + ": " + text);
+}
+
+/// The common body of every destroy function.
+template <class Object>
+VnResult destroyIn(VnDevice device, const char* function, const char* kind, HandleTable<Object>& table, uint64_t id) {
+    return guarded(device, function,
+                   [&] { return table.remove(id) ? VN_SUCCESS : badHandle(device, function, kind); });
+}
+
+}  // namespace vernier::mini

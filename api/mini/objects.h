@@ -1,0 +1,112 @@
+// What the handles of vernier.h stand for. Objects are shared: a recording keeps what it uses alive.
+#pragma once
+
+#include <vernier/vernier.h>
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "api/mini/handle_table.h"
+#include "runtime/command/device.h"
+#include "runtime/plan/pipeline.h"
+#include "runtime/resource/descriptor.h"
+
+namespace vernier::mini {
+
+struct BufferObject {
+    std::unique_ptr<Memory> memory;
+    Buffer buffer;
+};
+
+struct ImageObject {
+    std::unique_ptr<Memory> memory;
+    Image image;
+    bool cube = false;
+    std::mutex defaultViewMutex;
+    uint64_t defaultView = 0;  // handle, made on first use
+};
+
+struct ViewObject {
+    std::shared_ptr<ImageObject> image;
+    ImageView view;
+};
+
+struct SamplerObject {
+    SamplerState state;
+};
+
+struct ShaderObject {
+    ir::Program program;
+};
+
+struct ProgramObject {
+    std::shared_ptr<const ShaderProgram> program;
+};
+
+struct VertexLayoutObject {
+    std::vector<VkVertexInputAttributeDescription> attributes;
+    std::vector<VkVertexInputBindingDescription> bindings;
+};
+
+struct RasterStateObject {
+    VnRasterStateDesc desc{};
+};
+
+struct DepthStencilStateObject {
+    VnDepthStencilStateDesc desc{};
+};
+
+struct BlendStateObject {
+    VnBlendStateDesc desc{};
+};
+
+/// Everything a plan depends on. State objects are named by handle: they are immutable and handles are never reused
+/// while the key can be found (see Device::forget).
+struct PipelineKey {
+    uint64_t program = 0, vertexLayout = 0, raster = 0, depthStencil = 0, blend = 0;
+    VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    bool primitiveRestart = false;
+    uint32_t colorCount = 0;
+    std::array<VkFormat, kMaxColorAttachments> colorFormats{};
+    VkFormat depthStencilFormat = VK_FORMAT_UNDEFINED;
+    uint32_t samples = 1;
+    auto operator<=>(const PipelineKey&) const = default;
+};
+
+}  // namespace vernier::mini
+
+/// The device of vernier.h. Its tables are thread-safe.
+struct VnDevice_T {
+    VnDevice_T(std::unique_ptr<vernier::Device> runtimeDevice, const VnDeviceDesc& desc, vernier::Profile deviceProfile);
+    ~VnDevice_T();
+
+    std::unique_ptr<vernier::Device> runtime;
+    vernier::Profile profile;
+    VnMessageCallback message;
+    void* messageUser;
+
+    std::mutex errorMutex;
+    std::string error;
+
+    uint16_t salt;
+    vernier::mini::HandleTable<vernier::mini::BufferObject> buffers{salt};
+    vernier::mini::HandleTable<vernier::mini::ImageObject> images{salt};
+    vernier::mini::HandleTable<vernier::mini::ViewObject> views{salt};
+    vernier::mini::HandleTable<vernier::mini::SamplerObject> samplers{salt};
+    vernier::mini::HandleTable<vernier::mini::ShaderObject> shaders{salt};
+    vernier::mini::HandleTable<vernier::mini::ProgramObject> programs{salt};
+    vernier::mini::HandleTable<vernier::mini::VertexLayoutObject> vertexLayouts{salt};
+    vernier::mini::HandleTable<vernier::mini::RasterStateObject> rasterStates{salt};
+    vernier::mini::HandleTable<vernier::mini::DepthStencilStateObject> depthStencilStates{salt};
+    vernier::mini::HandleTable<vernier::mini::BlendStateObject> blendStates{salt};
+
+    std::mutex pipelineMutex;
+    std::map<vernier::mini::PipelineKey, std::shared_ptr<const vernier::GraphicsPipeline>> pipelines;
+
+    std::mutex contextMutex;
+    std::vector<VnContext> contexts;
+};

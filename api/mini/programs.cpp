@@ -1,0 +1,86 @@
+// Shaders and programs.
+#include "api/mini/context.h"
+#include "api/mini/errors.h"
+
+using namespace vernier;
+using namespace vernier::mini;
+
+namespace {
+
+Result<ir::Stage> stageOf(VkShaderStageFlagBits stage) {
+    if (stage == VK_SHADER_STAGE_VERTEX_BIT) return ir::Stage::vertex;
+    if (stage == VK_SHADER_STAGE_FRAGMENT_BIT) return ir::Stage::fragment;
+    return unsupported("stage is " + std::to_string(stage) + "; only vertex and fragment stages are supported");
+}
+
+/// Shader errors have a code of their own: a broken module is no misuse of the API.
+VnResult failShader(VnDevice device, const char* function, const Error& error) {
+    if (error.code != ErrorCode::invalidArgument) return fail(device, function, error);
+    return fail(device, VN_ERROR_SHADER, std::string(function) + ": " + error.message);
+}
+
+}  // namespace
+
+VnResult vnCreateShader(VnDevice device, const VnShaderDesc* desc, VnShader* shader) {
+    return guarded(device, __func__, [&] {
+        if (VnResult result = checkDesc(device, "vnCreateShader", desc, shader)) return result;
+        shader->id = 0;
+        if (!desc->words || desc->wordCount == 0) return invalid(device, "vnCreateShader", "there are no words");
+        if (desc->specializationCount && !desc->specializations)
+            return invalid(device, "vnCreateShader", "specializations is NULL");
+        Result<ir::Stage> stage = stageOf(desc->stage);
+        if (!stage) return fail(device, "vnCreateShader", stage.error());
+        std::vector<Specialization::Entry> entries;
+        std::vector<uint32_t> values;
+        for (uint32_t i = 0; i < desc->specializationCount; ++i) {
+            entries.push_back({desc->specializations[i].constantId, i * 4, 4});
+            values.push_back(desc->specializations[i].bits);
+        }
+        ShaderSource source;
+        source.words = {desc->words, desc->wordCount};
+        source.entryPoint = desc->entryPoint ? desc->entryPoint : "main";
+        source.stage = *stage;
+        source.specialization = {entries, std::as_bytes(std::span(values))};
+        Result<ir::Program> loaded = loadShader(source);
+        if (!loaded) return failShader(device, "vnCreateShader", loaded.error());
+        auto object = std::make_shared<ShaderObject>(ShaderObject{std::move(loaded).value()});
+        shader->id = device->shaders.insert(std::move(object));
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnDestroyShader(VnDevice device, VnShader shader) {
+    return guarded(device, __func__, [&] { return destroyIn(device, "vnDestroyShader", "shader", device->shaders, shader.id); });
+}
+
+VnResult vnCreateProgram(VnDevice device, const VnProgramDesc* desc, VnProgram* program) {
+    return guarded(device, __func__, [&] {
+        if (VnResult result = checkDesc(device, "vnCreateProgram", desc, program)) return result;
+        program->id = 0;
+        if (desc->profile < VN_PROFILE_DEFAULT || desc->profile > VN_PROFILE_REFERENCE)
+            return invalid(device, "vnCreateProgram", "profile is " + std::to_string(desc->profile));
+        const auto vertex = device->shaders.find(desc->vertex.id);
+        if (!vertex || vertex->program.stage != ir::Stage::vertex) return badHandle(device, "vnCreateProgram", "vertex shader");
+        const auto fragment = device->shaders.find(desc->fragment.id);
+        if (desc->fragment.id && (!fragment || fragment->program.stage != ir::Stage::fragment))
+            return badHandle(device, "vnCreateProgram", "fragment shader");
+        ShaderProgramDesc linked;
+        linked.vertex = &vertex->program;
+        linked.fragment = fragment ? &fragment->program : nullptr;
+        linked.accuracy = accuracyOf(profileOf(desc->profile, device->profile));
+        linked.isa = device->runtime->isa();
+        auto made = ShaderProgram::create(linked);
+        if (!made) return failShader(device, "vnCreateProgram", made.error());
+        program->id = device->programs.insert(std::make_shared<ProgramObject>(ProgramObject{std::move(made).value()}));
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnDestroyProgram(VnDevice device, VnProgram program) {
+    return guarded(device, __func__, [&] {
+        if (!device->programs.remove(program.id)) return badHandle(device, "vnDestroyProgram", "program");
+        const std::lock_guard lock(device->pipelineMutex);
+        std::erase_if(device->pipelines, [&](const auto& entry) { return entry.first.program == program.id; });
+        return VN_SUCCESS;
+    });
+}

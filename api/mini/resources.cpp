@@ -1,0 +1,185 @@
+// Buffers, images, views, samplers.
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "api/mini/errors.h"
+
+using namespace vernier;
+using namespace vernier::mini;
+
+namespace {
+
+/// Every image can be used for everything its format allows.
+VkImageUsageFlags usageOf(const FormatInfo& format) {
+    constexpr VkImageUsageFlags kAlways =
+        VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+    const VkFormatFeatureFlags features = format.optimalTilingFeatures;
+    VkImageUsageFlags usage = kAlways;
+    if (features & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT) usage |= VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+    if (features & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT) usage |= VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    if (features & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT) usage |= VK_IMAGE_USAGE_STORAGE_BIT;
+    return usage;
+}
+
+VkImageViewType viewTypeOf(const ImageObject& image, uint32_t layers, bool array) {
+    if (image.cube && layers % 6 == 0)
+        return layers == 6 && !array ? VK_IMAGE_VIEW_TYPE_CUBE : VK_IMAGE_VIEW_TYPE_CUBE_ARRAY;
+    return layers > 1 || array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
+}
+
+Result<ImageView> makeView(VnDevice device, const ImageObject& object, const VnViewDesc& desc) {
+    const ImageInfo& info = object.image.info();
+    ImageViewInfo view;
+    view.format = desc.format ? desc.format : info.format;
+    view.components = desc.swizzle;
+    view.range.aspectMask = desc.aspect ? desc.aspect : object.image.format().aspects;
+    view.range.baseMipLevel = desc.baseMip;
+    view.range.levelCount = desc.mipCount ? desc.mipCount : std::max(info.mipLevels, desc.baseMip) - desc.baseMip;
+    view.range.baseArrayLayer = desc.baseLayer;
+    view.range.layerCount =
+        desc.layerCount ? desc.layerCount : std::max(info.arrayLayers, desc.baseLayer) - desc.baseLayer;
+    view.type = viewTypeOf(object, view.range.layerCount, desc.array != 0);
+    return ImageView::create(object.image, view, device->runtime->isa());
+}
+
+VnResult createView(VnDevice device, const char* function, std::shared_ptr<ImageObject> image, const VnViewDesc& desc,
+                    VnView* view) {
+    Result<ImageView> made = makeView(device, *image, desc);
+    if (!made) return fail(device, function, made.error());
+    view->id = device->views.insert(std::make_shared<ViewObject>(ViewObject{std::move(image), std::move(made).value()}));
+    return VN_SUCCESS;
+}
+
+}  // namespace
+
+VnResult vnCreateBuffer(VnDevice device, const VnBufferDesc* desc, VnBuffer* buffer) {
+    return guarded(device, __func__, [&] {
+        if (VnResult result = checkDesc(device, "vnCreateBuffer", desc, buffer)) return result;
+        buffer->id = 0;
+        if (desc->size == 0) return invalid(device, "vnCreateBuffer", "size is 0");
+        Result<std::unique_ptr<Memory>> memory = Memory::create(device->runtime->desc().allocator, desc->size);
+        if (!memory) return fail(device, "vnCreateBuffer", memory.error());
+        auto object = std::make_shared<BufferObject>(BufferObject{std::move(memory).value(), Buffer(desc->size, ~0u)});
+        object->buffer.bind(*object->memory, 0);
+        if (desc->data) std::memcpy(object->memory->data(), desc->data, desc->size);
+        buffer->id = device->buffers.insert(std::move(object));
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnDestroyBuffer(VnDevice device, VnBuffer buffer) {
+    return guarded(device, __func__, [&] { return destroyIn(device, "vnDestroyBuffer", "buffer", device->buffers, buffer.id); });
+}
+
+VnResult vnMapBuffer(VnDevice device, VnBuffer buffer, void** memory) {
+    return guarded(device, __func__, [&] {
+        if (!memory) return invalid(device, "vnMapBuffer", "memory is NULL");
+        *memory = nullptr;
+        const auto object = device->buffers.find(buffer.id);
+        if (!object) return badHandle(device, "vnMapBuffer", "buffer");
+        *memory = object->buffer.data();
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnCreateImage(VnDevice device, const VnImageDesc* desc, VnImage* image) {
+    return guarded(device, __func__, [&] {
+        if (VnResult result = checkDesc(device, "vnCreateImage", desc, image)) return result;
+        image->id = 0;
+        ImageInfo info;
+        info.format = desc->format ? desc->format : VK_FORMAT_R8G8B8A8_UNORM;
+        info.extent = {desc->width, desc->height, 1};
+        info.mipLevels = std::max(desc->mipLevels, 1u);
+        if (desc->mipLevels == VN_ALL_MIPS)
+            info.mipLevels = std::max(1u, static_cast<uint32_t>(std::bit_width(std::max(desc->width, desc->height))));
+        info.arrayLayers = std::max(desc->layers, 1u);
+        info.samples = std::max(desc->samples, 1u);
+        if (desc->cube && (info.arrayLayers % 6 != 0 || desc->width != desc->height))
+            return invalid(device, "vnCreateImage", "cube images are square and have layers in sixes");
+        const FormatInfo* format = findFormat(info.format);
+        info.usage = format ? usageOf(*format) : 0;
+        Result<Image> made = Image::create(info);
+        if (!made) return fail(device, "vnCreateImage", made.error());
+        Result<std::unique_ptr<Memory>> memory = Memory::create(device->runtime->desc().allocator, made->memorySize());
+        if (!memory) return fail(device, "vnCreateImage", memory.error());
+        auto object = std::make_shared<ImageObject>();
+        object->memory = std::move(memory).value();
+        object->image = std::move(made).value();
+        object->image.bind(*object->memory, 0);
+        object->cube = desc->cube != 0;
+        image->id = device->images.insert(std::move(object));
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnDestroyImage(VnDevice device, VnImage image) {
+    return guarded(device, __func__, [&] {
+        const auto object = device->images.remove(image.id);
+        if (!object) return badHandle(device, "vnDestroyImage", "image");
+        const std::lock_guard lock(object->defaultViewMutex);
+        if (object->defaultView) device->views.remove(object->defaultView);
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnCreateView(VnDevice device, const VnViewDesc* desc, VnView* view) {
+    return guarded(device, __func__, [&] {
+        if (VnResult result = checkDesc(device, "vnCreateView", desc, view)) return result;
+        view->id = 0;
+        auto image = device->images.find(desc->image.id);
+        if (!image) return badHandle(device, "vnCreateView", "image");
+        return createView(device, "vnCreateView", std::move(image), *desc, view);
+    });
+}
+
+VnResult vnDestroyView(VnDevice device, VnView view) {
+    return guarded(device, __func__, [&] { return destroyIn(device, "vnDestroyView", "view", device->views, view.id); });
+}
+
+VnResult vnGetImageView(VnDevice device, VnImage image, VnView* view) {
+    return guarded(device, __func__, [&] {
+        if (!view) return invalid(device, "vnGetImageView", "view is NULL");
+        view->id = 0;
+        const auto object = device->images.find(image.id);
+        if (!object) return badHandle(device, "vnGetImageView", "image");
+        const std::lock_guard lock(object->defaultViewMutex);
+        // The image must not own itself through its view, so the handle is kept and the view owns the image's memory.
+        if (!object->defaultView || !device->views.find(object->defaultView)) {
+            if (VnResult result = createView(device, "vnGetImageView", object, VnViewDesc{}, view)) return result;
+            object->defaultView = view->id;
+        }
+        view->id = object->defaultView;
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnCreateSampler(VnDevice device, const VnSamplerDesc* desc, VnSampler* sampler) {
+    return guarded(device, __func__, [&] {
+        if (VnResult result = checkDesc(device, "vnCreateSampler", desc, sampler)) return result;
+        sampler->id = 0;
+        if (!(desc->lodBias >= -kMaxSamplerLodBias && desc->lodBias <= kMaxSamplerLodBias))
+            return invalid(device, "vnCreateSampler", "lodBias is " + std::to_string(desc->lodBias));
+        VkSamplerCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
+        info.magFilter = desc->magFilter;
+        info.minFilter = desc->minFilter;
+        info.mipmapMode = desc->mipmapMode;
+        info.addressModeU = desc->addressU;
+        info.addressModeV = desc->addressV;
+        info.addressModeW = desc->addressW;
+        info.mipLodBias = desc->lodBias;
+        info.minLod = desc->minLod;
+        info.maxLod = desc->maxLod == 0 ? VK_LOD_CLAMP_NONE : desc->maxLod;
+        info.compareEnable = desc->compareEnable != 0;
+        info.compareOp = desc->compareOp;
+        info.borderColor = desc->borderColor;
+        sampler->id = device->samplers.insert(std::make_shared<SamplerObject>(SamplerObject{makeSamplerState(info)}));
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnDestroySampler(VnDevice device, VnSampler sampler) {
+    return guarded(device, __func__,
+                   [&] { return destroyIn(device, "vnDestroySampler", "sampler", device->samplers, sampler.id); });
+}

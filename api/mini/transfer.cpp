@@ -1,0 +1,330 @@
+// Moving data: updates, copies, blits, resolves, mip levels, reading back; statistics and explain.
+#include <algorithm>
+#include <cstring>
+
+#include "api/mini/context_guard.h"
+#include "runtime/transfer/region.h"
+
+using namespace vernier;
+using namespace vernier::mini;
+
+namespace {
+
+/// A VnRegion with its zeros resolved.
+struct Region {
+    VkImageSubresourceLayers subresource{};
+    VkOffset3D offset{};
+    VkExtent3D extent{};
+};
+
+VnResult resolveRegion(VnContext context, const char* function, const Image& image, const VnRegion* from, Region& to) {
+    const VnRegion region = from ? *from : VnRegion{};
+    if (region.mip >= image.info().mipLevels || region.layer >= image.info().arrayLayers)
+        return invalid(context->device, function,
+                       "mip " + std::to_string(region.mip) + ", layer " + std::to_string(region.layer) +
+                           " is not in the image");
+    const VkExtent3D& size = image.level(region.mip).extent;
+    const uint32_t width = region.width ? region.width : std::max(size.width, region.x) - region.x;
+    const uint32_t height = region.height ? region.height : std::max(size.height, region.y) - region.y;
+    if (width == 0 || height == 0 || region.x > size.width || width > size.width - region.x || region.y > size.height ||
+        height > size.height - region.y)
+        return invalid(context->device, function,
+                       "the region " + std::to_string(width) + " x " + std::to_string(height) + " at (" +
+                           std::to_string(region.x) + ", " + std::to_string(region.y) + ") is not inside the level's " +
+                           std::to_string(size.width) + " x " + std::to_string(size.height));
+    const VkImageAspectFlags aspect = region.aspect ? region.aspect : defaultAspect(image.format());
+    if ((aspect & (aspect - 1)) != 0 || !(aspect & image.format().aspects))
+        return invalid(context->device, function, "aspect " + std::to_string(aspect) + " is not one of the image's");
+    to.subresource = {aspect, region.mip, region.layer, 1};
+    to.offset = {static_cast<int32_t>(region.x), static_cast<int32_t>(region.y), 0};
+    to.extent = {width, height, 1};
+    return VN_SUCCESS;
+}
+
+/// The image of a transfer command, outside a pass, and its region.
+VnResult transferImage(VnContext context, const char* function, VnImage handle, const VnRegion* from,
+                       std::shared_ptr<ImageObject>& image, Region& region) {
+    if (context->inPass) return wrongState(context, function, "a pass is open");
+    image = context->device->images.find(handle.id);
+    if (!image) return badHandle(context->device, function, "image");
+    return resolveRegion(context, function, image->image, from, region);
+}
+
+VnResult checkBytes(VnContext context, const char* function, const ImageObject& image, const Region& region,
+                    const void* data, uint64_t size) {
+    const uint64_t needed = uint64_t{bufferTexelBytes(image.image.format(), region.subresource.aspectMask)} *
+                            region.extent.width * region.extent.height;
+    if (image.image.info().samples > 1)
+        return invalid(context->device, function, "the image is multisampled; resolve it first");
+    if (data && size >= needed) return VN_SUCCESS;
+    return invalid(context->device, function,
+                   "the region needs " + std::to_string(needed) + " bytes, data has " + std::to_string(data ? size : 0));
+}
+
+/// A buffer of a transfer command and a range of it.
+VnResult transferBuffer(VnContext context, const char* function, VnBuffer handle, uint64_t offset, uint64_t size,
+                        std::shared_ptr<BufferObject>& buffer) {
+    if (context->inPass) return wrongState(context, function, "a pass is open");
+    buffer = context->device->buffers.find(handle.id);
+    if (!buffer) return badHandle(context->device, function, "buffer");
+    if (offset <= buffer->buffer.size() && size <= buffer->buffer.size() - offset) return VN_SUCCESS;
+    return invalid(context->device, function,
+                   "offset " + std::to_string(offset) + " with size " + std::to_string(size) +
+                       " is not inside the buffer's " + std::to_string(buffer->buffer.size()) + " bytes");
+}
+
+template <class Item>
+std::span<const Item> one(VnContext context, const Item& item) {
+    return context->recording->commands.copy(std::span(&item, 1));
+}
+
+}  // namespace
+
+VnResult vnUpdateBuffer(VnContext context, VnBuffer buffer, uint64_t offset, const void* data, uint64_t size) {
+    return guardedContext(context, __func__, [&] {
+        std::shared_ptr<BufferObject> object;
+        if (VnResult result = transferBuffer(context, "vnUpdateBuffer", buffer, offset, size, object)) return result;
+        if (!data && size) return invalid(context->device, "vnUpdateBuffer", "data is NULL");
+        CommandBuffer& commands = context->recording->commands;
+        const std::span bytes(static_cast<const std::byte*>(data), size);
+        commands.record(command::UpdateBuffer{&context->recording->keep(object).buffer, offset, commands.copy(bytes)});
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnFillBuffer(VnContext context, VnBuffer buffer, uint64_t offset, uint64_t size, uint32_t value) {
+    return guardedContext(context, __func__, [&] {
+        std::shared_ptr<BufferObject> object;
+        if (VnResult result = transferBuffer(context, "vnFillBuffer", buffer, offset, size, object)) return result;
+        if (offset % 4 != 0 || size % 4 != 0)
+            return invalid(context->device, "vnFillBuffer", "offset and size must be multiples of 4");
+        context->recording->commands.record(
+            command::FillBuffer{&context->recording->keep(object).buffer, offset, size, value});
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnUpdateImage(VnContext context, VnImage image, const VnRegion* region, const void* data, uint64_t size) {
+    return guardedContext(context, __func__, [&] {
+        std::shared_ptr<ImageObject> object;
+        Region resolved;
+        if (VnResult result = transferImage(context, "vnUpdateImage", image, region, object, resolved)) return result;
+        if (VnResult result = checkBytes(context, "vnUpdateImage", *object, resolved, data, size)) return result;
+        Result<std::unique_ptr<Memory>> memory = Memory::create(context->device->runtime->desc().allocator, size);
+        if (!memory) return fail(context->device, "vnUpdateImage", memory.error());
+        auto staging = std::make_shared<BufferObject>(BufferObject{std::move(memory).value(), Buffer(size, ~0u)});
+        staging->buffer.bind(*staging->memory, 0);
+        std::memcpy(staging->memory->data(), data, size);
+        VkBufferImageCopy copy{};
+        copy.imageSubresource = resolved.subresource;
+        copy.imageOffset = resolved.offset;
+        copy.imageExtent = resolved.extent;
+        context->recording->commands.record(command::CopyBufferToImage{
+            &context->recording->keep(staging).buffer, &context->recording->keep(object).image, one(context, copy)});
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnReadImage(VnContext context, VnImage image, const VnRegion* region, void* data, uint64_t size) {
+    return guardedContext(context, __func__, [&] {
+        std::shared_ptr<ImageObject> object;
+        Region resolved;
+        if (VnResult result = transferImage(context, "vnReadImage", image, region, object, resolved)) return result;
+        if (VnResult result = checkBytes(context, "vnReadImage", *object, resolved, data, size)) return result;
+        if (VnResult result = finish(context, "vnReadImage")) return result;
+        const FormatInfo& format = object->image.format();
+        const VkImageSubresourceLayers& sub = resolved.subresource;
+        const uint64_t pitch = uint64_t{bufferTexelBytes(format, sub.aspectMask)} * resolved.extent.width;
+        for (uint32_t y = 0; y < resolved.extent.height; ++y)
+            copyTexelsToBuffer(
+                format, sub.aspectMask,
+                rowAddress(object->image, sub.mipLevel, static_cast<uint32_t>(resolved.offset.y) + y, sub.baseArrayLayer, 0) +
+                    static_cast<uint64_t>(resolved.offset.x) * format.bytesPerTexel,
+                resolved.extent.width, static_cast<std::byte*>(data) + y * pitch);
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnReadBuffer(VnContext context, VnBuffer buffer, uint64_t offset, void* data, uint64_t size) {
+    return guardedContext(context, __func__, [&] {
+        std::shared_ptr<BufferObject> object;
+        if (VnResult result = transferBuffer(context, "vnReadBuffer", buffer, offset, size, object)) return result;
+        if (!data && size) return invalid(context->device, "vnReadBuffer", "data is NULL");
+        if (VnResult result = finish(context, "vnReadBuffer")) return result;
+        std::memcpy(data, object->buffer.data() + offset, size);
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnCopyBuffer(VnContext context, VnBuffer source, uint64_t sourceOffset, VnBuffer destination,
+                      uint64_t destinationOffset, uint64_t size) {
+    return guardedContext(context, __func__, [&] {
+        std::shared_ptr<BufferObject> from, to;
+        if (VnResult result = transferBuffer(context, "vnCopyBuffer", source, sourceOffset, size, from)) return result;
+        if (VnResult result = transferBuffer(context, "vnCopyBuffer", destination, destinationOffset, size, to)) return result;
+        context->recording->commands.record(
+            command::CopyBuffer{&context->recording->keep(from).buffer, &context->recording->keep(to).buffer,
+                                one(context, VkBufferCopy{sourceOffset, destinationOffset, size})});
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnCopyImage(VnContext context, VnImage source, const VnRegion* sourceRegion, VnImage destination,
+                     const VnRegion* destinationRegion) {
+    return guardedContext(context, __func__, [&] {
+        std::shared_ptr<ImageObject> from, to;
+        Region a, b;
+        if (VnResult result = transferImage(context, "vnCopyImage", source, sourceRegion, from, a)) return result;
+        if (VnResult result = transferImage(context, "vnCopyImage", destination, destinationRegion, to, b)) return result;
+        if (a.extent.width != b.extent.width || a.extent.height != b.extent.height)
+            return invalid(context->device, "vnCopyImage", "the regions have different sizes");
+        if (from->image.format().bytesPerTexel != to->image.format().bytesPerTexel ||
+            from->image.info().samples != to->image.info().samples)
+            return invalid(context->device, "vnCopyImage",
+                           std::string("formats ") + from->image.format().name + " and " + to->image.format().name +
+                               " differ in texel size, or the images in samples");
+        context->recording->commands.record(
+            command::CopyImage{&context->recording->keep(from).image, &context->recording->keep(to).image,
+                               one(context, VkImageCopy{a.subresource, a.offset, b.subresource, b.offset, a.extent})});
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnBlitImage(VnContext context, VnImage source, const VnRegion* sourceRegion, VnImage destination,
+                     const VnRegion* destinationRegion, VkFilter filter) {
+    return guardedContext(context, __func__, [&] {
+        std::shared_ptr<ImageObject> from, to;
+        Region a, b;
+        if (VnResult result = transferImage(context, "vnBlitImage", source, sourceRegion, from, a)) return result;
+        if (VnResult result = transferImage(context, "vnBlitImage", destination, destinationRegion, to, b)) return result;
+        if (filter != VK_FILTER_NEAREST && filter != VK_FILTER_LINEAR)
+            return invalid(context->device, "vnBlitImage", "filter is " + std::to_string(filter));
+        const FormatInfo& fromFormat = from->image.format();
+        const FormatInfo& toFormat = to->image.format();
+        const bool color = a.subresource.aspectMask == VK_IMAGE_ASPECT_COLOR_BIT;
+        const bool sameKind = fromFormat.layout(a.subresource.aspectMask).type == toFormat.layout(b.subresource.aspectMask).type;
+        const bool smooth = fromFormat.layout(a.subresource.aspectMask).type == ValueType::floating && color;
+        if (a.subresource.aspectMask != b.subresource.aspectMask || !sameKind ||
+            (!color && fromFormat.format != toFormat.format) || (filter == VK_FILTER_LINEAR && !smooth) ||
+            from->image.info().samples > 1 || to->image.info().samples > 1)
+            return invalid(context->device, "vnBlitImage",
+                           std::string(fromFormat.name) + " cannot be blitted to " + toFormat.name +
+                               " with this filter, aspect or sample count");
+        VkImageBlit blit{};
+        blit.srcSubresource = a.subresource;
+        blit.dstSubresource = b.subresource;
+        const auto corner = [](const Region& r) {
+            return VkOffset3D{r.offset.x + static_cast<int32_t>(r.extent.width),
+                              r.offset.y + static_cast<int32_t>(r.extent.height), 1};
+        };
+        blit.srcOffsets[0] = a.offset;
+        blit.srcOffsets[1] = corner(a);
+        blit.dstOffsets[0] = b.offset;
+        blit.dstOffsets[1] = corner(b);
+        context->recording->commands.record(command::BlitImage{&context->recording->keep(from).image,
+                                                               &context->recording->keep(to).image, one(context, blit),
+                                                               filter});
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnResolveImage(VnContext context, VnImage source, VnImage destination) {
+    return guardedContext(context, __func__, [&] {
+        std::shared_ptr<ImageObject> from, to;
+        Region a, b;
+        if (VnResult result = transferImage(context, "vnResolveImage", source, nullptr, from, a)) return result;
+        if (VnResult result = transferImage(context, "vnResolveImage", destination, nullptr, to, b)) return result;
+        const ImageInfo& f = from->image.info();
+        const ImageInfo& t = to->image.info();
+        if (f.samples == 1 || t.samples != 1 || f.format != t.format || f.extent.width != t.extent.width ||
+            f.extent.height != t.extent.height || a.subresource.aspectMask != VK_IMAGE_ASPECT_COLOR_BIT)
+            return invalid(context->device, "vnResolveImage",
+                           "needs a multisampled and a single-sampled colour image of the same size and format");
+        context->recording->commands.record(
+            command::ResolveImage{&context->recording->keep(from).image, &context->recording->keep(to).image,
+                                  one(context, VkImageResolve{a.subresource, a.offset, b.subresource, b.offset, a.extent})});
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnGenerateMips(VnContext context, VnImage image) {
+    return guardedContext(context, __func__, [&] {
+        std::shared_ptr<ImageObject> object;
+        Region region;
+        if (VnResult result = transferImage(context, "vnGenerateMips", image, nullptr, object, region)) return result;
+        const Image& target = context->recording->keep(object).image;
+        if (region.subresource.aspectMask != VK_IMAGE_ASPECT_COLOR_BIT ||
+            target.format().color.type != ValueType::floating)
+            return invalid(context->device, "vnGenerateMips",
+                           std::string("format ") + target.format().name + " cannot be filtered");
+        const auto corner = [&](uint32_t mip) {
+            const VkExtent3D& e = target.level(mip).extent;
+            return VkOffset3D{static_cast<int32_t>(e.width), static_cast<int32_t>(e.height), 1};
+        };
+        for (uint32_t mip = 1; mip < target.info().mipLevels; ++mip) {
+            VkImageBlit blit{};
+            blit.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip - 1, 0, target.info().arrayLayers};
+            blit.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, target.info().arrayLayers};
+            blit.srcOffsets[1] = corner(mip - 1);
+            blit.dstOffsets[1] = corner(mip);
+            context->recording->commands.record(command::BlitImage{&target, &target, one(context, blit), VK_FILTER_LINEAR});
+        }
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnClearImage(VnContext context, VnImage image, const VkClearColorValue* value) {
+    return guardedContext(context, __func__, [&] {
+        std::shared_ptr<ImageObject> object;
+        Region region;
+        if (VnResult result = transferImage(context, "vnClearImage", image, nullptr, object, region)) return result;
+        if (!value) return invalid(context->device, "vnClearImage", "value is NULL");
+        if (region.subresource.aspectMask != VK_IMAGE_ASPECT_COLOR_BIT)
+            return invalid(context->device, "vnClearImage", "the image has no colour; clear depth in a pass");
+        const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, object->image.info().mipLevels, 0,
+                                            object->image.info().arrayLayers};
+        context->recording->commands.record(
+            command::ClearColorImage{&context->recording->keep(object).image, *value, one(context, range)});
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnGetStatistics(VnContext context, VnStatistics* statistics) {
+    return guardedContext(context, __func__, [&] {
+        if (!statistics) return invalid(context->device, "vnGetStatistics", "statistics is NULL");
+        if (VnResult result = finish(context, "vnGetStatistics")) return result;
+        const PassStatistics& s = context->statistics;
+        *statistics = {.draws = context->draws,
+                       .inputVertices = s.inputVertices,
+                       .inputPrimitives = s.inputPrimitives,
+                       .vertexInvocations = s.vertexInvocations,
+                       .clippedPrimitives = s.clippedPrimitives,
+                       .rasterPrimitives = s.rasterPrimitives,
+                       .fragmentInvocations = s.fragmentInvocations,
+                       .helperInvocations = s.helperInvocations,
+                       .samplesPassed = s.samplesPassed,
+                       .perspectiveDivides = s.perspectiveDivides,
+                       .destinationReads = s.destinationReads,
+                       .depthReads = s.depthReads,
+                       .plans = context->plans};
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnResetStatistics(VnContext context) {
+    return guardedContext(context, __func__, [&] {
+        if (VnResult result = finish(context, "vnResetStatistics")) return result;
+        context->statistics = {};
+        context->draws = context->plans = 0;
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnExplain(VnContext context, char* text, size_t capacity, size_t* length) {
+    return guardedContext(context, __func__, [&] {
+        if (VnResult result = preparePipeline(context, "vnExplain")) return result;
+        const size_t full = copyText(context->pipeline->explain(dynamicStateOf(*context)), text, capacity);
+        if (length) *length = full;
+        return VN_SUCCESS;
+    });
+}

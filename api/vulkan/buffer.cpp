@@ -1,0 +1,59 @@
+// Buffers.
+#include "api/vulkan/allocation.h"
+#include "api/vulkan/device.h"
+#include "api/vulkan/entry_points.h"
+#include "api/vulkan/memory.h"
+#include "api/vulkan/resource_limits.h"
+
+namespace vernier::vulkan {
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateBuffer(VkDevice device, const VkBufferCreateInfo* pCreateInfo,
+                                            const VkAllocationCallbacks* pAllocator, VkBuffer* pBuffer) {
+    return guarded([&] {
+        if (pCreateInfo->flags != 0) {
+            return object(device)->report("vkCreateBuffer", VK_ERROR_FEATURE_NOT_PRESENT,
+                                          "flags: sparse and protected buffers are not supported");
+        }
+        if (pCreateInfo->size > kMaxAllocation) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+        return createHandle(pAllocator, pBuffer, pCreateInfo->size, pCreateInfo->usage);
+    });
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroyBuffer(VkDevice, VkBuffer buffer, const VkAllocationCallbacks* pAllocator) {
+    destroyHandle(pAllocator, buffer);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetBufferMemoryRequirements(VkDevice, VkBuffer buffer,
+                                                       VkMemoryRequirements* pMemoryRequirements) {
+    *pMemoryRequirements = memoryRequirements(object(buffer)->size());
+}
+
+VKAPI_ATTR void VKAPI_CALL GetBufferMemoryRequirements2(VkDevice, const VkBufferMemoryRequirementsInfo2* pInfo,
+                                                        VkMemoryRequirements2* pMemoryRequirements) {
+    pMemoryRequirements->memoryRequirements = memoryRequirements(object(pInfo->buffer)->size());
+    fillRequirementChain(pMemoryRequirements->pNext);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL BindBufferMemory(VkDevice device, VkBuffer buffer, VkDeviceMemory memory,
+                                                VkDeviceSize memoryOffset) {
+    return guarded([&] {
+        if (const Status fits = checkBinding(object(memory), memoryOffset, object(buffer)->size()); !fits) {
+            return object(device)->report("vkBindBufferMemory", fits.error());
+        }
+        object(buffer)->bind(*object(memory)->memory, memoryOffset);
+        return VK_SUCCESS;
+    });
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL BindBufferMemory2(VkDevice device, uint32_t bindInfoCount,
+                                                 const VkBindBufferMemoryInfo* pBindInfos) {
+    VkResult result = VK_SUCCESS;
+    for (uint32_t i = 0; i < bindInfoCount; ++i) {
+        const VkBindBufferMemoryInfo& bind = pBindInfos[i];
+        const VkResult one = BindBufferMemory(device, bind.buffer, bind.memory, bind.memoryOffset);
+        if (one != VK_SUCCESS) result = one;
+    }
+    return result;
+}
+
+}  // namespace vernier::vulkan

@@ -1,0 +1,82 @@
+// Command buffers: a stream of the runtime, and what recording has to remember.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "api/vulkan/handle.h"
+#include "api/vulkan/render_pass.h"
+#include "runtime/command/command_buffer.h"
+
+namespace vernier::vulkan {
+
+struct Device;
+
+struct CommandBuffer : Dispatchable {
+    CommandBuffer(Device& owner, CommandPool& from, VkCommandBufferLevel of) : device(owner), pool(from), level(of) {}
+
+    enum class State : uint8_t { initial, recording, executable };
+
+    Device& device;
+    CommandPool& pool;
+    VkCommandBufferLevel level;
+    State state = State::initial;
+    vernier::CommandBuffer stream;
+    VkResult result = VK_SUCCESS;  // what vkEndCommandBuffer will say
+
+    /// The render pass being recorded. `pass` alone is set in a secondary command buffer that continues one.
+    struct Pass {
+        const RenderPassObject* pass = nullptr;
+        const Framebuffer* framebuffer = nullptr;
+        uint32_t subpass = 0;
+        VkRect2D area{};
+        std::vector<VkClearValue> clears;
+        SubpassFormats formats;
+    };
+    Pass pass;
+    const Pipeline* pipeline = nullptr;
+    bool pipelineFits = false;  // `pipeline` may draw in the current subpass
+
+    bool executable() const { return state == State::executable && result == VK_SUCCESS; }
+    void reset();
+    /// Notes an error: the command is left out, vkEndCommandBuffer fails, and a message is sent.
+    void fail(const char* command, std::string_view text);
+    /// Sets pipelineFits, after a pipeline was bound or a subpass begun.
+    void checkPipeline();
+};
+
+struct CommandPool {
+    CommandPool(Device& owner, const VkAllocationCallbacks* given);
+    ~CommandPool();
+
+    VkResult allocate(VkCommandBufferLevel level, VkCommandBuffer* out);
+    void free(CommandBuffer* buffer);
+    void reset();
+
+  private:
+    const VkAllocationCallbacks* callbacks() const { return hasCallbacks_ ? &callbacks_ : nullptr; }
+
+    Device& device_;
+    bool hasCallbacks_;
+    VkAllocationCallbacks callbacks_{};
+    std::vector<CommandBuffer*> buffers_;
+};
+
+/// Runs the body of a vkCmd* command. Running out of memory is remembered for vkEndCommandBuffer.
+template <class Body>
+void recording(VkCommandBuffer handle, Body&& body) noexcept {
+    CommandBuffer& buffer = *object(handle);
+    try {
+        body(buffer);
+    } catch (...) {
+        buffer.result = VK_ERROR_OUT_OF_HOST_MEMORY;
+    }
+}
+
+/// Copies an array into the buffer's arena.
+template <class T>
+std::span<const T> copyArray(CommandBuffer& buffer, uint32_t count, const T* elements) {
+    return buffer.stream.copy(std::span<const T>(elements, count));
+}
+
+}  // namespace vernier::vulkan

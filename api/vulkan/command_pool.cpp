@@ -1,0 +1,130 @@
+// Command pools and the life of command buffers.
+#include <algorithm>
+
+#include "api/vulkan/allocation.h"
+#include "api/vulkan/command_buffer.h"
+#include "api/vulkan/device.h"
+#include "api/vulkan/entry_points.h"
+
+namespace vernier::vulkan {
+
+void CommandBuffer::reset() {
+    stream.reset();
+    state = State::initial;
+    result = VK_SUCCESS;
+    pass = {};
+    pipeline = nullptr;
+    pipelineFits = false;
+}
+
+void CommandBuffer::fail(const char* command, std::string_view text) {
+    device.messages().error(command, {VK_OBJECT_TYPE_COMMAND_BUFFER, reinterpret_cast<uint64_t>(this)}, text);
+    result = VK_ERROR_UNKNOWN;
+}
+
+CommandPool::CommandPool(Device& owner, const VkAllocationCallbacks* given)
+    : device_(owner), hasCallbacks_(given != nullptr) {
+    if (given != nullptr) callbacks_ = *given;
+}
+
+CommandPool::~CommandPool() {
+    while (!buffers_.empty()) free(buffers_.back());
+}
+
+VkResult CommandPool::allocate(VkCommandBufferLevel level, VkCommandBuffer* out) {
+    buffers_.reserve(buffers_.size() + 1);
+    auto* buffer = newObject<CommandBuffer>(callbacks(), VK_SYSTEM_ALLOCATION_SCOPE_OBJECT, device_, *this, level);
+    if (buffer == nullptr) return VK_ERROR_OUT_OF_HOST_MEMORY;
+    buffers_.push_back(buffer);
+    *out = handleOf<VkCommandBuffer>(buffer);
+    return VK_SUCCESS;
+}
+
+void CommandPool::free(CommandBuffer* buffer) {
+    const auto found = std::find(buffers_.begin(), buffers_.end(), buffer);
+    if (found == buffers_.end()) return;
+    *found = buffers_.back();
+    buffers_.pop_back();
+    deleteObject(callbacks(), buffer);
+}
+
+void CommandPool::reset() {
+    for (CommandBuffer* buffer : buffers_) buffer->reset();
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateCommandPool(VkDevice device, const VkCommandPoolCreateInfo*,
+                                                 const VkAllocationCallbacks* pAllocator,
+                                                 VkCommandPool* pCommandPool) {
+    return createHandle(pAllocator, pCommandPool, *object(device), pAllocator);
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroyCommandPool(VkDevice, VkCommandPool commandPool,
+                                              const VkAllocationCallbacks* pAllocator) {
+    destroyHandle(pAllocator, commandPool);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL ResetCommandPool(VkDevice, VkCommandPool commandPool, VkCommandPoolResetFlags) {
+    object(commandPool)->reset();
+    return VK_SUCCESS;
+}
+
+// Command buffers hold their own memory; a pool has none to give back.
+VKAPI_ATTR void VKAPI_CALL TrimCommandPool(VkDevice, VkCommandPool, VkCommandPoolTrimFlags) {}
+
+VKAPI_ATTR VkResult VKAPI_CALL AllocateCommandBuffers(VkDevice, const VkCommandBufferAllocateInfo* pAllocateInfo,
+                                                      VkCommandBuffer* pCommandBuffers) {
+    CommandPool& pool = *object(pAllocateInfo->commandPool);
+    const uint32_t count = pAllocateInfo->commandBufferCount;
+    std::fill_n(pCommandBuffers, count, nullptr);
+    const VkResult result = guarded([&] {
+        for (uint32_t i = 0; i < count; ++i) {
+            const VkResult one = pool.allocate(pAllocateInfo->level, &pCommandBuffers[i]);
+            if (one != VK_SUCCESS) return one;
+        }
+        return VK_SUCCESS;
+    });
+    if (result != VK_SUCCESS) {
+        // All or nothing, as with descriptor sets.
+        for (uint32_t i = 0; i < count; ++i) {
+            if (pCommandBuffers[i] != nullptr) pool.free(object(pCommandBuffers[i]));
+            pCommandBuffers[i] = nullptr;
+        }
+    }
+    return result;
+}
+
+VKAPI_ATTR void VKAPI_CALL FreeCommandBuffers(VkDevice, VkCommandPool commandPool, uint32_t commandBufferCount,
+                                              const VkCommandBuffer* pCommandBuffers) {
+    for (uint32_t i = 0; i < commandBufferCount; ++i) {
+        if (pCommandBuffers[i] != nullptr) object(commandPool)->free(object(pCommandBuffers[i]));
+    }
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL BeginCommandBuffer(VkCommandBuffer commandBuffer,
+                                                  const VkCommandBufferBeginInfo* pBeginInfo) {
+    CommandBuffer& buffer = *object(commandBuffer);
+    buffer.reset();
+    buffer.state = CommandBuffer::State::recording;
+    const VkCommandBufferInheritanceInfo* inherited = pBeginInfo->pInheritanceInfo;
+    if (buffer.level == VK_COMMAND_BUFFER_LEVEL_SECONDARY && inherited != nullptr &&
+        (pBeginInfo->flags & VK_COMMAND_BUFFER_USAGE_RENDER_PASS_CONTINUE_BIT) != 0 &&
+        inherited->renderPass != VK_NULL_HANDLE && inherited->subpass < object(inherited->renderPass)->subpasses.size()) {
+        buffer.pass.pass = object(inherited->renderPass);
+        buffer.pass.subpass = inherited->subpass;
+        buffer.pass.formats = buffer.pass.pass->formats(inherited->subpass);
+    }
+    return VK_SUCCESS;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL EndCommandBuffer(VkCommandBuffer commandBuffer) {
+    CommandBuffer& buffer = *object(commandBuffer);
+    buffer.state = CommandBuffer::State::executable;
+    return buffer.result;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL ResetCommandBuffer(VkCommandBuffer commandBuffer, VkCommandBufferResetFlags) {
+    object(commandBuffer)->reset();
+    return VK_SUCCESS;
+}
+
+}  // namespace vernier::vulkan

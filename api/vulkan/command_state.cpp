@@ -1,0 +1,141 @@
+// Commands that set state: pipelines, descriptors, push constants, vertex and index buffers, dynamic state.
+#include <algorithm>
+
+#include "api/vulkan/command_buffer.h"
+#include "api/vulkan/descriptor.h"
+#include "api/vulkan/entry_points.h"
+#include "api/vulkan/pipeline.h"
+
+namespace vernier::vulkan {
+namespace {
+
+/// Whether a pipeline's state was made for these attachments. Drawing with another would write texels of one size into
+/// images of another.
+bool fits(const GraphicsState& state, const SubpassFormats& formats) {
+    if (state.colorCount != formats.colorCount || state.depthStencilFormat != formats.depthStencil) return false;
+    if (formats.samples != 0 && state.samples != formats.samples) return false;
+    return std::equal(formats.colors, formats.colors + formats.colorCount, state.colorFormats.begin());
+}
+
+template <class Command>
+void record(VkCommandBuffer handle, const Command& command) {
+    recording(handle, [&](CommandBuffer& buffer) { buffer.stream.record(command); });
+}
+
+}  // namespace
+
+void CommandBuffer::checkPipeline() {
+    pipelineFits = pipeline != nullptr && pass.pass != nullptr && fits(pipeline->graphics->state(), pass.formats);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdBindPipeline(VkCommandBuffer commandBuffer, VkPipelineBindPoint pipelineBindPoint,
+                                           VkPipeline pipeline) {
+    recording(commandBuffer, [&](CommandBuffer& buffer) {
+        if (pipelineBindPoint != VK_PIPELINE_BIND_POINT_GRAPHICS) {
+            return buffer.fail("vkCmdBindPipeline", "pipelineBindPoint must be GRAPHICS");
+        }
+        const Pipeline& bound = *object(pipeline);
+        buffer.pipeline = &bound;
+        buffer.checkPipeline();
+        buffer.stream.record(command::BindPipeline{bound.graphics.get(), &bound.fixed, bound.dynamicMask});
+    });
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdBindDescriptorSets(VkCommandBuffer commandBuffer, VkPipelineBindPoint pipelineBindPoint,
+                                                 VkPipelineLayout, uint32_t firstSet, uint32_t descriptorSetCount,
+                                                 const VkDescriptorSet* pDescriptorSets, uint32_t dynamicOffsetCount,
+                                                 const uint32_t* pDynamicOffsets) {
+    recording(commandBuffer, [&](CommandBuffer& buffer) {
+        if (pipelineBindPoint != VK_PIPELINE_BIND_POINT_GRAPHICS) return;  // nothing can use them
+        std::span<const uint32_t> offsets = copyArray(buffer, dynamicOffsetCount, pDynamicOffsets);
+        const std::span sets = buffer.stream.arena().array<const DescriptorSet*>(descriptorSetCount);
+        const std::span perSet = buffer.stream.arena().array<std::span<const uint32_t>>(descriptorSetCount);
+        for (uint32_t i = 0; i < descriptorSetCount; ++i) {
+            const DescriptorSetObject* set = object(pDescriptorSets[i]);
+            sets[i] = set != nullptr ? &set->set : nullptr;
+            const size_t wanted = set != nullptr ? set->layout->dynamicCount : 0;
+            const size_t count = std::min(wanted, offsets.size());
+            perSet[i] = offsets.first(count);
+            offsets = offsets.subspan(count);
+        }
+        buffer.stream.record(command::BindDescriptorSets{firstSet, sets, perSet});
+    });
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdPushConstants(VkCommandBuffer commandBuffer, VkPipelineLayout, VkShaderStageFlags,
+                                            uint32_t offset, uint32_t size, const void* pValues) {
+    recording(commandBuffer, [&](CommandBuffer& buffer) {
+        const auto bytes = copyArray(buffer, size, static_cast<const std::byte*>(pValues));
+        buffer.stream.record(command::PushConstants{offset, bytes});
+    });
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdBindVertexBuffers(VkCommandBuffer commandBuffer, uint32_t firstBinding,
+                                                uint32_t bindingCount, const VkBuffer* pBuffers,
+                                                const VkDeviceSize* pOffsets) {
+    recording(commandBuffer, [&](CommandBuffer& buffer) {
+        const std::span ranges = buffer.stream.arena().array<command::BufferRange>(bindingCount);
+        for (uint32_t i = 0; i < bindingCount; ++i) ranges[i] = {object(pBuffers[i]), pOffsets[i]};
+        buffer.stream.record(command::BindVertexBuffers{firstBinding, ranges});
+    });
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdBindIndexBuffer(VkCommandBuffer commandBuffer, VkBuffer buffer, VkDeviceSize offset,
+                                              VkIndexType indexType) {
+    recording(commandBuffer, [&](CommandBuffer& into) {
+        if (indexType != VK_INDEX_TYPE_UINT16 && indexType != VK_INDEX_TYPE_UINT32) {
+            return into.fail("vkCmdBindIndexBuffer", "indexType must be UINT16 or UINT32");
+        }
+        into.stream.record(command::BindIndexBuffer{{object(buffer), offset}, indexType});
+    });
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetViewport(VkCommandBuffer commandBuffer, uint32_t firstViewport,
+                                          uint32_t viewportCount, const VkViewport* pViewports) {
+    recording(commandBuffer, [&](CommandBuffer& buffer) {
+        buffer.stream.record(command::SetViewports{firstViewport, copyArray(buffer, viewportCount, pViewports)});
+    });
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetScissor(VkCommandBuffer commandBuffer, uint32_t firstScissor, uint32_t scissorCount,
+                                         const VkRect2D* pScissors) {
+    recording(commandBuffer, [&](CommandBuffer& buffer) {
+        buffer.stream.record(command::SetScissors{firstScissor, copyArray(buffer, scissorCount, pScissors)});
+    });
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetLineWidth(VkCommandBuffer commandBuffer, float lineWidth) {
+    record(commandBuffer, command::SetLineWidth{lineWidth});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetDepthBias(VkCommandBuffer commandBuffer, float depthBiasConstantFactor,
+                                           float depthBiasClamp, float depthBiasSlopeFactor) {
+    record(commandBuffer, command::SetDepthBias{depthBiasConstantFactor, depthBiasClamp, depthBiasSlopeFactor});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetBlendConstants(VkCommandBuffer commandBuffer, const float blendConstants[4]) {
+    record(commandBuffer, command::SetBlendConstants{
+                              {blendConstants[0], blendConstants[1], blendConstants[2], blendConstants[3]}});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetDepthBounds(VkCommandBuffer commandBuffer, float minDepthBounds,
+                                             float maxDepthBounds) {
+    record(commandBuffer, command::SetDepthBounds{minDepthBounds, maxDepthBounds});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetStencilCompareMask(VkCommandBuffer commandBuffer, VkStencilFaceFlags faceMask,
+                                                    uint32_t compareMask) {
+    record(commandBuffer, command::SetStencil{faceMask, command::SetStencil::Field::compareMask, compareMask});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetStencilWriteMask(VkCommandBuffer commandBuffer, VkStencilFaceFlags faceMask,
+                                                  uint32_t writeMask) {
+    record(commandBuffer, command::SetStencil{faceMask, command::SetStencil::Field::writeMask, writeMask});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetStencilReference(VkCommandBuffer commandBuffer, VkStencilFaceFlags faceMask,
+                                                  uint32_t reference) {
+    record(commandBuffer, command::SetStencil{faceMask, command::SetStencil::Field::reference, reference});
+}
+
+}  // namespace vernier::vulkan

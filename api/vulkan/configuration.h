@@ -1,0 +1,32 @@
+// What the environment says about the driver:
+//
+//   VERNIER_PROFILE      draft, fast, standard (default), fine, reference: the accuracy of everything the device computes.
+//                        draft and fast are below what Vulkan asks for and are never chosen unasked.
+//   VERNIER_DEVICE_TYPE  cpu (default), integrated, discrete, virtual, other: some programs refuse a CPU device.
+//   VERNIER_THREADS      a number of threads; default: as many as there are usable CPUs.
+//   VERNIER_ISA          sse4, avx2, avx512: the best instruction set to use. The pictures are the same.
+//   VERNIER_LOG          set and not 0: messages go to stderr, too.
+#pragma once
+
+#include <vulkan/vulkan_core.h>
+
+#include <cstdint>
+
+#include "base/result.h"
+#include "base/simd.h"
+#include "runtime/accuracy.h"
+
+namespace vernier::vulkan {
+
+struct Configuration {
+    Profile profile = Profile::standard;
+    VkPhysicalDeviceType deviceType = VK_PHYSICAL_DEVICE_TYPE_CPU;
+    uint32_t threads = 0;
+    Isa maxIsa = Isa::avx512;
+    bool log = false;
+};
+
+/// An unknown value is an error: a picture of another accuracy than the one asked for must not go unnoticed.
+Result<Configuration> readConfiguration();
+
+}  // namespace vernier::vulkan

@@ -1,0 +1,166 @@
+// Writing and copying descriptors, directly and through templates (VK_KHR_descriptor_update_template).
+#include <string>
+
+#include "api/vulkan/allocation.h"
+#include "api/vulkan/descriptor.h"
+#include "api/vulkan/device.h"
+#include "api/vulkan/entry_points.h"
+#include "runtime/resource/image.h"
+
+namespace vernier::vulkan {
+namespace {
+
+/// A slot of a set and the binding it belongs to. Slots of consecutive bindings are neighbours, so that updates run over
+/// from one binding into the next by counting on ("consecutive binding updates").
+class SlotCursor {
+  public:
+    SlotCursor(const DescriptorSetLayout& layout, uint32_t binding, uint32_t element)
+        : layout_(layout), binding_(layout.find(binding)), element_(element) {
+        settle();
+    }
+
+    bool valid() const { return binding_ != nullptr; }
+    uint32_t slot() const { return binding_->firstSlot + element_; }
+    VkDescriptorType type() const { return binding_->type; }
+    const SamplerState* immutableSampler() const {
+        return binding_->immutableSamplers.empty() ? nullptr : binding_->immutableSamplers[element_];
+    }
+    void next() {
+        ++element_;
+        settle();
+    }
+
+  private:
+    void settle() {
+        while (binding_ != nullptr && element_ >= binding_->count) {
+            element_ -= binding_->count;
+            ++binding_;
+            if (binding_ == layout_.bindings.data() + layout_.bindings.size()) binding_ = nullptr;
+        }
+    }
+
+    const DescriptorSetLayout& layout_;
+    const DescriptorBinding* binding_;
+    uint32_t element_;
+};
+
+const TextureView* textureOf(VkImageView view) {
+    return view != VK_NULL_HANDLE ? &object(view)->texture() : nullptr;
+}
+
+void writeOne(const Device& device, DescriptorSet& set, const SlotCursor& cursor, const void* source) {
+    const auto& image = *static_cast<const VkDescriptorImageInfo*>(source);
+    const auto& buffer = *static_cast<const VkDescriptorBufferInfo*>(source);
+    const Isa isa = device.runtime->isa();
+    const SamplerState* immutable = cursor.immutableSampler();
+    Status status;
+    switch (cursor.type()) {
+        case VK_DESCRIPTOR_TYPE_SAMPLER:
+            status = set.writeImage(cursor.slot(), nullptr, immutable != nullptr ? immutable : object(image.sampler), isa);
+            break;
+        case VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER:
+            status = set.writeImage(cursor.slot(), textureOf(image.imageView),
+                                    immutable != nullptr ? immutable : object(image.sampler), isa);
+            break;
+        case VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE:
+        case VK_DESCRIPTOR_TYPE_STORAGE_IMAGE:
+        case VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT:
+            status = set.writeImage(cursor.slot(), textureOf(image.imageView), nullptr, isa);
+            break;
+        case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER:
+        case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER:
+        case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC:
+        case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC:
+            set.writeBuffer(cursor.slot(), object(buffer.buffer), buffer.offset, buffer.range);
+            break;
+        default: break;  // layouts with other types cannot be made
+    }
+    if (!status) (void)device.report("vkUpdateDescriptorSets", status.error());
+}
+
+/// The types must agree: a source of another type would be read as what it is not.
+bool matches(const SlotCursor& cursor, VkDescriptorType type) { return cursor.valid() && cursor.type() == type; }
+
+void write(const Device& device, const VkWriteDescriptorSet& info) {
+    DescriptorSet& set = object(info.dstSet)->set;
+    SlotCursor cursor(set.layout(), info.dstBinding, info.dstArrayElement);
+    for (uint32_t i = 0; i < info.descriptorCount && matches(cursor, info.descriptorType); ++i, cursor.next()) {
+        const void* image = info.pImageInfo != nullptr ? info.pImageInfo + i : nullptr;
+        const void* buffer = info.pBufferInfo != nullptr ? info.pBufferInfo + i : nullptr;
+        const bool isBuffer = cursor.type() >= VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER &&
+                              cursor.type() <= VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC;
+        const void* source = isBuffer ? buffer : image;
+        if (source != nullptr) writeOne(device, set, cursor, source);
+    }
+}
+
+void copy(const Device& device, const VkCopyDescriptorSet& info) {
+    DescriptorSet& source = object(info.srcSet)->set;
+    DescriptorSet& destination = object(info.dstSet)->set;
+    SlotCursor from(source.layout(), info.srcBinding, info.srcArrayElement);
+    SlotCursor to(destination.layout(), info.dstBinding, info.dstArrayElement);
+    for (uint32_t i = 0; i < info.descriptorCount && from.valid() && matches(to, from.type()); ++i) {
+        const Descriptor& value = source.slots()[from.slot()];
+        if (const SamplerState* immutable = to.immutableSampler(); immutable == nullptr) {
+            destination.slots()[to.slot()] = value;
+        } else {
+            const Status status =
+                destination.writeImage(to.slot(), value.texture.view, immutable, device.runtime->isa());
+            if (!status) (void)device.report("vkUpdateDescriptorSets", status.error());
+        }
+        from.next();
+        to.next();
+    }
+}
+
+}  // namespace
+
+VKAPI_ATTR void VKAPI_CALL UpdateDescriptorSets(VkDevice device, uint32_t descriptorWriteCount,
+                                                const VkWriteDescriptorSet* pDescriptorWrites,
+                                                uint32_t descriptorCopyCount,
+                                                const VkCopyDescriptorSet* pDescriptorCopies) {
+    (void)guarded([&] {
+        for (uint32_t i = 0; i < descriptorWriteCount; ++i) write(*object(device), pDescriptorWrites[i]);
+        for (uint32_t i = 0; i < descriptorCopyCount; ++i) copy(*object(device), pDescriptorCopies[i]);
+        return VK_SUCCESS;
+    });
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateDescriptorUpdateTemplate(VkDevice device,
+                                                              const VkDescriptorUpdateTemplateCreateInfo* pCreateInfo,
+                                                              const VkAllocationCallbacks* pAllocator,
+                                                              VkDescriptorUpdateTemplate* pDescriptorUpdateTemplate) {
+    return guarded([&] {
+        if (pCreateInfo->templateType != VK_DESCRIPTOR_UPDATE_TEMPLATE_TYPE_DESCRIPTOR_SET) {
+            return object(device)->report("vkCreateDescriptorUpdateTemplate", VK_ERROR_FEATURE_NOT_PRESENT,
+                                          "templateType: there are no push descriptors");
+        }
+        const auto* first = pCreateInfo->pDescriptorUpdateEntries;
+        return createHandle(pAllocator, pDescriptorUpdateTemplate,
+                            std::vector(first, first + pCreateInfo->descriptorUpdateEntryCount));
+    });
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroyDescriptorUpdateTemplate(VkDevice, VkDescriptorUpdateTemplate descriptorUpdateTemplate,
+                                                           const VkAllocationCallbacks* pAllocator) {
+    destroyHandle(pAllocator, descriptorUpdateTemplate);
+}
+
+VKAPI_ATTR void VKAPI_CALL UpdateDescriptorSetWithTemplate(VkDevice device, VkDescriptorSet descriptorSet,
+                                                           VkDescriptorUpdateTemplate descriptorUpdateTemplate,
+                                                           const void* pData) {
+    (void)guarded([&] {
+        DescriptorSet& set = object(descriptorSet)->set;
+        for (const VkDescriptorUpdateTemplateEntry& entry : object(descriptorUpdateTemplate)->entries) {
+            const auto* source = static_cast<const std::byte*>(pData) + entry.offset;
+            SlotCursor cursor(set.layout(), entry.dstBinding, entry.dstArrayElement);
+            for (uint32_t i = 0; i < entry.descriptorCount && matches(cursor, entry.descriptorType); ++i) {
+                writeOne(*object(device), set, cursor, source + i * entry.stride);
+                cursor.next();
+            }
+        }
+        return VK_SUCCESS;
+    });
+}
+
+}  // namespace vernier::vulkan

@@ -1,0 +1,97 @@
+// Which features of Vulkan the device has: what the runtime does, no more.
+#include <cstddef>
+#include <iterator>
+
+#include "api/vulkan/chain.h"
+#include "api/vulkan/physical_device.h"
+
+namespace vernier::vulkan {
+namespace {
+
+// X-macro over the members of VkPhysicalDeviceFeatures that are supported.
+#define VERNIER_FEATURES(X)                                                                                        \
+    X(robustBufferAccess)                                                                                          \
+    X(fullDrawIndexUint32)                                                                                         \
+    X(imageCubeArray)                                                                                              \
+    X(independentBlend)                                                                                            \
+    X(sampleRateShading)                                                                                           \
+    X(dualSrcBlend)                                                                                                \
+    X(logicOp)                                                                                                     \
+    X(multiDrawIndirect)                                                                                           \
+    X(drawIndirectFirstInstance)                                                                                   \
+    X(depthClamp)                                                                                                  \
+    X(depthBiasClamp)                                                                                              \
+    X(depthBounds)                                                                                                 \
+    X(fillModeNonSolid)                                                                                            \
+    X(alphaToOne)                                                                                                  \
+    X(occlusionQueryPrecise)                                                                                       \
+    X(pipelineStatisticsQuery)                                                                                     \
+    X(vertexPipelineStoresAndAtomics)                                                                              \
+    X(fragmentStoresAndAtomics)                                                                                    \
+    X(shaderImageGatherExtended)                                                                                   \
+    X(shaderStorageImageExtendedFormats)                                                                           \
+    X(shaderStorageImageReadWithoutFormat)                                                                         \
+    X(shaderStorageImageWriteWithoutFormat)                                                                        \
+    X(shaderUniformBufferArrayDynamicIndexing)                                                                     \
+    X(shaderSampledImageArrayDynamicIndexing)                                                                      \
+    X(shaderStorageBufferArrayDynamicIndexing)                                                                     \
+    X(shaderStorageImageArrayDynamicIndexing)                                                                      \
+    X(shaderClipDistance)                                                                                          \
+    X(shaderCullDistance)                                                                                          \
+    X(inheritedQueries)
+
+// The members of the structures that extensions bring, and whether they are supported.
+#define VERNIER_EXTENSION_FEATURES(X)                                                       \
+    X(VkPhysicalDeviceTimelineSemaphoreFeatures, timelineSemaphore, true)                   \
+    X(VkPhysicalDeviceDepthClipEnableFeaturesEXT, depthClipEnable, true)                    \
+    X(VkPhysicalDeviceProvokingVertexFeaturesEXT, provokingVertexLast, true)                \
+    X(VkPhysicalDeviceProvokingVertexFeaturesEXT, transformFeedbackPreservesProvokingVertex, false)
+
+// VkPhysicalDeviceFeatures is nothing but VkBool32 members.
+constexpr size_t kFeatureCount = sizeof(VkPhysicalDeviceFeatures) / sizeof(VkBool32);
+constexpr const char* kFeatureNames[] = {
+#define VERNIER_FEATURE_NAME(name) #name,
+#include "feature_names.inc"
+#undef VERNIER_FEATURE_NAME
+};
+static_assert(std::size(kFeatureNames) == kFeatureCount);
+
+}  // namespace
+
+VkPhysicalDeviceFeatures supportedFeatures() {
+    VkPhysicalDeviceFeatures features{};
+#define VERNIER_SET_FEATURE(name) features.name = VK_TRUE;
+    VERNIER_FEATURES(VERNIER_SET_FEATURE)
+#undef VERNIER_SET_FEATURE
+    return features;
+}
+
+void fillFeatureChain(void* chain) {
+#define VERNIER_FILL_FEATURE(type, member, supported) \
+    if (auto* structure = findInChain<type>(chain)) structure->member = (supported) ? VK_TRUE : VK_FALSE;
+    VERNIER_EXTENSION_FEATURES(VERNIER_FILL_FEATURE)
+#undef VERNIER_FILL_FEATURE
+}
+
+VkResult checkFeatures(const VkDeviceCreateInfo& info, const char*& missing) {
+    const auto* wanted2 = findInChain<VkPhysicalDeviceFeatures2>(info.pNext);
+    const VkPhysicalDeviceFeatures* wanted = wanted2 != nullptr ? &wanted2->features : info.pEnabledFeatures;
+    missing = nullptr;
+    if (wanted != nullptr) {
+        const VkPhysicalDeviceFeatures supported = supportedFeatures();
+        const auto* have = reinterpret_cast<const VkBool32*>(&supported);
+        const auto* want = reinterpret_cast<const VkBool32*>(wanted);
+        for (size_t i = 0; i < kFeatureCount; ++i) {
+            if (want[i] != VK_FALSE && have[i] == VK_FALSE) missing = kFeatureNames[i];
+        }
+    }
+#define VERNIER_CHECK_FEATURE(type, member, supported)                       \
+    if (const auto* structure = findInChain<type>(info.pNext)) {             \
+        if (structure->member != VK_FALSE && !(supported)) missing = #member; \
+    }
+    VERNIER_EXTENSION_FEATURES(VERNIER_CHECK_FEATURE)
+#undef VERNIER_CHECK_FEATURE
+    return missing != nullptr ? VK_ERROR_FEATURE_NOT_PRESENT : VK_SUCCESS;
+}
+
+}  // namespace vernier::vulkan

@@ -1,0 +1,142 @@
+// What can be done with formats and images: the runtime's format table, less what this driver leaves out.
+#include <algorithm>
+#include <bit>
+
+#include "api/vulkan/entry_points.h"
+#include "api/vulkan/enumerate.h"
+#include "api/vulkan/format_properties.h"
+#include "api/vulkan/physical_device.h"
+#include "api/vulkan/resource_limits.h"
+#include "runtime/limits.h"
+
+namespace vernier::vulkan {
+namespace {
+
+/// There are no texel buffers.
+constexpr VkFormatFeatureFlags kUsedBufferFeatures = VK_FORMAT_FEATURE_VERTEX_BUFFER_BIT;
+
+struct UsageNeed {
+    VkImageUsageFlagBits usage;
+    VkFormatFeatureFlags anyOf;
+};
+constexpr UsageNeed kUsageNeeds[] = {
+    {VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_FORMAT_FEATURE_TRANSFER_SRC_BIT},
+    {VK_IMAGE_USAGE_TRANSFER_DST_BIT, VK_FORMAT_FEATURE_TRANSFER_DST_BIT},
+    {VK_IMAGE_USAGE_SAMPLED_BIT, VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT},
+    {VK_IMAGE_USAGE_STORAGE_BIT, VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT},
+    {VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT},
+    {VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT},
+    {VK_IMAGE_USAGE_TRANSIENT_ATTACHMENT_BIT,
+     VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT | VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT},
+    {VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT,
+     VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT | VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT},
+};
+constexpr VkImageUsageFlags kKnownUsages = [] {
+    VkImageUsageFlags all = 0;
+    for (const auto& need : kUsageNeeds) all |= need.usage;
+    return all;
+}();
+
+constexpr VkImageCreateFlags kKnownFlags = VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT |
+                                           VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT;
+
+bool flagsFit(VkImageType type, VkImageCreateFlags flags) {
+    if ((flags & ~kKnownFlags) != 0) return false;
+    if ((flags & VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT) != 0 && type != VK_IMAGE_TYPE_2D) return false;
+    return (flags & VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT) == 0 || type == VK_IMAGE_TYPE_3D;
+}
+
+VkSampleCountFlags sampleCounts(VkFormatFeatureFlags features, VkImageType type, VkImageTiling tiling,
+                                VkImageUsageFlags usage, VkImageCreateFlags flags) {
+    constexpr VkFormatFeatureFlags kAttachment =
+        VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT | VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    const bool multisampled = tiling == VK_IMAGE_TILING_OPTIMAL && type == VK_IMAGE_TYPE_2D &&
+                              (flags & VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT) == 0 && (features & kAttachment) != 0 &&
+                              (usage & VK_IMAGE_USAGE_STORAGE_BIT) == 0;
+    return multisampled ? VK_SAMPLE_COUNT_1_BIT | VK_SAMPLE_COUNT_4_BIT : VK_SAMPLE_COUNT_1_BIT;
+}
+
+VkExtent3D maxExtent(VkImageType type) {
+    switch (type) {
+        case VK_IMAGE_TYPE_1D: return {kMaxImageDimension2D, 1, 1};
+        case VK_IMAGE_TYPE_2D: return {kMaxImageDimension2D, kMaxImageDimension2D, 1};
+        default: return {kMaxImageDimension3D, kMaxImageDimension3D, kMaxImageDimension3D};
+    }
+}
+
+}  // namespace
+
+VkFormatProperties formatProperties(VkFormat format) {
+    const FormatInfo* info = findFormat(format);
+    if (info == nullptr) return {};
+    return {info->linearTilingFeatures, info->optimalTilingFeatures, info->bufferFeatures & kUsedBufferFeatures};
+}
+
+VkResult imageFormatProperties(const PhysicalDevice& device, VkFormat format, VkImageType type, VkImageTiling tiling,
+                               VkImageUsageFlags usage, VkImageCreateFlags flags, VkImageFormatProperties& properties) {
+    properties = {};
+    const VkFormatProperties formats = formatProperties(format);
+    const bool linear = tiling == VK_IMAGE_TILING_LINEAR;
+    const VkFormatFeatureFlags features = linear ? formats.linearTilingFeatures : formats.optimalTilingFeatures;
+    const bool knownType = type == VK_IMAGE_TYPE_1D || type == VK_IMAGE_TYPE_2D || type == VK_IMAGE_TYPE_3D;
+    if (features == 0 || !knownType || (!linear && tiling != VK_IMAGE_TILING_OPTIMAL) || !flagsFit(type, flags)) {
+        return VK_ERROR_FORMAT_NOT_SUPPORTED;
+    }
+    if ((usage & ~kKnownUsages) != 0) return VK_ERROR_FORMAT_NOT_SUPPORTED;
+    for (const UsageNeed& need : kUsageNeeds) {
+        // A format list with MUTABLE_FORMAT and EXTENDED_USAGE would relax this; neither flag is offered together.
+        if ((usage & need.usage) != 0 && (features & need.anyOf) == 0) return VK_ERROR_FORMAT_NOT_SUPPORTED;
+    }
+    const bool depthStencil = (features & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT) != 0;
+    if (depthStencil && type == VK_IMAGE_TYPE_3D) return VK_ERROR_FORMAT_NOT_SUPPORTED;
+
+    properties.maxExtent = maxExtent(type);
+    const auto largest = std::max(properties.maxExtent.width, properties.maxExtent.depth);
+    properties.maxMipLevels = linear ? 1 : static_cast<uint32_t>(std::bit_width(largest));
+    properties.maxArrayLayers = linear || type == VK_IMAGE_TYPE_3D ? 1 : kMaxArrayLayers;
+    properties.sampleCounts = sampleCounts(features, type, tiling, usage, flags);
+    properties.maxResourceSize = std::max(device.memory.memoryHeaps[0].size, VkDeviceSize{1} << 31);
+    return VK_SUCCESS;
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceFormatProperties(VkPhysicalDevice, VkFormat format,
+                                                             VkFormatProperties* pFormatProperties) {
+    *pFormatProperties = formatProperties(format);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceFormatProperties2(VkPhysicalDevice, VkFormat format,
+                                                              VkFormatProperties2* pFormatProperties) {
+    pFormatProperties->formatProperties = formatProperties(format);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties(
+    VkPhysicalDevice physicalDevice, VkFormat format, VkImageType type, VkImageTiling tiling, VkImageUsageFlags usage,
+    VkImageCreateFlags flags, VkImageFormatProperties* pImageFormatProperties) {
+    return imageFormatProperties(*object(physicalDevice), format, type, tiling, usage, flags, *pImageFormatProperties);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties2(
+    VkPhysicalDevice physicalDevice, const VkPhysicalDeviceImageFormatInfo2* pImageFormatInfo,
+    VkImageFormatProperties2* pImageFormatProperties) {
+    return imageFormatProperties(*object(physicalDevice), pImageFormatInfo->format, pImageFormatInfo->type,
+                                 pImageFormatInfo->tiling, pImageFormatInfo->usage, pImageFormatInfo->flags,
+                                 pImageFormatProperties->imageFormatProperties);
+}
+
+// Sparse resources are not supported: nothing to list.
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceSparseImageFormatProperties(VkPhysicalDevice, VkFormat, VkImageType,
+                                                                        VkSampleCountFlagBits, VkImageUsageFlags,
+                                                                        VkImageTiling, uint32_t* pPropertyCount,
+                                                                        VkSparseImageFormatProperties*) {
+    *pPropertyCount = 0;
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceSparseImageFormatProperties2(VkPhysicalDevice,
+                                                                         const VkPhysicalDeviceSparseImageFormatInfo2*,
+                                                                         uint32_t* pPropertyCount,
+                                                                         VkSparseImageFormatProperties2*) {
+    *pPropertyCount = 0;
+}
+
+}  // namespace vernier::vulkan

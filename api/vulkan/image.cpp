@@ -1,0 +1,172 @@
+// Images.
+#include <algorithm>
+
+#include "api/vulkan/allocation.h"
+#include "api/vulkan/device.h"
+#include "api/vulkan/entry_points.h"
+#include "api/vulkan/format_properties.h"
+#include "api/vulkan/memory.h"
+#include "runtime/resource/image.h"
+
+namespace vernier::vulkan {
+namespace {
+
+/// The creation parameters against what vkGetPhysicalDeviceImageFormatProperties promises.
+Status checkCreateInfo(const PhysicalDevice& device, const VkImageCreateInfo& info) {
+    VkImageFormatProperties limits{};
+    const VkResult supported = imageFormatProperties(device, info.format, info.imageType, info.tiling, info.usage,
+                                                     info.flags, limits);
+    if (supported != VK_SUCCESS) {
+        return unsupported("images of " + nameOf(info.format) + " with imageType " + std::to_string(info.imageType) +
+                           ", tiling " + std::to_string(info.tiling) + ", usage " + std::to_string(info.usage) +
+                           ", flags " + std::to_string(info.flags) + " are not supported");
+    }
+    const auto bad = [](const char* field, uint64_t value, uint64_t limit) {
+        return invalidArgument(std::string(field) + " is " + std::to_string(value) + ", allowed are 1 to " +
+                               std::to_string(limit));
+    };
+    const VkExtent3D& extent = info.extent;
+    if (extent.width - 1 >= limits.maxExtent.width) return bad("extent.width", extent.width, limits.maxExtent.width);
+    if (extent.height - 1 >= limits.maxExtent.height) {
+        return bad("extent.height", extent.height, limits.maxExtent.height);
+    }
+    if (extent.depth - 1 >= limits.maxExtent.depth) return bad("extent.depth", extent.depth, limits.maxExtent.depth);
+    if (info.mipLevels - 1 >= limits.maxMipLevels) return bad("mipLevels", info.mipLevels, limits.maxMipLevels);
+    if (info.arrayLayers - 1 >= limits.maxArrayLayers) {
+        return bad("arrayLayers", info.arrayLayers, limits.maxArrayLayers);
+    }
+    if ((info.samples & limits.sampleCounts) == 0) {
+        return invalidArgument("samples is " + std::to_string(info.samples) + ", allowed is the mask " +
+                               std::to_string(limits.sampleCounts));
+    }
+    return {};
+}
+
+}  // namespace
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateImage(VkDevice device, const VkImageCreateInfo* pCreateInfo,
+                                           const VkAllocationCallbacks* pAllocator, VkImage* pImage) {
+    return guarded([&] {
+        const Device& owner = *object(device);
+        if (const Status status = checkCreateInfo(owner.physicalDevice, *pCreateInfo); !status) {
+            return owner.report("vkCreateImage", status.error());
+        }
+        ImageInfo info;
+        info.type = pCreateInfo->imageType;
+        info.format = pCreateInfo->format;
+        info.extent = pCreateInfo->extent;
+        info.mipLevels = pCreateInfo->mipLevels;
+        info.arrayLayers = pCreateInfo->arrayLayers;
+        info.samples = static_cast<uint32_t>(pCreateInfo->samples);
+        info.tiling = pCreateInfo->tiling;
+        info.usage = pCreateInfo->usage;
+        info.flags = pCreateInfo->flags;
+        Result<Image> image = Image::create(info);
+        if (!image) return owner.report("vkCreateImage", image.error());
+        return createHandle(pAllocator, pImage, std::move(image).value());
+    });
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroyImage(VkDevice, VkImage image, const VkAllocationCallbacks* pAllocator) {
+    destroyHandle(pAllocator, image);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetImageMemoryRequirements(VkDevice, VkImage image,
+                                                      VkMemoryRequirements* pMemoryRequirements) {
+    *pMemoryRequirements = memoryRequirements(object(image)->memorySize());
+}
+
+VKAPI_ATTR void VKAPI_CALL GetImageMemoryRequirements2(VkDevice, const VkImageMemoryRequirementsInfo2* pInfo,
+                                                       VkMemoryRequirements2* pMemoryRequirements) {
+    pMemoryRequirements->memoryRequirements = memoryRequirements(object(pInfo->image)->memorySize());
+    fillRequirementChain(pMemoryRequirements->pNext);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetImageSparseMemoryRequirements(VkDevice, VkImage, uint32_t* pSparseMemoryRequirementCount,
+                                                            VkSparseImageMemoryRequirements*) {
+    *pSparseMemoryRequirementCount = 0;
+}
+
+VKAPI_ATTR void VKAPI_CALL GetImageSparseMemoryRequirements2(VkDevice, const VkImageSparseMemoryRequirementsInfo2*,
+                                                             uint32_t* pSparseMemoryRequirementCount,
+                                                             VkSparseImageMemoryRequirements2*) {
+    *pSparseMemoryRequirementCount = 0;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL BindImageMemory(VkDevice device, VkImage image, VkDeviceMemory memory,
+                                               VkDeviceSize memoryOffset) {
+    return guarded([&] {
+        if (const Status fits = checkBinding(object(memory), memoryOffset, object(image)->memorySize()); !fits) {
+            return object(device)->report("vkBindImageMemory", fits.error());
+        }
+        object(image)->bind(*object(memory)->memory, memoryOffset);
+        return VK_SUCCESS;
+    });
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL BindImageMemory2(VkDevice device, uint32_t bindInfoCount,
+                                                const VkBindImageMemoryInfo* pBindInfos) {
+    VkResult result = VK_SUCCESS;
+    for (uint32_t i = 0; i < bindInfoCount; ++i) {
+        const VkBindImageMemoryInfo& bind = pBindInfos[i];
+        const VkResult one = BindImageMemory(device, bind.image, bind.memory, bind.memoryOffset);
+        if (one != VK_SUCCESS) result = one;
+    }
+    return result;
+}
+
+VKAPI_ATTR void VKAPI_CALL GetImageSubresourceLayout(VkDevice, VkImage image, const VkImageSubresource* pSubresource,
+                                                     VkSubresourceLayout* pLayout) {
+    const Image& of = *object(image);
+    const LevelLayout& level = of.level(std::min(pSubresource->mipLevel, of.info().mipLevels - 1));
+    pLayout->offset = of.layerPitch() * pSubresource->arrayLayer + level.offset;
+    pLayout->size = level.slicePitch * level.extent.depth;
+    pLayout->rowPitch = level.rowPitch;
+    pLayout->arrayPitch = of.layerPitch();
+    pLayout->depthPitch = level.slicePitch;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateImageView(VkDevice device, const VkImageViewCreateInfo* pCreateInfo,
+                                               const VkAllocationCallbacks* pAllocator, VkImageView* pView) {
+    return guarded([&] {
+        const Device& owner = *object(device);
+        const Image& image = *object(pCreateInfo->image);
+        ImageViewInfo info;
+        info.type = pCreateInfo->viewType;
+        info.format = pCreateInfo->format;
+        info.components = pCreateInfo->components;
+        info.range = pCreateInfo->subresourceRange;
+        const bool slices = image.info().type == VK_IMAGE_TYPE_3D && info.type != VK_IMAGE_VIEW_TYPE_3D;
+        const uint32_t layers = slices ? image.info().extent.depth : image.info().arrayLayers;
+        if (info.range.levelCount == VK_REMAINING_MIP_LEVELS && info.range.baseMipLevel < image.info().mipLevels) {
+            info.range.levelCount = image.info().mipLevels - info.range.baseMipLevel;
+        }
+        if (info.range.layerCount == VK_REMAINING_ARRAY_LAYERS && info.range.baseArrayLayer < layers) {
+            info.range.layerCount = layers - info.range.baseArrayLayer;
+        }
+        Result<ImageView> view = ImageView::create(image, info, owner.runtime->isa());
+        if (!view) return owner.report("vkCreateImageView", view.error());
+        return createHandle(pAllocator, pView, std::move(view).value());
+    });
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroyImageView(VkDevice, VkImageView imageView, const VkAllocationCallbacks* pAllocator) {
+    destroyHandle(pAllocator, imageView);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateSampler(VkDevice device, const VkSamplerCreateInfo* pCreateInfo,
+                                             const VkAllocationCallbacks* pAllocator, VkSampler* pSampler) {
+    return guarded([&] {
+        if (pCreateInfo->anisotropyEnable != VK_FALSE) {
+            return object(device)->report("vkCreateSampler", VK_ERROR_FEATURE_NOT_PRESENT,
+                                          "anisotropyEnable: samplerAnisotropy is not supported");
+        }
+        return createHandle(pAllocator, pSampler, makeSamplerState(*pCreateInfo));
+    });
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroySampler(VkDevice, VkSampler sampler, const VkAllocationCallbacks* pAllocator) {
+    destroyHandle(pAllocator, sampler);
+}
+
+}  // namespace vernier::vulkan

@@ -1,0 +1,142 @@
+// The limits of the device, in the order of the specification's table "Required Limits", and the properties of extensions.
+#include <algorithm>
+
+#include "api/vulkan/chain.h"
+#include "api/vulkan/physical_device.h"
+#include "api/vulkan/resource_limits.h"
+#include "runtime/limits.h"
+#include "runtime/resource/memory.h"
+#include "runtime/texture/texture.h"
+
+namespace vernier::vulkan {
+namespace {
+
+static_assert(kMaxSamples == 4);
+constexpr VkSampleCountFlags kSampleCounts = VK_SAMPLE_COUNT_1_BIT | VK_SAMPLE_COUNT_4_BIT;
+
+/// Descriptors are structs in host memory: these bounds only keep requests sane.
+constexpr uint32_t kMaxDescriptors = 1u << 16;
+
+void setDescriptorLimits(VkPhysicalDeviceLimits& limits) {
+    limits.maxTexelBufferElements = kMaxTexelBufferElements;
+    limits.maxUniformBufferRange = 1u << 16;
+    limits.maxStorageBufferRange = 1u << 30;
+    limits.maxPushConstantsSize = kMaxPushConstantBytes;
+    limits.maxBoundDescriptorSets = kMaxDescriptorSets;
+    limits.maxPerStageDescriptorSamplers = kMaxDescriptors;
+    limits.maxPerStageDescriptorUniformBuffers = kMaxDescriptors;
+    limits.maxPerStageDescriptorStorageBuffers = kMaxDescriptors;
+    limits.maxPerStageDescriptorSampledImages = kMaxDescriptors;
+    limits.maxPerStageDescriptorStorageImages = kMaxDescriptors;
+    limits.maxPerStageDescriptorInputAttachments = kMaxColorAttachments;
+    limits.maxPerStageResources = kMaxDescriptorsPerSet;
+    limits.maxDescriptorSetSamplers = kMaxDescriptors;
+    limits.maxDescriptorSetUniformBuffers = kMaxDescriptors;
+    limits.maxDescriptorSetUniformBuffersDynamic = 64;
+    limits.maxDescriptorSetStorageBuffers = kMaxDescriptors;
+    limits.maxDescriptorSetStorageBuffersDynamic = 64;
+    limits.maxDescriptorSetSampledImages = kMaxDescriptors;
+    limits.maxDescriptorSetStorageImages = kMaxDescriptors;
+    limits.maxDescriptorSetInputAttachments = kMaxColorAttachments;
+}
+
+void setAlignments(VkPhysicalDeviceLimits& limits) {
+    limits.bufferImageGranularity = 1;
+    limits.minMemoryMapAlignment = kBufferAlignment;
+    limits.minTexelBufferOffsetAlignment = 16;
+    limits.minUniformBufferOffsetAlignment = 16;
+    limits.minStorageBufferOffsetAlignment = 16;
+    limits.optimalBufferCopyOffsetAlignment = 1;
+    limits.optimalBufferCopyRowPitchAlignment = 1;
+    limits.nonCoherentAtomSize = 1;
+}
+
+}  // namespace
+
+VkPhysicalDeviceLimits deviceLimits(const VkPhysicalDeviceFeatures& features, const Accuracy& accuracy) {
+    // Tessellation, geometry, compute and sparse limits stay 0: those stages do not exist.
+    VkPhysicalDeviceLimits limits{};
+    limits.maxImageDimension1D = kMaxImageDimension2D;
+    limits.maxImageDimension2D = kMaxImageDimension2D;
+    limits.maxImageDimension3D = kMaxImageDimension3D;
+    limits.maxImageDimensionCube = kMaxImageDimension2D;
+    limits.maxImageArrayLayers = kMaxArrayLayers;
+    limits.maxMemoryAllocationCount = UINT32_MAX;
+    limits.maxSamplerAllocationCount = UINT32_MAX;
+    setDescriptorLimits(limits);
+    setAlignments(limits);
+
+    limits.maxVertexInputAttributes = kMaxVertexAttributes;
+    limits.maxVertexInputBindings = kMaxVertexBindings;
+    limits.maxVertexInputAttributeOffset = kMaxVertexAttributeOffset;
+    limits.maxVertexInputBindingStride = kMaxVertexBindingStride;
+    limits.maxVertexOutputComponents = kMaxInterfaceComponents;
+    limits.maxFragmentInputComponents = kMaxInterfaceComponents;
+    limits.maxFragmentOutputAttachments = kMaxColorAttachments;
+    limits.maxFragmentDualSrcAttachments = features.dualSrcBlend ? 1 : 0;
+    limits.maxFragmentCombinedOutputResources = kMaxDescriptors;
+
+    limits.subPixelPrecisionBits = accuracy.subPixelBits;
+    limits.subTexelPrecisionBits = 8;
+    limits.mipmapPrecisionBits = 8;
+    limits.maxDrawIndexedIndexValue = UINT32_MAX;
+    limits.maxDrawIndirectCount = features.multiDrawIndirect ? UINT32_MAX : 1;
+    limits.maxSamplerLodBias = kMaxSamplerLodBias;
+    limits.maxSamplerAnisotropy = 1;
+    limits.maxViewports = features.multiViewport ? kMaxViewports : 1;
+    limits.maxViewportDimensions[0] = limits.maxViewportDimensions[1] = kMaxImageDimension2D;
+    limits.viewportBoundsRange[0] = -2.0f * kMaxImageDimension2D;
+    limits.viewportBoundsRange[1] = 2.0f * kMaxImageDimension2D - 1;
+    limits.viewportSubPixelBits = accuracy.subPixelBits;
+    limits.minTexelOffset = -8;
+    limits.maxTexelOffset = 7;
+    if (features.shaderImageGatherExtended) {
+        limits.minTexelGatherOffset = -8;
+        limits.maxTexelGatherOffset = 7;
+    }
+    if (features.sampleRateShading) {
+        limits.subPixelInterpolationOffsetBits = 4;
+        limits.minInterpolationOffset = -0.5f;
+        limits.maxInterpolationOffset = 0.5f - 1.0f / (1 << 4);
+    }
+
+    limits.maxFramebufferWidth = limits.maxFramebufferHeight = kMaxImageDimension2D;
+    limits.maxFramebufferLayers = kMaxArrayLayers;
+    limits.framebufferColorSampleCounts = kSampleCounts;
+    limits.framebufferDepthSampleCounts = kSampleCounts;
+    limits.framebufferStencilSampleCounts = kSampleCounts;
+    limits.framebufferNoAttachmentsSampleCounts = kSampleCounts;
+    limits.maxColorAttachments = kMaxColorAttachments;
+    limits.sampledImageColorSampleCounts = kSampleCounts;
+    limits.sampledImageIntegerSampleCounts = kSampleCounts;
+    limits.sampledImageDepthSampleCounts = kSampleCounts;
+    limits.sampledImageStencilSampleCounts = kSampleCounts;
+    limits.storageImageSampleCounts = VK_SAMPLE_COUNT_1_BIT;
+    limits.maxSampleMaskWords = 1;
+    limits.timestampComputeAndGraphics = VK_TRUE;
+    limits.timestampPeriod = 1;
+    limits.maxClipDistances = features.shaderClipDistance ? kMaxClipDistances : 0;
+    limits.maxCullDistances = features.shaderCullDistance ? kMaxClipDistances : 0;
+    limits.maxCombinedClipAndCullDistances = std::max(limits.maxClipDistances, limits.maxCullDistances);
+    limits.discreteQueuePriorities = 2;
+    limits.pointSizeRange[0] = limits.pointSizeRange[1] = 1;
+    limits.lineWidthRange[0] = limits.lineWidthRange[1] = 1;
+    limits.standardSampleLocations = VK_TRUE;
+    return limits;
+}
+
+void fillPropertyChain(void* chain) {
+    if (auto* p = findInChain<VkPhysicalDeviceMaintenance3Properties>(chain)) {
+        p->maxPerSetDescriptors = kMaxDescriptorsPerSet;
+        p->maxMemoryAllocationSize = kMaxAllocation;
+    }
+    if (auto* p = findInChain<VkPhysicalDeviceTimelineSemaphoreProperties>(chain)) {
+        p->maxTimelineSemaphoreValueDifference = UINT64_MAX;
+    }
+    if (auto* p = findInChain<VkPhysicalDeviceProvokingVertexPropertiesEXT>(chain)) {
+        p->provokingVertexModePerPipeline = VK_TRUE;
+        p->transformFeedbackPreservesTriangleFanProvokingVertex = VK_FALSE;
+    }
+}
+
+}  // namespace vernier::vulkan

@@ -1,0 +1,124 @@
+#include "api/vulkan/physical_device.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstring>
+#include <string>
+
+#include "api/vulkan/chain.h"
+#include "api/vulkan/entry_points.h"
+#include "api/vulkan/enumerate.h"
+#include "api/vulkan/extension.h"
+#include "api/vulkan/instance.h"
+
+namespace vernier::vulkan {
+namespace {
+
+/// Pipeline caches may travel between processes when this is the same: it names the version of the driver and everything
+/// that could change what it computes.
+void fillCacheUuid(const PhysicalDevice& device, uint8_t (&uuid)[VK_UUID_SIZE]) {
+    const char name[VK_UUID_SIZE + 1] = "Vernier";
+    std::memcpy(uuid, name, VK_UUID_SIZE);
+    const uint32_t version = device.properties.driverVersion;
+    std::memcpy(uuid + 8, &version, sizeof version);
+    uuid[12] = static_cast<uint8_t>(device.configuration.profile);
+    uuid[13] = static_cast<uint8_t>(device.isa);
+}
+
+VkPhysicalDeviceMemoryProperties oneHeap(VkDeviceSize size) {
+    VkPhysicalDeviceMemoryProperties memory{};
+    memory.memoryHeapCount = 1;
+    memory.memoryHeaps[0] = {size, VK_MEMORY_HEAP_DEVICE_LOCAL_BIT};
+    memory.memoryTypeCount = 1;
+    memory.memoryTypes[0] = {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                                 VK_MEMORY_PROPERTY_HOST_COHERENT_BIT | VK_MEMORY_PROPERTY_HOST_CACHED_BIT,
+                             0};
+    return memory;
+}
+
+/// One queue, in order. No compute bit: there are no compute pipelines.
+constexpr VkQueueFamilyProperties kQueueFamily{VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_TRANSFER_BIT, 1, 64, {1, 1, 1}};
+
+}  // namespace
+
+PhysicalDevice::PhysicalDevice(Instance& owner, const Configuration& settings)
+    : instance(owner),
+      configuration(settings),
+      isa(bestIsaUpTo(settings.maxIsa)),
+      accuracy(accuracyOf(settings.profile)),
+      features(supportedFeatures()),
+      properties{},
+      memory(oneHeap(heapSize())) {
+    properties.apiVersion = kApiVersion;
+    properties.driverVersion = VK_MAKE_API_VERSION(0, VERNIER_VERSION_MAJOR, VERNIER_VERSION_MINOR,
+                                                   VERNIER_VERSION_PATCH);
+    properties.vendorID = kVendorId;
+    properties.deviceID = 1;
+    properties.deviceType = settings.deviceType;
+    std::snprintf(properties.deviceName, sizeof properties.deviceName, "Vernier (software, %s)",
+                  std::string(isaName(isa)).c_str());
+    fillCacheUuid(*this, properties.pipelineCacheUUID);
+    properties.limits = deviceLimits(features, accuracy);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceFeatures(VkPhysicalDevice physicalDevice,
+                                                     VkPhysicalDeviceFeatures* pFeatures) {
+    *pFeatures = object(physicalDevice)->features;
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceFeatures2(VkPhysicalDevice physicalDevice,
+                                                      VkPhysicalDeviceFeatures2* pFeatures) {
+    pFeatures->features = object(physicalDevice)->features;
+    fillFeatureChain(pFeatures->pNext);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceProperties(VkPhysicalDevice physicalDevice,
+                                                       VkPhysicalDeviceProperties* pProperties) {
+    *pProperties = object(physicalDevice)->properties;
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceProperties2(VkPhysicalDevice physicalDevice,
+                                                        VkPhysicalDeviceProperties2* pProperties) {
+    pProperties->properties = object(physicalDevice)->properties;
+    fillPropertyChain(pProperties->pNext);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceQueueFamilyProperties(VkPhysicalDevice, uint32_t* pQueueFamilyPropertyCount,
+                                                                  VkQueueFamilyProperties* pQueueFamilyProperties) {
+    OutputArray<VkQueueFamilyProperties> output(pQueueFamilyPropertyCount, pQueueFamilyProperties);
+    output.add(kQueueFamily);
+    (void)output.result();
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceQueueFamilyProperties2(
+    VkPhysicalDevice, uint32_t* pQueueFamilyPropertyCount, VkQueueFamilyProperties2* pQueueFamilyProperties) {
+    OutputArray<VkQueueFamilyProperties2> output(pQueueFamilyPropertyCount, pQueueFamilyProperties);
+    if (auto* entry = output.next()) entry->queueFamilyProperties = kQueueFamily;
+    (void)output.result();
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceMemoryProperties(VkPhysicalDevice physicalDevice,
+                                                             VkPhysicalDeviceMemoryProperties* pMemoryProperties) {
+    *pMemoryProperties = object(physicalDevice)->memory;
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceMemoryProperties2(VkPhysicalDevice physicalDevice,
+                                                              VkPhysicalDeviceMemoryProperties2* pMemoryProperties) {
+    pMemoryProperties->memoryProperties = object(physicalDevice)->memory;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL EnumerateDeviceExtensionProperties(VkPhysicalDevice, const char* pLayerName,
+                                                                  uint32_t* pPropertyCount,
+                                                                  VkExtensionProperties* pProperties) {
+    if (pLayerName != nullptr) return VK_ERROR_LAYER_NOT_PRESENT;
+    return enumerateExtensions(ExtensionScope::device, pPropertyCount, pProperties);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL EnumerateDeviceLayerProperties(VkPhysicalDevice, uint32_t* pPropertyCount,
+                                                              VkLayerProperties*) {
+    *pPropertyCount = 0;
+    return VK_SUCCESS;
+}
+
+}  // namespace vernier::vulkan

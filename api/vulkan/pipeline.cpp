@@ -1,0 +1,152 @@
+#include "api/vulkan/pipeline.h"
+
+#include <cstring>
+#include <string>
+
+#include "api/vulkan/allocation.h"
+#include "api/vulkan/device.h"
+#include "api/vulkan/entry_points.h"
+#include "spirv_interp/program.h"
+
+namespace vernier::vulkan {
+namespace {
+
+/// Of a stage, as the runtime's loader wants it. `entries` holds what the specialization points to.
+ShaderSource shaderSource(const VkPipelineShaderStageCreateInfo& stage, ir::Stage kind,
+                          std::vector<Specialization::Entry>& entries) {
+    ShaderSource source;
+    source.words = object(stage.module)->words;
+    source.entryPoint = stage.pName;
+    source.stage = kind;
+    if (const VkSpecializationInfo* special = stage.pSpecializationInfo) {
+        for (uint32_t i = 0; i < special->mapEntryCount; ++i) {
+            const VkSpecializationMapEntry& entry = special->pMapEntries[i];
+            if (entry.offset > special->dataSize || entry.size > special->dataSize - entry.offset) continue;
+            entries.push_back({entry.constantID, entry.offset, static_cast<uint32_t>(entry.size)});
+        }
+        source.specialization = {entries, {static_cast<const std::byte*>(special->pData), special->dataSize}};
+    }
+    return source;
+}
+
+Result<ir::Program> loadStage(const VkPipelineShaderStageCreateInfo& stage, ir::Stage kind) {
+    if (stage.module == VK_NULL_HANDLE) return invalidArgument("a stage without a shader module");
+    std::vector<Specialization::Entry> entries;
+    return loadShader(shaderSource(stage, kind, entries));
+}
+
+Result<std::shared_ptr<const ShaderProgram>> loadProgram(const Device& device, const VkGraphicsPipelineCreateInfo& info,
+                                                         bool rasterizerDiscard) {
+    const VkPipelineShaderStageCreateInfo* vertexStage = nullptr;
+    const VkPipelineShaderStageCreateInfo* fragmentStage = nullptr;
+    for (uint32_t i = 0; i < info.stageCount; ++i) {
+        const VkPipelineShaderStageCreateInfo& stage = info.pStages[i];
+        switch (stage.stage) {
+            case VK_SHADER_STAGE_VERTEX_BIT: vertexStage = &stage; break;
+            case VK_SHADER_STAGE_FRAGMENT_BIT: fragmentStage = &stage; break;
+            default: return unsupported("shader stage " + std::to_string(stage.stage) + " is not supported");
+        }
+    }
+    if (vertexStage == nullptr) return invalidArgument("there is no vertex stage");
+    if (rasterizerDiscard) fragmentStage = nullptr;
+
+    Result<ir::Program> vertex = loadStage(*vertexStage, ir::Stage::vertex);
+    if (!vertex) return Error{vertex.error().code, "vertex shader: " + vertex.error().message};
+    ShaderProgramDesc desc;
+    desc.vertex = &*vertex;
+    Result<ir::Program> fragment = ir::Program{};
+    if (fragmentStage != nullptr) {
+        fragment = loadStage(*fragmentStage, ir::Stage::fragment);
+        if (!fragment) return Error{fragment.error().code, "fragment shader: " + fragment.error().message};
+        desc.fragment = &*fragment;
+    }
+    desc.accuracy = device.physicalDevice.accuracy;
+    desc.isa = device.runtime->isa();
+    return ShaderProgram::create(desc);
+}
+
+VkResult createOne(const Device& device, const VkGraphicsPipelineCreateInfo& info,
+                   const VkAllocationCallbacks* callbacks, VkPipeline* out) {
+    Result<PipelineState> state = pipelineState(info);
+    if (!state) return device.report("vkCreateGraphicsPipelines", state.error());
+    auto program = loadProgram(device, info, state->state.rasterizerDiscard);
+    if (!program) return device.report("vkCreateGraphicsPipelines", program.error());
+    auto graphics = GraphicsPipeline::create({std::move(state->state), std::move(program).value()});
+    if (!graphics) return device.report("vkCreateGraphicsPipelines", graphics.error());
+    return createHandle(callbacks, out, std::move(graphics).value(), state->fixed, state->dynamicMask);
+}
+
+}  // namespace
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateShaderModule(VkDevice device, const VkShaderModuleCreateInfo* pCreateInfo,
+                                                  const VkAllocationCallbacks* pAllocator,
+                                                  VkShaderModule* pShaderModule) {
+    return guarded([&] {
+        std::vector<uint32_t> words(pCreateInfo->pCode, pCreateInfo->pCode + pCreateInfo->codeSize / sizeof(uint32_t));
+        if (const Status status = checkModule(words); !status) {
+            return object(device)->report("vkCreateShaderModule", status.error());
+        }
+        return createHandle(pAllocator, pShaderModule, std::move(words));
+    });
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroyShaderModule(VkDevice, VkShaderModule shaderModule,
+                                               const VkAllocationCallbacks* pAllocator) {
+    destroyHandle(pAllocator, shaderModule);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL CreatePipelineCache(VkDevice, const VkPipelineCacheCreateInfo*,
+                                                   const VkAllocationCallbacks* pAllocator,
+                                                   VkPipelineCache* pPipelineCache) {
+    return createHandle(pAllocator, pPipelineCache);
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroyPipelineCache(VkDevice, VkPipelineCache pipelineCache,
+                                                const VkAllocationCallbacks* pAllocator) {
+    destroyHandle(pAllocator, pipelineCache);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL GetPipelineCacheData(VkDevice device, VkPipelineCache, size_t* pDataSize, void* pData) {
+    const VkPhysicalDeviceProperties& properties = object(device)->physicalDevice.properties;
+    VkPipelineCacheHeaderVersionOne header{};
+    header.headerSize = sizeof header;
+    header.headerVersion = VK_PIPELINE_CACHE_HEADER_VERSION_ONE;
+    header.vendorID = properties.vendorID;
+    header.deviceID = properties.deviceID;
+    std::memcpy(header.pipelineCacheUUID, properties.pipelineCacheUUID, sizeof header.pipelineCacheUUID);
+    if (pData == nullptr) {
+        *pDataSize = sizeof header;
+        return VK_SUCCESS;
+    }
+    if (*pDataSize < sizeof header) {
+        *pDataSize = 0;
+        return VK_INCOMPLETE;
+    }
+    std::memcpy(pData, &header, sizeof header);
+    *pDataSize = sizeof header;
+    return VK_SUCCESS;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL MergePipelineCaches(VkDevice, VkPipelineCache, uint32_t, const VkPipelineCache*) {
+    return VK_SUCCESS;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateGraphicsPipelines(VkDevice device, VkPipelineCache, uint32_t createInfoCount,
+                                                       const VkGraphicsPipelineCreateInfo* pCreateInfos,
+                                                       const VkAllocationCallbacks* pAllocator,
+                                                       VkPipeline* pPipelines) {
+    VkResult result = VK_SUCCESS;
+    for (uint32_t i = 0; i < createInfoCount; ++i) {
+        pPipelines[i] = VK_NULL_HANDLE;
+        const VkResult one =
+            guarded([&] { return createOne(*object(device), pCreateInfos[i], pAllocator, &pPipelines[i]); });
+        if (one != VK_SUCCESS) result = one;
+    }
+    return result;
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroyPipeline(VkDevice, VkPipeline pipeline, const VkAllocationCallbacks* pAllocator) {
+    destroyHandle(pAllocator, pipeline);
+}
+
+}  // namespace vernier::vulkan

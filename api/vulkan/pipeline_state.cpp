@@ -1,0 +1,189 @@
+// From VkGraphicsPipelineCreateInfo to the runtime's state. Parts that the specification says are ignored (without
+// rasterisation, without attachments) are not looked at: their pointers may be anything.
+#include <algorithm>
+#include <string>
+
+#include "api/vulkan/chain.h"
+#include "api/vulkan/pipeline.h"
+#include "api/vulkan/render_pass.h"
+#include "api/vulkan/resource_limits.h"
+#include "runtime/limits.h"
+
+namespace vernier::vulkan {
+namespace {
+
+Error aboveLimit(const char* field, uint32_t value, uint32_t limit) {
+    return invalidArgument(std::string(field) + " is " + std::to_string(value) + "; the limit is " +
+                           std::to_string(limit));
+}
+
+bool isDynamic(const PipelineState& result, VkDynamicState state) { return (result.dynamicMask >> state & 1u) != 0; }
+
+Status readDynamicStates(const VkPipelineDynamicStateCreateInfo* info, PipelineState& result) {
+    for (uint32_t i = 0; info != nullptr && i < info->dynamicStateCount; ++i) {
+        const VkDynamicState state = info->pDynamicStates[i];
+        if (state > VK_DYNAMIC_STATE_STENCIL_REFERENCE) {
+            return unsupported("dynamic state " + std::to_string(state) + " is not supported");
+        }
+        result.dynamicMask |= 1u << state;
+    }
+    return {};
+}
+
+Status readVertexInput(const VkGraphicsPipelineCreateInfo& info, GraphicsState& state) {
+    const VkPipelineVertexInputStateCreateInfo* input = info.pVertexInputState;
+    const VkPipelineInputAssemblyStateCreateInfo* assembly = info.pInputAssemblyState;
+    if (input == nullptr || assembly == nullptr) {
+        return invalidArgument("pVertexInputState and pInputAssemblyState must be given");
+    }
+    for (uint32_t i = 0; i < input->vertexBindingDescriptionCount; ++i) {
+        const VkVertexInputBindingDescription& binding = input->pVertexBindingDescriptions[i];
+        if (binding.binding >= kMaxVertexBindings) return aboveLimit("vertex binding", binding.binding, kMaxVertexBindings - 1);
+        if (binding.stride > kMaxVertexBindingStride) {
+            return aboveLimit("vertex binding stride", binding.stride, kMaxVertexBindingStride);
+        }
+        state.vertexBindings.push_back(binding);
+    }
+    for (uint32_t i = 0; i < input->vertexAttributeDescriptionCount; ++i) {
+        const VkVertexInputAttributeDescription& attribute = input->pVertexAttributeDescriptions[i];
+        if (attribute.location >= kMaxVertexAttributes) {
+            return aboveLimit("vertex attribute location", attribute.location, kMaxVertexAttributes - 1);
+        }
+        if (attribute.offset > kMaxVertexAttributeOffset) {
+            return aboveLimit("vertex attribute offset", attribute.offset, kMaxVertexAttributeOffset);
+        }
+        state.vertexAttributes.push_back(attribute);
+    }
+    state.topology = assembly->topology;
+    state.primitiveRestart = assembly->primitiveRestartEnable != VK_FALSE;
+    return {};
+}
+
+Status readRasterization(const VkPipelineRasterizationStateCreateInfo& info, PipelineState& result) {
+    GraphicsState& state = result.state;
+    state.depthClampEnable = info.depthClampEnable != VK_FALSE;
+    state.depthClipEnable = !state.depthClampEnable;
+    if (const auto* clip = findInChain<VkPipelineRasterizationDepthClipStateCreateInfoEXT>(info.pNext)) {
+        state.depthClipEnable = clip->depthClipEnable != VK_FALSE;
+    }
+    state.rasterizerDiscard = info.rasterizerDiscardEnable != VK_FALSE;
+    state.polygonMode = info.polygonMode;
+    state.cullMode = info.cullMode;
+    state.frontFace = info.frontFace;
+    state.depthBiasEnable = info.depthBiasEnable != VK_FALSE;
+    if (const auto* vertex = findInChain<VkPipelineRasterizationProvokingVertexStateCreateInfoEXT>(info.pNext)) {
+        state.provokingVertexLast = vertex->provokingVertexMode == VK_PROVOKING_VERTEX_MODE_LAST_VERTEX_EXT;
+    }
+    result.fixed.lineWidth = info.lineWidth;
+    result.fixed.depthBiasConstant = info.depthBiasConstantFactor;
+    result.fixed.depthBiasClamp = info.depthBiasClamp;
+    result.fixed.depthBiasSlope = info.depthBiasSlopeFactor;
+    if (!isDynamic(result, VK_DYNAMIC_STATE_LINE_WIDTH) && info.lineWidth != 1.0f) {
+        return unsupported("lineWidth is " + std::to_string(info.lineWidth) + "; wideLines is not supported");
+    }
+    return {};
+}
+
+Status readViewports(const VkPipelineViewportStateCreateInfo* info, PipelineState& result) {
+    if (info == nullptr) return invalidArgument("pViewportState must be given");
+    if (info->viewportCount > kMaxViewports) return aboveLimit("viewportCount", info->viewportCount, kMaxViewports);
+    if (info->scissorCount > kMaxViewports) return aboveLimit("scissorCount", info->scissorCount, kMaxViewports);
+    result.fixed.viewportCount = std::max(1u, info->viewportCount);
+    if (!isDynamic(result, VK_DYNAMIC_STATE_VIEWPORT) && info->pViewports != nullptr) {
+        std::copy_n(info->pViewports, info->viewportCount, result.fixed.viewports.begin());
+    }
+    if (!isDynamic(result, VK_DYNAMIC_STATE_SCISSOR) && info->pScissors != nullptr) {
+        std::copy_n(info->pScissors, info->scissorCount, result.fixed.scissors.begin());
+    }
+    return {};
+}
+
+Status readMultisample(const VkPipelineMultisampleStateCreateInfo* info, GraphicsState& state) {
+    if (info == nullptr) return invalidArgument("pMultisampleState must be given");
+    state.samples = static_cast<uint32_t>(info->rasterizationSamples);
+    if (state.samples != 1 && state.samples != kMaxSamples) {
+        return unsupported("rasterizationSamples is " + std::to_string(state.samples) + "; supported are 1 and 4");
+    }
+    state.sampleMask = info->pSampleMask != nullptr ? info->pSampleMask[0] : ~0u;
+    state.sampleShading = info->sampleShadingEnable != VK_FALSE;
+    state.minSampleShading = info->minSampleShading;
+    state.alphaToCoverage = info->alphaToCoverageEnable != VK_FALSE;
+    state.alphaToOne = info->alphaToOneEnable != VK_FALSE;
+    return {};
+}
+
+DynamicState::StencilFace stencilFace(const VkStencilOpState& from) {
+    return {from.compareMask, from.writeMask, from.reference};
+}
+
+Status readDepthStencil(const VkPipelineDepthStencilStateCreateInfo* info, PipelineState& result) {
+    if (info == nullptr) return invalidArgument("pDepthStencilState must be given: the subpass has such an attachment");
+    GraphicsState& state = result.state;
+    state.depthTest = info->depthTestEnable != VK_FALSE;
+    state.depthWrite = info->depthWriteEnable != VK_FALSE;
+    state.depthCompare = info->depthCompareOp;
+    state.depthBoundsTest = info->depthBoundsTestEnable != VK_FALSE;
+    state.stencilTest = info->stencilTestEnable != VK_FALSE;
+    state.stencilFront = info->front;
+    state.stencilBack = info->back;
+    result.fixed.stencilFront = stencilFace(info->front);
+    result.fixed.stencilBack = stencilFace(info->back);
+    result.fixed.minDepthBounds = info->minDepthBounds;
+    result.fixed.maxDepthBounds = info->maxDepthBounds;
+    return {};
+}
+
+Status readBlend(const VkPipelineColorBlendStateCreateInfo* info, const SubpassFormats& formats, PipelineState& result) {
+    if (info == nullptr) return invalidArgument("pColorBlendState must be given: the subpass has colour attachments");
+    if (info->attachmentCount != formats.colorCount) {
+        return invalidArgument("pColorBlendState->attachmentCount is " + std::to_string(info->attachmentCount) +
+                               "; the subpass has " + std::to_string(formats.colorCount));
+    }
+    result.state.logicOpEnable = info->logicOpEnable != VK_FALSE;
+    result.state.logicOp = info->logicOp;
+    std::copy_n(info->pAttachments, info->attachmentCount, result.state.blend.begin());
+    std::copy_n(info->blendConstants, result.fixed.blendConstants.size(), result.fixed.blendConstants.begin());
+    return {};
+}
+
+void setFormats(const SubpassFormats& formats, GraphicsState& state) {
+    state.colorCount = formats.colorCount;
+    std::copy_n(formats.colors, formats.colorCount, state.colorFormats.begin());
+    state.depthStencilFormat = formats.depthStencil;
+}
+
+}  // namespace
+
+Result<PipelineState> pipelineState(const VkGraphicsPipelineCreateInfo& info) {
+    PipelineState result;
+    if (info.renderPass == VK_NULL_HANDLE || info.subpass >= object(info.renderPass)->subpasses.size()) {
+        return invalidArgument("renderPass and subpass must name a subpass");
+    }
+    if (info.pRasterizationState == nullptr) return invalidArgument("pRasterizationState must be given");
+    const SubpassFormats formats = object(info.renderPass)->formats(info.subpass);
+    setFormats(formats, result.state);
+    if (Status s = readDynamicStates(info.pDynamicState, result); !s) return s.error();
+    if (Status s = readVertexInput(info, result.state); !s) return s.error();
+    if (Status s = readRasterization(*info.pRasterizationState, result); !s) return s.error();
+    if (result.state.rasterizerDiscard) {
+        if (formats.samples != 0) result.state.samples = formats.samples;
+        return result;
+    }
+    if (Status s = readViewports(info.pViewportState, result); !s) return s.error();
+    if (Status s = readMultisample(info.pMultisampleState, result.state); !s) return s.error();
+    if (formats.samples != 0 && formats.samples != result.state.samples) {
+        return invalidArgument("rasterizationSamples is " + std::to_string(result.state.samples) +
+                               "; the attachments have " + std::to_string(formats.samples));
+    }
+    if (formats.depthStencil != VK_FORMAT_UNDEFINED) {
+        if (Status s = readDepthStencil(info.pDepthStencilState, result); !s) return s.error();
+    }
+    const bool anyColor = std::any_of(formats.colors, formats.colors + formats.colorCount,
+                                      [](VkFormat format) { return format != VK_FORMAT_UNDEFINED; });
+    if (anyColor) {
+        if (Status s = readBlend(info.pColorBlendState, formats, result); !s) return s.error();
+    }
+    return result;
+}
+
+}  // namespace vernier::vulkan

@@ -1,0 +1,205 @@
+#include "api/vulkan/render_pass.h"
+
+#include <algorithm>
+#include <string>
+
+#include "api/vulkan/allocation.h"
+#include "api/vulkan/device.h"
+#include "api/vulkan/entry_points.h"
+#include "runtime/resource/image.h"
+
+namespace vernier::vulkan {
+namespace {
+
+std::vector<uint32_t> indices(uint32_t count, const VkAttachmentReference* references) {
+    std::vector<uint32_t> result;
+    for (uint32_t i = 0; i < count && references != nullptr; ++i) result.push_back(references[i].attachment);
+    return result;
+}
+
+Status checkReferences(const char* what, uint32_t subpass, const std::vector<uint32_t>& references, size_t count) {
+    for (const uint32_t index : references) {
+        if (index == VK_ATTACHMENT_UNUSED || index < count) continue;
+        return invalidArgument("subpass " + std::to_string(subpass) + ": " + what + " " + std::to_string(index) +
+                               " does not exist; there are " + std::to_string(count) + " attachments");
+    }
+    return {};
+}
+
+void markUses(RenderPassObject& pass) {
+    for (uint32_t i = 0; i < pass.subpasses.size(); ++i) {
+        const auto mark = [&](uint32_t index) {
+            if (index == VK_ATTACHMENT_UNUSED) return;
+            auto& attachment = pass.attachments[index];
+            if (attachment.firstUse == kNoSubpass) attachment.firstUse = i;
+            attachment.lastUse = i;
+        };
+        std::ranges::for_each(pass.subpasses[i].colors, mark);
+        mark(pass.subpasses[i].depthStencil);
+    }
+}
+
+/// A clear happens when a rendering begins, so that an attachment to be cleared cannot be read before it is drawn to.
+Status checkInputs(const RenderPassObject& pass) {
+    for (uint32_t i = 0; i < pass.subpasses.size(); ++i) {
+        for (const uint32_t index : pass.subpasses[i].inputs) {
+            if (index == VK_ATTACHMENT_UNUSED || pass.attachments[index].firstUse <= i) continue;
+            const VkAttachmentDescription& description = pass.attachments[index].description;
+            if (description.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR ||
+                description.stencilLoadOp == VK_ATTACHMENT_LOAD_OP_CLEAR) {
+                return unsupported("subpass " + std::to_string(i) + " reads attachment " + std::to_string(index) +
+                                   ", which is to be cleared, before any subpass draws to it");
+            }
+        }
+    }
+    return {};
+}
+
+Result<RenderPassObject> makeRenderPass(const VkRenderPassCreateInfo& info) {
+    RenderPassObject pass;
+    for (uint32_t i = 0; i < info.attachmentCount; ++i) pass.attachments.push_back({info.pAttachments[i]});
+    for (uint32_t i = 0; i < info.subpassCount; ++i) {
+        const VkSubpassDescription& from = info.pSubpasses[i];
+        if (from.pipelineBindPoint != VK_PIPELINE_BIND_POINT_GRAPHICS) {
+            return unsupported("subpass " + std::to_string(i) + ": pipelineBindPoint must be GRAPHICS");
+        }
+        if (from.colorAttachmentCount > kMaxColorAttachments) {
+            return invalidArgument("subpass " + std::to_string(i) + ": colorAttachmentCount " +
+                                   std::to_string(from.colorAttachmentCount) + " is above maxColorAttachments");
+        }
+        Subpass& to = pass.subpasses.emplace_back();
+        to.colors = indices(from.colorAttachmentCount, from.pColorAttachments);
+        to.resolves = indices(from.colorAttachmentCount, from.pResolveAttachments);
+        to.inputs = indices(from.inputAttachmentCount, from.pInputAttachments);
+        if (from.pDepthStencilAttachment != nullptr) to.depthStencil = from.pDepthStencilAttachment->attachment;
+        const size_t count = pass.attachments.size();
+        if (Status s = checkReferences("colour attachment", i, to.colors, count); !s) return s.error();
+        if (Status s = checkReferences("resolve attachment", i, to.resolves, count); !s) return s.error();
+        if (Status s = checkReferences("input attachment", i, to.inputs, count); !s) return s.error();
+        if (Status s = checkReferences("depth-stencil attachment", i, {to.depthStencil}, count); !s) return s.error();
+    }
+    markUses(pass);
+    if (Status s = checkInputs(pass); !s) return s.error();
+    return pass;
+}
+
+Status checkFramebuffer(const RenderPassObject& pass, const VkFramebufferCreateInfo& info) {
+    if (info.attachmentCount != pass.attachments.size()) {
+        return invalidArgument("attachmentCount is " + std::to_string(info.attachmentCount) +
+                               "; the render pass has " + std::to_string(pass.attachments.size()));
+    }
+    for (uint32_t i = 0; i < info.attachmentCount; ++i) {
+        const std::string name = "attachment " + std::to_string(i);
+        const ImageView* view = object(info.pAttachments[i]);
+        if (view == nullptr) return invalidArgument(name + " is VK_NULL_HANDLE");
+        const VkExtent2D extent = view->extent();
+        if (extent.width < info.width || extent.height < info.height) {
+            return invalidArgument(name + " is smaller than the framebuffer");
+        }
+        if (view->info().range.layerCount < info.layers) {
+            return invalidArgument(name + " has fewer layers than the framebuffer");
+        }
+        const VkAttachmentDescription& description = pass.attachments[i].description;
+        if (view->info().format != description.format) {
+            return invalidArgument(name + " has the format " + nameOf(view->info().format) + "; the render pass says " +
+                                   nameOf(description.format));
+        }
+        if (view->image().info().samples != static_cast<uint32_t>(description.samples)) {
+            return invalidArgument(name + " has another sample count than the render pass says");
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+SubpassFormats RenderPassObject::formats(uint32_t subpass) const {
+    SubpassFormats result;
+    const Subpass& from = subpasses[subpass];
+    const auto use = [&](uint32_t index) {
+        if (index == VK_ATTACHMENT_UNUSED) return VK_FORMAT_UNDEFINED;
+        result.samples = static_cast<uint32_t>(attachments[index].description.samples);
+        return attachments[index].description.format;
+    };
+    result.colorCount = static_cast<uint32_t>(from.colors.size());
+    for (uint32_t i = 0; i < result.colorCount; ++i) result.colors[i] = use(from.colors[i]);
+    result.depthStencil = use(from.depthStencil);
+    return result;
+}
+
+command::BeginRendering renderingOf(const RenderPassObject& pass, const Framebuffer& framebuffer, uint32_t subpass,
+                                    const VkRect2D& area, const std::vector<VkClearValue>& clears) {
+    const Subpass& from = pass.subpasses[subpass];
+    const auto attach = [&](uint32_t index) {
+        RenderingAttachment result;
+        if (index == VK_ATTACHMENT_UNUSED) return result;
+        const auto& attachment = pass.attachments[index];
+        result.view = framebuffer.views[index];
+        result.clear = clears[index];
+        if (attachment.firstUse == subpass) {
+            result.loadOp = attachment.description.loadOp;
+            result.stencilLoadOp = attachment.description.stencilLoadOp;
+        }
+        // A later subpass may read what was stored as an input attachment, so only the attachment's end may drop it.
+        if (attachment.lastUse == subpass && subpass + 1 == pass.subpasses.size()) {
+            result.storeOp = attachment.description.storeOp;
+            result.stencilStoreOp = attachment.description.stencilStoreOp;
+        }
+        return result;
+    };
+    command::BeginRendering rendering;
+    rendering.colorCount = static_cast<uint32_t>(from.colors.size());
+    for (uint32_t i = 0; i < rendering.colorCount; ++i) {
+        rendering.colors[i] = attach(from.colors[i]);
+        if (i < from.resolves.size() && from.resolves[i] != VK_ATTACHMENT_UNUSED && rendering.colors[i].view != nullptr) {
+            rendering.colors[i].resolve = framebuffer.views[from.resolves[i]];
+        }
+    }
+    rendering.depthStencil = attach(from.depthStencil);
+    rendering.renderArea = area;
+    rendering.layers = framebuffer.layers;
+    rendering.samples = std::max(1u, pass.formats(subpass).samples);
+    return rendering;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateRenderPass(VkDevice device, const VkRenderPassCreateInfo* pCreateInfo,
+                                                const VkAllocationCallbacks* pAllocator, VkRenderPass* pRenderPass) {
+    return guarded([&] {
+        Result<RenderPassObject> pass = makeRenderPass(*pCreateInfo);
+        if (!pass) return object(device)->report("vkCreateRenderPass", pass.error());
+        return createHandle(pAllocator, pRenderPass, std::move(pass).value());
+    });
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroyRenderPass(VkDevice, VkRenderPass renderPass,
+                                             const VkAllocationCallbacks* pAllocator) {
+    destroyHandle(pAllocator, renderPass);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetRenderAreaGranularity(VkDevice, VkRenderPass, VkExtent2D* pGranularity) {
+    *pGranularity = {1, 1};
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateFramebuffer(VkDevice device, const VkFramebufferCreateInfo* pCreateInfo,
+                                                 const VkAllocationCallbacks* pAllocator,
+                                                 VkFramebuffer* pFramebuffer) {
+    return guarded([&] {
+        if (const Status status = checkFramebuffer(*object(pCreateInfo->renderPass), *pCreateInfo); !status) {
+            return object(device)->report("vkCreateFramebuffer", status.error());
+        }
+        Framebuffer framebuffer;
+        for (uint32_t i = 0; i < pCreateInfo->attachmentCount; ++i) {
+            framebuffer.views.push_back(object(pCreateInfo->pAttachments[i]));
+        }
+        framebuffer.extent = {pCreateInfo->width, pCreateInfo->height};
+        framebuffer.layers = pCreateInfo->layers;
+        return createHandle(pAllocator, pFramebuffer, std::move(framebuffer));
+    });
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroyFramebuffer(VkDevice, VkFramebuffer framebuffer,
+                                              const VkAllocationCallbacks* pAllocator) {
+    destroyHandle(pAllocator, framebuffer);
+}
+
+}  // namespace vernier::vulkan

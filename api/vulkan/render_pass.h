@@ -1,0 +1,52 @@
+// Render passes and framebuffers. A subpass becomes one rendering of the runtime: an attachment is loaded as its
+// description says in the first subpass that uses it and kept from then on.
+#pragma once
+
+#include <vector>
+
+#include "api/vulkan/handle.h"
+#include "runtime/command/commands.h"
+#include "runtime/limits.h"
+
+namespace vernier::vulkan {
+
+inline constexpr uint32_t kNoSubpass = ~0u;
+
+struct Subpass {
+    std::vector<uint32_t> colors;    // attachment indices, VK_ATTACHMENT_UNUSED
+    std::vector<uint32_t> resolves;  // empty, or one per colour
+    uint32_t depthStencil = VK_ATTACHMENT_UNUSED;
+    std::vector<uint32_t> inputs;
+};
+
+/// What a pipeline must have been made for to draw in a subpass ("Render Pass Compatibility").
+struct SubpassFormats {
+    uint32_t colorCount = 0;
+    VkFormat colors[kMaxColorAttachments] = {};
+    VkFormat depthStencil = VK_FORMAT_UNDEFINED;
+    uint32_t samples = 0;  // 0: no attachments, any
+    bool operator==(const SubpassFormats&) const = default;
+};
+
+struct RenderPassObject {
+    struct Attachment {
+        VkAttachmentDescription description{};
+        uint32_t firstUse = kNoSubpass, lastUse = kNoSubpass;  // as colour or depth/stencil attachment
+    };
+    std::vector<Attachment> attachments;
+    std::vector<Subpass> subpasses;
+
+    SubpassFormats formats(uint32_t subpass) const;
+};
+
+struct Framebuffer {
+    std::vector<const ImageView*> views;
+    VkExtent2D extent{};
+    uint32_t layers = 1;
+};
+
+/// The rendering that a subpass is. `clears` has an entry for each attachment, zeros where none was given.
+command::BeginRendering renderingOf(const RenderPassObject& pass, const Framebuffer& framebuffer, uint32_t subpass,
+                                    const VkRect2D& area, const std::vector<VkClearValue>& clears);
+
+}  // namespace vernier::vulkan

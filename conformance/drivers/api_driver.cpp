@@ -1,0 +1,245 @@
+#include "conformance/drivers/api_driver.h"
+
+#include "conformance/drivers/api_objects.h"
+#include "conformance/drivers/stopwatch.h"
+#include "conformance/drivers/try.h"
+#include "conformance/scene/scene_format.h"
+
+#include <algorithm>
+
+namespace vernier::conformance {
+namespace {
+
+struct ContextOwner {
+    VnContext context = nullptr;
+    ~ContextOwner() { vnDestroyContext(context); }
+};
+
+/// One scene in a context, from its objects to its pixels.
+class SceneRun {
+  public:
+    SceneRun(VnDevice device, VnContext context, const Scene& scene)
+        : device_(device), context_(context), scene_(scene), objects_(device, context) {}
+
+    Status prepare(double& pipelineTime) {
+        VERNIER_TRY(objects_.createResources(scene_));
+        const Stopwatch watch;
+        VERNIER_TRY(objects_.createPipelines(scene_));
+        pipelineTime = watch.milliseconds();
+        return {};
+    }
+
+    Status runFrame();
+    Result<std::vector<RenderedImage>> readBack();
+
+  private:
+    Status runPass(const ScenePass& pass);
+    Status runDraw(const SceneDraw& draw);
+    Status bindResources(const SceneDraw& draw);
+    Status runCopy(const SceneCopyImage& copy);
+    Status runBlit(const SceneBlitImage& blit);
+    Result<VnAttachment> attachment(const SceneAttachment& scene);
+
+    VnDevice device_;
+    VnContext context_;
+    const Scene& scene_;
+    ApiObjects objects_;
+};
+
+Status SceneRun::runFrame() {
+    for (const SceneStep& step : scene_.steps) {
+        if (const auto* pass = std::get_if<ScenePass>(&step)) VERNIER_TRY(runPass(*pass));
+        if (const auto* copy = std::get_if<SceneCopyImage>(&step)) VERNIER_TRY(runCopy(*copy));
+        if (const auto* blit = std::get_if<SceneBlitImage>(&step)) VERNIER_TRY(runBlit(*blit));
+        if (const auto* mips = std::get_if<SceneGenerateMips>(&step)) {
+            VERNIER_TRY_API(vnGenerateMips(context_, objects_.image(mips->image)));
+        }
+    }
+    VERNIER_TRY_API(vnFinish(context_));
+    return {};
+}
+
+Result<VnAttachment> SceneRun::attachment(const SceneAttachment& scene) {
+    VnAttachment attachment{};
+    const Result<VnView> view = objects_.attachmentView(scene_, scene.image, scene.mipLevel, scene.layer);
+    if (!view) return view.error();
+    attachment.view = view.value();
+    if (scene.resolveImage != kNone) {
+        const Result<VnView> resolve = objects_.attachmentView(scene_, scene.resolveImage, 0, 0);
+        if (!resolve) return resolve.error();
+        attachment.resolve = resolve.value();
+    }
+    attachment.loadOp = attachment.stencilLoadOp = scene.loadOp;
+    attachment.clear = scene.clear;
+    return attachment;
+}
+
+Status SceneRun::runPass(const ScenePass& pass) {
+    VnPassDesc desc{};
+    for (size_t i = 0; i < pass.colors.size(); ++i) {
+        const Result<VnAttachment> color = attachment(pass.colors[i]);
+        if (!color) return color.error();
+        desc.colors[i] = color.value();
+    }
+    if (pass.depthStencil.image != kNone) {
+        const Result<VnAttachment> depth = attachment(pass.depthStencil);
+        if (!depth) return depth.error();
+        desc.depthStencil = depth.value();
+    }
+    desc.renderArea.extent = pass.extent;
+    VERNIER_TRY_API(vnBeginPass(context_, &desc));
+    for (const SceneDraw& draw : pass.draws) VERNIER_TRY(runDraw(draw));
+    VERNIER_TRY_API(vnEndPass(context_));
+    return {};
+}
+
+Status SceneRun::bindResources(const SceneDraw& draw) {
+    for (const SceneVertexBuffer& each : draw.vertexBuffers) {
+        VERNIER_TRY_API(vnBindVertexBuffer(context_, each.binding, objects_.buffer(each.buffer), each.offset));
+    }
+    for (const SceneBinding& each : draw.bindings) {
+        if (each.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER) {
+            const Result<VnView> view = objects_.sampledView(scene_, each);
+            if (!view) return view.error();
+            VERNIER_TRY_API(
+                vnBindTexture(context_, each.set, each.binding, 0, view.value(), objects_.sampler(each.sampler)));
+        } else {
+            const uint64_t size = each.range == VK_WHOLE_SIZE ? 0 : each.range;
+            VERNIER_TRY_API(
+                vnBindBuffer(context_, each.set, each.binding, 0, objects_.buffer(each.buffer), each.offset, size));
+        }
+    }
+    if (!draw.pushConstants.empty()) {
+        VERNIER_TRY_API(vnPushConstants(context_, 0, draw.pushConstants.data(),
+                                        static_cast<uint32_t>(draw.pushConstants.size())));
+    }
+    return {};
+}
+
+Status SceneRun::runDraw(const SceneDraw& draw) {
+    const ScenePipeline& scene = scene_.pipelines[draw.pipeline];
+    const ApiPipeline& pipeline = objects_.pipeline(draw.pipeline);
+    VERNIER_TRY_API(vnBindProgram(context_, pipeline.program));
+    VERNIER_TRY_API(vnBindVertexLayout(context_, pipeline.layout));
+    VERNIER_TRY_API(vnBindRasterState(context_, pipeline.raster));
+    VERNIER_TRY_API(vnBindDepthStencilState(context_, pipeline.depthStencil));
+    VERNIER_TRY_API(vnBindBlendState(context_, pipeline.blend));
+    VERNIER_TRY_API(vnSetTopology(context_, scene.topology, scene.primitiveRestart));
+    VERNIER_TRY_API(vnSetBlendConstants(context_, scene.blendConstants.data()));
+    VERNIER_TRY_API(vnSetStencilReference(context_, scene.front.reference, scene.back.reference));
+    VERNIER_TRY_API(vnSetViewport(context_, &draw.viewport));
+    VERNIER_TRY_API(vnSetScissor(context_, &draw.scissor));
+    VERNIER_TRY(bindResources(draw));
+    if (draw.indexBuffer == kNone) {
+        VERNIER_TRY_API(vnDraw(context_, draw.count, draw.instances, draw.first, draw.firstInstance));
+        return {};
+    }
+    VERNIER_TRY_API(vnBindIndexBuffer(context_, objects_.buffer(draw.indexBuffer), draw.indexOffset, draw.indexType));
+    VERNIER_TRY_API(vnDrawIndexed(context_, draw.count, draw.instances, draw.first, draw.vertexOffset,
+                                  draw.firstInstance));
+    return {};
+}
+
+/// The region of one layer between two corners; mirrored ones cannot be said in the API.
+Result<VnRegion> regionBetween(const VkImageSubresourceLayers& layers, const VkOffset3D& low, const VkOffset3D& high) {
+    if (layers.layerCount != 1) return unsupported("copies of several layers cannot be said in the API");
+    if (high.x < low.x || high.y < low.y) return unsupported("mirrored blits cannot be said in the API");
+    VnRegion region{};
+    region.mip = layers.mipLevel;
+    region.layer = layers.baseArrayLayer;
+    region.x = static_cast<uint32_t>(low.x);
+    region.y = static_cast<uint32_t>(low.y);
+    region.width = static_cast<uint32_t>(high.x - low.x);
+    region.height = static_cast<uint32_t>(high.y - low.y);
+    return region;
+}
+
+Status SceneRun::runCopy(const SceneCopyImage& copy) {
+    const auto corner = [&](const VkOffset3D& offset) {
+        return VkOffset3D{offset.x + static_cast<int32_t>(copy.region.extent.width),
+                          offset.y + static_cast<int32_t>(copy.region.extent.height), 1};
+    };
+    const VkImageCopy& region = copy.region;
+    const Result<VnRegion> source = regionBetween(region.srcSubresource, region.srcOffset, corner(region.srcOffset));
+    if (!source) return source.error();
+    const Result<VnRegion> target = regionBetween(region.dstSubresource, region.dstOffset, corner(region.dstOffset));
+    if (!target) return target.error();
+    VERNIER_TRY_API(vnCopyImage(context_, objects_.image(copy.source), &source.value(),
+                                objects_.image(copy.destination), &target.value()));
+    return {};
+}
+
+Status SceneRun::runBlit(const SceneBlitImage& blit) {
+    const VkImageBlit& region = blit.region;
+    const Result<VnRegion> source = regionBetween(region.srcSubresource, region.srcOffsets[0], region.srcOffsets[1]);
+    if (!source) return source.error();
+    const Result<VnRegion> target = regionBetween(region.dstSubresource, region.dstOffsets[0], region.dstOffsets[1]);
+    if (!target) return target.error();
+    VERNIER_TRY_API(vnBlitImage(context_, objects_.image(blit.source), &source.value(),
+                                objects_.image(blit.destination), &target.value(), blit.filter));
+    return {};
+}
+
+Result<std::vector<RenderedImage>> SceneRun::readBack() {
+    std::vector<RenderedImage> images;
+    for (const uint32_t output : scene_.outputs) {
+        const SceneImage& scene = scene_.images[output];
+        RenderedImage image{scene.format, scene.extent, {}};
+        image.texels.resize(size_t{scene.extent.width} * scene.extent.height * sceneFormat(scene.format)->texelBytes);
+        VERNIER_TRY_API(
+            vnReadImage(context_, objects_.image(output), nullptr, image.texels.data(), image.texels.size()));
+        images.push_back(std::move(image));
+    }
+    return images;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ApiDriver>> ApiDriver::create(const ApiOptions& options) {
+    std::unique_ptr<ApiDriver> driver(new ApiDriver);
+    const Stopwatch watch;
+    VnDeviceDesc desc{};
+    desc.profile = options.profile;
+    desc.threads = options.threads;
+    if (const VnResult result = vnCreateDevice(&desc, &driver->device_); result != VN_SUCCESS) {
+        return apiError(nullptr, "vnCreateDevice", result);
+    }
+    VnDevice device_ = driver->device_;
+    VERNIER_TRY_API(vnGetDeviceInfo(device_, &driver->info_));
+    driver->startUp_ = watch.milliseconds();
+    return driver;
+}
+
+ApiDriver::~ApiDriver() { vnDestroyDevice(device_); }
+
+std::string ApiDriver::version() const {
+    return std::string(info_.version) + ", " + info_.isa + ", " + std::to_string(info_.threads) + " threads";
+}
+
+std::string ApiDriver::limits() const {
+    return "subPixelPrecisionBits " + std::to_string(info_.subPixelBits) + "\nmaxImageDimension2D " +
+           std::to_string(info_.maxImageSize) + "\n";
+}
+
+Result<std::vector<RenderedImage>> ApiDriver::render(const Scene& scene, Timing* timing) {
+    const Stopwatch watch;
+    VERNIER_TRY(validateScene(scene));
+    ContextOwner owner;
+    VERNIER_TRY_API(vnCreateContext(device_, nullptr, &owner.context));
+    SceneRun run(device_, owner.context, scene);
+    double pipelineTime = 0;
+    VERNIER_TRY(run.prepare(pipelineTime));
+    VERNIER_TRY(run.runFrame());
+    Result<std::vector<RenderedImage>> images = run.readBack();
+    if (!images || timing == nullptr) return images;
+    timing->startUp = startUp_;
+    timing->pipelines = pipelineTime;
+    timing->firstImage = startUp_ + watch.milliseconds();
+    const Result<FrameTimes> frames = measureFrames([&] { return run.runFrame(); });
+    if (!frames) return frames.error();
+    timing->frame = frames.value().median;
+    timing->frames = frames.value().count;
+    return images;
+}
+
+}  // namespace vernier::conformance

@@ -1,0 +1,37 @@
+// Runs scenes on Vernier's own C API, through nothing but its public header.
+#pragma once
+
+#include "conformance/drivers/driver.h"
+
+#include <vernier/vernier.h>
+
+#include <memory>
+
+namespace vernier::conformance {
+
+struct ApiOptions {
+    VnProfile profile = VN_PROFILE_DEFAULT;
+    uint32_t threads = 0;  // 0: one per usable CPU
+};
+
+class ApiDriver final : public Driver {
+  public:
+    static Result<std::unique_ptr<ApiDriver>> create(const ApiOptions& options);
+    ~ApiDriver() override;
+
+    std::string name() const override { return "Vernier API"; }
+    std::string version() const override;
+    std::string limits() const override;
+    /// Plans are made on first use, so that their time shows in the first image; Timing::pipelines is that of programs
+    /// and state objects.
+    Result<std::vector<RenderedImage>> render(const Scene& scene, Timing* timing) override;
+
+  private:
+    ApiDriver() = default;
+
+    VnDevice device_ = nullptr;
+    VnDeviceInfo info_{};
+    double startUp_ = 0;
+};
+
+}  // namespace vernier::conformance

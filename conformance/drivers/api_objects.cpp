@@ -1,0 +1,242 @@
+#include "conformance/drivers/api_objects.h"
+
+#include "conformance/scene/scene_format.h"
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+namespace vernier::conformance {
+namespace {
+
+/// The API's zero stands for a default: NEVER, which is Vulkan's zero, has a name of its own there.
+VkCompareOp explicitCompare(VkCompareOp op) { return op == VK_COMPARE_OP_NEVER ? VN_COMPARE_OP_NEVER : op; }
+
+VnStencilFace stencilFace(const VkStencilOpState& state) {
+    return {state.failOp,           state.passOp,           state.depthFailOp, explicitCompare(state.compareOp),
+            ~state.compareMask & 0xff, ~state.writeMask & 0xff};
+}
+
+bool allFactorsZero(const VkPipelineColorBlendAttachmentState& state) {
+    constexpr auto kZero = VK_BLEND_FACTOR_ZERO;
+    return state.srcColorBlendFactor == kZero && state.dstColorBlendFactor == kZero &&
+           state.srcAlphaBlendFactor == kZero && state.dstAlphaBlendFactor == kZero;
+}
+
+}  // namespace
+
+Error apiError(VnDevice device, std::string_view call, VnResult result) {
+    std::string text(device != nullptr ? vnGetError(device, nullptr, 0) : 0, '\0');
+    if (!text.empty()) vnGetError(device, text.data(), text.size() + 1);
+    const ErrorCode code = result == VN_ERROR_UNSUPPORTED     ? ErrorCode::unsupported
+                           : result == VN_ERROR_OUT_OF_MEMORY ? ErrorCode::outOfDeviceMemory
+                           : result == VN_ERROR_DEVICE_LOST   ? ErrorCode::deviceLost
+                                                              : ErrorCode::invalidArgument;
+    return {code, std::string(call.substr(0, call.find('('))) + ": VnResult " +
+                      std::to_string(static_cast<int>(result)) + ": " + text};
+}
+
+ApiObjects::~ApiObjects() {
+    for (const auto& [desc, view] : views_) vnDestroyView(device_, view);
+    for (const ApiPipeline& pipeline : pipelines_) {
+        vnDestroyProgram(device_, pipeline.program);
+        vnDestroyVertexLayout(device_, pipeline.layout);
+        vnDestroyRasterState(device_, pipeline.raster);
+        vnDestroyDepthStencilState(device_, pipeline.depthStencil);
+        vnDestroyBlendState(device_, pipeline.blend);
+    }
+    for (const VnShader shader : shaders_) vnDestroyShader(device_, shader);
+    for (const VnSampler sampler : samplers_) vnDestroySampler(device_, sampler);
+    for (const VnImage image : images_) vnDestroyImage(device_, image);
+    for (const VnBuffer buffer : buffers_) vnDestroyBuffer(device_, buffer);
+}
+
+Status ApiObjects::createResources(const Scene& scene) {
+    for (const SceneBuffer& each : scene.buffers) {
+        VnBufferDesc desc{};
+        desc.size = each.data.size();
+        desc.data = each.data.data();
+        VnBuffer buffer{};
+        VERNIER_TRY_API(vnCreateBuffer(device_, &desc, &buffer));
+        buffers_.push_back(buffer);
+    }
+    for (const SceneImage& each : scene.images) {
+        if (Status status = createImage(each); !status) return status;
+    }
+    for (const SceneSampler& each : scene.samplers) {
+        if (Status status = createSampler(each); !status) return status;
+    }
+    return {};
+}
+
+Status ApiObjects::createImage(const SceneImage& scene) {
+    VnImageDesc desc{};
+    desc.format = scene.format;
+    desc.width = scene.extent.width;
+    desc.height = scene.extent.height;
+    desc.mipLevels = scene.mipLevels;
+    desc.layers = scene.arrayLayers;
+    desc.samples = scene.samples;
+    VnImage image{};
+    VERNIER_TRY_API(vnCreateImage(device_, &desc, &image));
+    images_.push_back(image);
+    for (size_t i = 0; i < scene.data.size(); ++i) {
+        if (scene.data[i].empty()) continue;
+        VnRegion region{};
+        region.mip = static_cast<uint32_t>(i / scene.arrayLayers);
+        region.layer = static_cast<uint32_t>(i % scene.arrayLayers);
+        VERNIER_TRY_API(vnUpdateImage(context_, image, &region, scene.data[i].data(), scene.data[i].size()));
+    }
+    return {};
+}
+
+Status ApiObjects::createSampler(const SceneSampler& scene) {
+    // With a highest level of 0 Vulkan always magnifies; the API says it by a view of one level, which may minify.
+    if (scene.maxLod == 0 && scene.magFilter != scene.minFilter) {
+        return unsupported("a sampler of maxLod 0 with two filters cannot be said in the API");
+    }
+    VnSamplerDesc desc{};
+    desc.magFilter = scene.magFilter;
+    desc.minFilter = scene.minFilter;
+    desc.mipmapMode = scene.mipmapMode;
+    desc.addressU = scene.addressModeU;
+    desc.addressV = scene.addressModeV;
+    desc.lodBias = scene.mipLodBias;
+    desc.minLod = scene.minLod;
+    desc.maxLod = scene.maxLod == VK_LOD_CLAMP_NONE ? 0 : scene.maxLod;
+    desc.compareEnable = scene.compareEnable;
+    desc.compareOp = scene.compareOp;
+    desc.borderColor = scene.borderColor;
+    VnSampler sampler{};
+    VERNIER_TRY_API(vnCreateSampler(device_, &desc, &sampler));
+    samplers_.push_back(sampler);
+    return {};
+}
+
+Status ApiObjects::createPipelines(const Scene& scene) {
+    for (const SceneShader& each : scene.shaders) {
+        if (Status status = createShader(each); !status) return status;
+    }
+    for (const ScenePipeline& each : scene.pipelines) {
+        const Result<ApiPipeline> pipeline = createPipeline(each);
+        if (!pipeline) return pipeline.error();
+        pipelines_.push_back(pipeline.value());
+    }
+    return {};
+}
+
+Status ApiObjects::createShader(const SceneShader& scene) {
+    std::vector<VnSpecialization> constants;
+    for (const VkSpecializationMapEntry& entry : scene.specialization) {
+        if (entry.size != sizeof(uint32_t)) {
+            return unsupported("specialization constant " + std::to_string(entry.constantID) + " has " +
+                               std::to_string(entry.size) + " bytes; the API takes 4");
+        }
+        VnSpecialization constant{entry.constantID, 0};
+        std::memcpy(&constant.bits, scene.specializationData.data() + entry.offset, sizeof constant.bits);
+        constants.push_back(constant);
+    }
+    VnShaderDesc desc{};
+    desc.stage = scene.stage;
+    desc.words = scene.spirv.data();
+    desc.wordCount = scene.spirv.size();
+    desc.specializations = constants.data();
+    desc.specializationCount = static_cast<uint32_t>(constants.size());
+    VnShader shader{};
+    VERNIER_TRY_API(vnCreateShader(device_, &desc, &shader));
+    shaders_.push_back(shader);
+    return {};
+}
+
+Result<ApiPipeline> ApiObjects::createPipeline(const ScenePipeline& scene) {
+    ApiPipeline pipeline;
+    VnProgramDesc program{};
+    program.vertex = shaders_[scene.vertexShader];
+    if (scene.fragmentShader != kNone) program.fragment = shaders_[scene.fragmentShader];
+    VERNIER_TRY_API(vnCreateProgram(device_, &program, &pipeline.program));
+
+    std::vector<VnVertexBinding> bindings;
+    for (const VkVertexInputBindingDescription& each : scene.vertexBindings) {
+        if (bindings.size() <= each.binding) bindings.resize(each.binding + 1);
+        bindings[each.binding] = {each.stride, each.inputRate == VK_VERTEX_INPUT_RATE_INSTANCE};
+    }
+    std::vector<VnVertexAttribute> attributes;
+    for (const VkVertexInputAttributeDescription& each : scene.vertexAttributes) {
+        attributes.push_back({each.location, each.binding, each.format, each.offset});
+    }
+    VnVertexLayoutDesc layout{};
+    layout.attributes = attributes.data();
+    layout.attributeCount = static_cast<uint32_t>(attributes.size());
+    layout.bindings = bindings.data();
+    layout.bindingCount = static_cast<uint32_t>(bindings.size());
+    VERNIER_TRY_API(vnCreateVertexLayout(device_, &layout, &pipeline.layout));
+
+    VnRasterStateDesc raster{};
+    raster.polygonMode = scene.polygonMode;
+    raster.cullMode = scene.cullMode;
+    raster.frontFace = scene.frontFace;
+    raster.depthClamp = scene.depthClamp;
+    raster.depthBias = scene.depthBias;
+    raster.depthBiasConstant = scene.depthBiasConstant;
+    raster.depthBiasSlope = scene.depthBiasSlope;
+    raster.depthBiasClamp = scene.depthBiasClamp;
+    raster.sampleMaskOff = ~scene.sampleMask;
+    raster.alphaToCoverage = scene.alphaToCoverage;
+    VERNIER_TRY_API(vnCreateRasterState(device_, &raster, &pipeline.raster));
+
+    VnDepthStencilStateDesc depth{};
+    depth.depthTest = scene.depthTest;
+    depth.depthWrite = scene.depthTest && scene.depthWrite;  // Vulkan ignores the second without the first
+    depth.depthCompare = explicitCompare(scene.depthCompare);
+    depth.stencilTest = scene.stencilTest;
+    depth.front = stencilFace(scene.front);
+    depth.back = stencilFace(scene.back);
+    VERNIER_TRY_API(vnCreateDepthStencilState(device_, &depth, &pipeline.depthStencil));
+
+    VnBlendStateDesc blend{};
+    blend.independent = 1;
+    for (size_t i = 0; i < scene.blend.size(); ++i) {
+        const VkPipelineColorBlendAttachmentState& from = scene.blend[i];
+        if (from.blendEnable == VK_TRUE && allFactorsZero(from)) {
+            return unsupported("blending with four factors ZERO cannot be said in the API");
+        }
+        blend.attachments[i] = {from.blendEnable == VK_TRUE, from.srcColorBlendFactor, from.dstColorBlendFactor,
+                                from.colorBlendOp,           from.srcAlphaBlendFactor, from.dstAlphaBlendFactor,
+                                from.alphaBlendOp,           ~from.colorWriteMask & 0xf};
+    }
+    VERNIER_TRY_API(vnCreateBlendState(device_, &blend, &pipeline.blend));
+    return pipeline;
+}
+
+Result<VnView> ApiObjects::attachmentView(const Scene& scene, uint32_t image, uint32_t mipLevel, uint32_t layer) {
+    VnViewDesc desc{};
+    desc.image = images_[image];
+    desc.aspect = sceneFormat(scene.images[image].format)->aspects;
+    desc.baseMip = mipLevel;
+    desc.mipCount = 1;
+    desc.baseLayer = layer;
+    desc.layerCount = 1;
+    return view(desc);
+}
+
+Result<VnView> ApiObjects::sampledView(const Scene& scene, const SceneBinding& binding) {
+    VnViewDesc desc{};
+    desc.image = images_[binding.image];
+    desc.mipCount = scene.samplers[binding.sampler].maxLod == 0 ? 1 : 0;
+    return view(desc);
+}
+
+Result<VnView> ApiObjects::view(const VnViewDesc& desc) {
+    const auto known = std::find_if(views_.begin(), views_.end(), [&](const auto& each) {
+        return each.first.image.id == desc.image.id && each.first.aspect == desc.aspect &&
+               each.first.baseMip == desc.baseMip && each.first.mipCount == desc.mipCount &&
+               each.first.baseLayer == desc.baseLayer && each.first.layerCount == desc.layerCount;
+    });
+    if (known != views_.end()) return known->second;
+    VnView view{};
+    VERNIER_TRY_API(vnCreateView(device_, &desc, &view));
+    views_.emplace_back(desc, view);
+    return view;
+}
+
+}  // namespace vernier::conformance

@@ -1,0 +1,186 @@
+#include "conformance/drivers/vulkan_context.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace vernier::conformance {
+namespace {
+
+std::string resultName(VkResult result) {
+    switch (result) {
+#define VERNIER_NAME(name) \
+    case name: return #name;
+        VERNIER_NAME(VK_NOT_READY)
+        VERNIER_NAME(VK_TIMEOUT)
+        VERNIER_NAME(VK_INCOMPLETE)
+        VERNIER_NAME(VK_ERROR_OUT_OF_HOST_MEMORY)
+        VERNIER_NAME(VK_ERROR_OUT_OF_DEVICE_MEMORY)
+        VERNIER_NAME(VK_ERROR_INITIALIZATION_FAILED)
+        VERNIER_NAME(VK_ERROR_DEVICE_LOST)
+        VERNIER_NAME(VK_ERROR_MEMORY_MAP_FAILED)
+        VERNIER_NAME(VK_ERROR_LAYER_NOT_PRESENT)
+        VERNIER_NAME(VK_ERROR_EXTENSION_NOT_PRESENT)
+        VERNIER_NAME(VK_ERROR_FEATURE_NOT_PRESENT)
+        VERNIER_NAME(VK_ERROR_INCOMPATIBLE_DRIVER)
+        VERNIER_NAME(VK_ERROR_TOO_MANY_OBJECTS)
+        VERNIER_NAME(VK_ERROR_FORMAT_NOT_SUPPORTED)
+        VERNIER_NAME(VK_ERROR_FRAGMENTED_POOL)
+        VERNIER_NAME(VK_ERROR_UNKNOWN)
+        VERNIER_NAME(VK_ERROR_INVALID_SHADER_NV)
+#undef VERNIER_NAME
+        default: return "VkResult " + std::to_string(static_cast<int>(result));
+    }
+}
+
+}  // namespace
+
+Error vulkanError(std::string_view call, VkResult result) {
+    ErrorCode code = ErrorCode::invalidArgument;
+    switch (result) {
+        case VK_ERROR_OUT_OF_HOST_MEMORY: code = ErrorCode::outOfHostMemory; break;
+        case VK_ERROR_OUT_OF_DEVICE_MEMORY: code = ErrorCode::outOfDeviceMemory; break;
+        case VK_ERROR_DEVICE_LOST: code = ErrorCode::deviceLost; break;
+        case VK_ERROR_LAYER_NOT_PRESENT:
+        case VK_ERROR_EXTENSION_NOT_PRESENT:
+        case VK_ERROR_FEATURE_NOT_PRESENT:
+        case VK_ERROR_FORMAT_NOT_SUPPORTED:
+        case VK_ERROR_INCOMPATIBLE_DRIVER: code = ErrorCode::unsupported; break;
+        default: break;
+    }
+    // Only the function's name: the arguments are this file's own words.
+    return {code, std::string(call.substr(0, call.find('('))) + ": " + resultName(result)};
+}
+
+Status VulkanContext::create(const VulkanOptions& options) {
+    VERNIER_TRY(createInstance(options.validate));
+    return createDevice(options.deviceIndex);
+}
+
+Status VulkanContext::createInstance(bool validate) {
+    // Absent in a Vulkan 1.0 loader.
+    const auto enumerateVersion = reinterpret_cast<PFN_vkEnumerateInstanceVersion>(
+        vkGetInstanceProcAddr(VK_NULL_HANDLE, "vkEnumerateInstanceVersion"));
+    if (enumerateVersion != nullptr) enumerateVersion(&instanceVersion_);
+    // 1.1 is asked for where there is one only for its viewports of negative height.
+    instanceVersion_ = std::min<uint32_t>(instanceVersion_, VK_API_VERSION_1_1);
+
+    VkApplicationInfo application{};
+    application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
+    application.pApplicationName = "vernier-conformance";
+    application.apiVersion = instanceVersion_;
+    VkDebugUtilsMessengerCreateInfoEXT messenger{};
+    messenger.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
+    messenger.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+    messenger.messageType =
+        VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
+    messenger.pfnUserCallback = &VulkanContext::onMessage;
+    messenger.pUserData = this;
+    const char* layer = "VK_LAYER_KHRONOS_validation";
+    const char* extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+    VkInstanceCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+    info.pApplicationInfo = &application;
+    if (validate) {
+        info.pNext = &messenger;
+        info.enabledLayerCount = 1;
+        info.ppEnabledLayerNames = &layer;
+        info.enabledExtensionCount = 1;
+        info.ppEnabledExtensionNames = &extension;
+    }
+    VERNIER_TRY_VK(vkCreateInstance(&info, nullptr, &instance_));
+    cleanup_.add([this] { vkDestroyInstance(instance_, nullptr); });
+    if (!validate) return {};
+    const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
+        vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
+    const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
+        vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
+    VkDebugUtilsMessengerEXT handle = VK_NULL_HANDLE;
+    VERNIER_TRY_VK(create(instance_, &messenger, nullptr, &handle));
+    cleanup_.add([this, destroy, handle] { destroy(instance_, handle, nullptr); });
+    return {};
+}
+
+VkBool32 VulkanContext::onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT types,
+                                  const VkDebugUtilsMessengerCallbackDataEXT* data, void* context) {
+    // The loader reports other drivers' missing libraries as general errors: not a matter of the scene.
+    if ((types & VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT) != 0) {
+        static_cast<VulkanContext*>(context)->validationErrors_ += std::string(data->pMessage) + "\n";
+    }
+    return VK_FALSE;
+}
+
+Status VulkanContext::createDevice(uint32_t deviceIndex) {
+    uint32_t count = 0;
+    VERNIER_TRY_VK(vkEnumeratePhysicalDevices(instance_, &count, nullptr));
+    std::vector<VkPhysicalDevice> devices(count);
+    VERNIER_TRY_VK(vkEnumeratePhysicalDevices(instance_, &count, devices.data()));
+    if (deviceIndex >= count) {
+        return unsupported("physical device " + std::to_string(deviceIndex) + ": the loader offers " +
+                           std::to_string(count));
+    }
+    physicalDevice_ = devices[deviceIndex];
+    vkGetPhysicalDeviceProperties(physicalDevice_, &properties_);
+    vkGetPhysicalDeviceFeatures(physicalDevice_, &features_);
+    vkGetPhysicalDeviceMemoryProperties(physicalDevice_, &memory_);
+
+    uint32_t familyCount = 0;
+    vkGetPhysicalDeviceQueueFamilyProperties(physicalDevice_, &familyCount, nullptr);
+    std::vector<VkQueueFamilyProperties> families(familyCount);
+    vkGetPhysicalDeviceQueueFamilyProperties(physicalDevice_, &familyCount, families.data());
+    const auto family = std::find_if(families.begin(), families.end(), [](const VkQueueFamilyProperties& each) {
+        return (each.queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0;
+    });
+    if (family == families.end()) return unsupported(std::string(properties_.deviceName) + " has no graphics queue");
+    queueFamily_ = static_cast<uint32_t>(family - families.begin());
+
+    negativeViewports_ = instanceVersion_ >= VK_API_VERSION_1_1 && properties_.apiVersion >= VK_API_VERSION_1_1;
+    const char* maintenance = VK_KHR_MAINTENANCE_1_EXTENSION_NAME;
+    bool useMaintenance = false;
+    if (!negativeViewports_) {
+        uint32_t extensionCount = 0;
+        VERNIER_TRY_VK(vkEnumerateDeviceExtensionProperties(physicalDevice_, nullptr, &extensionCount, nullptr));
+        std::vector<VkExtensionProperties> extensions(extensionCount);
+        VERNIER_TRY_VK(
+            vkEnumerateDeviceExtensionProperties(physicalDevice_, nullptr, &extensionCount, extensions.data()));
+        useMaintenance = std::any_of(extensions.begin(), extensions.end(), [&](const VkExtensionProperties& each) {
+            return std::strcmp(each.extensionName, maintenance) == 0;
+        });
+        negativeViewports_ = useMaintenance;
+    }
+
+    // Robust access costs time that the other runs of a scene do not pay.
+    features_.robustBufferAccess = VK_FALSE;
+    const float priority = 1;
+    VkDeviceQueueCreateInfo queueInfo{};
+    queueInfo.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+    queueInfo.queueFamilyIndex = queueFamily_;
+    queueInfo.queueCount = 1;
+    queueInfo.pQueuePriorities = &priority;
+    VkDeviceCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+    info.queueCreateInfoCount = 1;
+    info.pQueueCreateInfos = &queueInfo;
+    info.pEnabledFeatures = &features_;
+    info.enabledExtensionCount = useMaintenance ? 1 : 0;
+    info.ppEnabledExtensionNames = &maintenance;
+    VERNIER_TRY_VK(vkCreateDevice(physicalDevice_, &info, nullptr, &device_));
+    cleanup_.add([this] { vkDestroyDevice(device_, nullptr); });
+    vkGetDeviceQueue(device_, queueFamily_, 0, &queue_);
+    return {};
+}
+
+VkFormatProperties VulkanContext::formatProperties(VkFormat format) const {
+    VkFormatProperties properties{};
+    vkGetPhysicalDeviceFormatProperties(physicalDevice_, format, &properties);
+    return properties;
+}
+
+Result<uint32_t> VulkanContext::memoryType(uint32_t typeBits, VkMemoryPropertyFlags flags) const {
+    for (uint32_t i = 0; i < memory_.memoryTypeCount; ++i) {
+        if ((typeBits >> i & 1) != 0 && (memory_.memoryTypes[i].propertyFlags & flags) == flags) return i;
+    }
+    return unsupported("no memory type among bits " + std::to_string(typeBits) + " has properties " +
+                       std::to_string(flags));
+}
+
+}  // namespace vernier::conformance

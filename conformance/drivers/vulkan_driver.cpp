@@ -1,0 +1,258 @@
+#include "conformance/drivers/vulkan_driver.h"
+
+#include "conformance/drivers/stopwatch.h"
+#include "conformance/drivers/vulkan_passes.h"
+#include "conformance/drivers/vulkan_resources.h"
+#include "conformance/scene/scene_format.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+
+namespace vernier::conformance {
+namespace {
+
+/// One scene on the device, from its resources to its pixels.
+class SceneRun {
+  public:
+    SceneRun(VulkanContext& context, const Scene& scene)
+        : context_(context), scene_(scene), resources_(context), builder_(context, resources_, scene) {}
+
+    Status prepare() {
+        VERNIER_TRY(resources_.create(scene_));
+        for (const SceneStep& step : scene_.steps) {
+            const auto* pass = std::get_if<ScenePass>(&step);
+            if (pass == nullptr) continue;
+            Result<VulkanPass> built = builder_.build(*pass);
+            if (!built) return built.error();
+            passes_.push_back(std::move(*built));
+        }
+        return record();
+    }
+
+    Status runFrame() { return resources_.run(frame_); }
+    Result<std::vector<RenderedImage>> readBack();
+    double pipelineTime() const { return builder_.pipelineTime(); }
+
+  private:
+    Status record();
+    void recordPass(const ScenePass& scene, const VulkanPass& pass);
+    void recordDraw(const SceneDraw& scene, const VulkanDraw& draw, const VulkanPipeline& pipeline);
+    void recordMips(const SceneGenerateMips& mips);
+    void recordCopy(const SceneCopyImage& copy);
+    void recordBlit(const SceneBlitImage& blit);
+    void useForTransfer(uint32_t image, const VkImageSubresourceLayers& layers, ImageUse use) {
+        resources_.use(frame_, image, use, layers.mipLevel, 1, layers.baseArrayLayer, layers.layerCount);
+    }
+
+    VulkanContext& context_;
+    const Scene& scene_;
+    VulkanResources resources_;
+    VulkanPassBuilder builder_;
+    std::vector<VulkanPass> passes_;
+    VkCommandBuffer frame_ = VK_NULL_HANDLE;
+};
+
+Status SceneRun::record() {
+    const Result<VkCommandBuffer> commands = resources_.beginCommands();
+    if (!commands) return commands.error();
+    frame_ = *commands;
+    resources_.startFrame();
+    size_t nextPass = 0;
+    for (const SceneStep& step : scene_.steps) {
+        if (const auto* pass = std::get_if<ScenePass>(&step)) recordPass(*pass, passes_[nextPass++]);
+        if (const auto* mips = std::get_if<SceneGenerateMips>(&step)) recordMips(*mips);
+        if (const auto* copy = std::get_if<SceneCopyImage>(&step)) recordCopy(*copy);
+        if (const auto* blit = std::get_if<SceneBlitImage>(&step)) recordBlit(*blit);
+    }
+    resources_.endFrame(frame_);
+    VERNIER_TRY_VK(vkEndCommandBuffer(frame_));
+    return {};
+}
+
+void SceneRun::recordPass(const ScenePass& scene, const VulkanPass& pass) {
+    for (const SceneDraw& draw : scene.draws) {
+        for (const SceneBinding& each : draw.bindings) {
+            if (each.image != kNone) resources_.useAll(frame_, each.image, ImageUse::sampled);
+        }
+    }
+    for (const SceneAttachment& color : scene.colors) {
+        resources_.use(frame_, color.image, ImageUse::colorAttachment, color.mipLevel, 1, color.layer, 1);
+        if (color.resolveImage != kNone) {
+            resources_.use(frame_, color.resolveImage, ImageUse::colorAttachment, 0, 1, 0, 1);
+        }
+    }
+    const SceneAttachment& depth = scene.depthStencil;
+    if (depth.image != kNone) {
+        resources_.use(frame_, depth.image, ImageUse::depthAttachment, depth.mipLevel, 1, depth.layer, 1);
+    }
+    VkRenderPassBeginInfo begin{};
+    begin.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
+    begin.renderPass = pass.renderPass;
+    begin.framebuffer = pass.framebuffer;
+    begin.renderArea = {{0, 0}, scene.extent};
+    begin.clearValueCount = static_cast<uint32_t>(pass.clears.size());
+    begin.pClearValues = pass.clears.data();
+    vkCmdBeginRenderPass(frame_, &begin, VK_SUBPASS_CONTENTS_INLINE);
+    for (size_t i = 0; i < scene.draws.size(); ++i) {
+        recordDraw(scene.draws[i], pass.draws[i], pass.pipelines[pass.draws[i].pipeline]);
+    }
+    vkCmdEndRenderPass(frame_);
+}
+
+void SceneRun::recordDraw(const SceneDraw& scene, const VulkanDraw& draw, const VulkanPipeline& pipeline) {
+    vkCmdBindPipeline(frame_, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.handle);
+    vkCmdSetViewport(frame_, 0, 1, &scene.viewport);
+    vkCmdSetScissor(frame_, 0, 1, &scene.scissor);
+    if (!draw.sets.empty()) {
+        vkCmdBindDescriptorSets(frame_, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.layout, 0,
+                                static_cast<uint32_t>(draw.sets.size()), draw.sets.data(), 0, nullptr);
+    }
+    if (!scene.pushConstants.empty()) {
+        vkCmdPushConstants(frame_, pipeline.layout, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                           static_cast<uint32_t>(scene.pushConstants.size()), scene.pushConstants.data());
+    }
+    for (const SceneVertexBuffer& vertices : scene.vertexBuffers) {
+        const VkBuffer buffer = resources_.buffer(vertices.buffer);
+        vkCmdBindVertexBuffers(frame_, vertices.binding, 1, &buffer, &vertices.offset);
+    }
+    if (scene.indexBuffer == kNone) {
+        vkCmdDraw(frame_, scene.count, scene.instances, scene.first, scene.firstInstance);
+        return;
+    }
+    vkCmdBindIndexBuffer(frame_, resources_.buffer(scene.indexBuffer), scene.indexOffset, scene.indexType);
+    vkCmdDrawIndexed(frame_, scene.count, scene.instances, scene.first, scene.vertexOffset, scene.firstInstance);
+}
+
+void SceneRun::recordMips(const SceneGenerateMips& mips) {
+    const SceneImage& image = scene_.images[mips.image];
+    const auto end = [&](uint32_t mip) {
+        return VkOffset3D{static_cast<int32_t>(std::max(1u, image.extent.width >> mip)),
+                          static_cast<int32_t>(std::max(1u, image.extent.height >> mip)), 1};
+    };
+    const VkImageAspectFlags aspects = sceneFormat(image.format)->aspects;
+    for (uint32_t mip = 1; mip < image.mipLevels; ++mip) {
+        recordBlit({mips.image, mips.image,
+                    {{aspects, mip - 1, 0, image.arrayLayers}, {{0, 0, 0}, end(mip - 1)},
+                     {aspects, mip, 0, image.arrayLayers}, {{0, 0, 0}, end(mip)}},
+                    VK_FILTER_LINEAR});
+    }
+}
+
+void SceneRun::recordCopy(const SceneCopyImage& copy) {
+    useForTransfer(copy.source, copy.region.srcSubresource, ImageUse::transferSource);
+    useForTransfer(copy.destination, copy.region.dstSubresource, ImageUse::transferDestination);
+    vkCmdCopyImage(frame_, resources_.image(copy.source), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                   resources_.image(copy.destination), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy.region);
+}
+
+void SceneRun::recordBlit(const SceneBlitImage& blit) {
+    useForTransfer(blit.source, blit.region.srcSubresource, ImageUse::transferSource);
+    useForTransfer(blit.destination, blit.region.dstSubresource, ImageUse::transferDestination);
+    vkCmdBlitImage(frame_, resources_.image(blit.source), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                   resources_.image(blit.destination), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit.region,
+                   blit.filter);
+}
+
+Result<std::vector<RenderedImage>> SceneRun::readBack() {
+    const Result<VkCommandBuffer> commands = resources_.beginCommands();
+    if (!commands) return commands.error();
+    std::vector<VulkanBuffer> buffers;
+    std::vector<RenderedImage> images;
+    for (const uint32_t output : scene_.outputs) {
+        const SceneImage& scene = scene_.images[output];
+        const SceneFormat& format = *sceneFormat(scene.format);
+        RenderedImage image{scene.format, scene.extent, {}};
+        image.texels.resize(size_t{scene.extent.width} * scene.extent.height * format.texelBytes);
+        const Result<VulkanBuffer> buffer =
+            resources_.createHostBuffer(image.texels.size(), VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+        if (!buffer) return buffer.error();
+        resources_.use(*commands, output, ImageUse::transferSource, 0, 1, 0, 1);
+        VkBufferImageCopy region{};
+        region.imageSubresource = {format.aspects & ~VkImageAspectFlags{VK_IMAGE_ASPECT_STENCIL_BIT}, 0, 0, 1};
+        region.imageExtent = {scene.extent.width, scene.extent.height, 1};
+        vkCmdCopyImageToBuffer(*commands, resources_.image(output), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                               buffer->handle, 1, &region);
+        buffers.push_back(*buffer);
+        images.push_back(std::move(image));
+    }
+    VkMemoryBarrier barrier{};
+    barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+    barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+    barrier.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
+    vkCmdPipelineBarrier(*commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &barrier, 0,
+                         nullptr, 0, nullptr);
+    VERNIER_TRY_VK(vkEndCommandBuffer(*commands));
+    VERNIER_TRY(resources_.run(*commands));
+    for (size_t i = 0; i < images.size(); ++i) {
+        std::memcpy(images[i].texels.data(), buffers[i].mapped, images[i].texels.size());
+    }
+    return images;
+}
+
+bool hasNegativeViewport(const Scene& scene) {
+    return std::any_of(scene.steps.begin(), scene.steps.end(), [](const SceneStep& step) {
+        const auto* pass = std::get_if<ScenePass>(&step);
+        return pass != nullptr && std::any_of(pass->draws.begin(), pass->draws.end(),
+                                              [](const SceneDraw& draw) { return draw.viewport.height < 0; });
+    });
+}
+
+}  // namespace
+
+Result<std::unique_ptr<VulkanDriver>> VulkanDriver::create(const VulkanOptions& options) {
+    std::unique_ptr<VulkanDriver> driver(new VulkanDriver);
+    const Stopwatch watch;
+    if (Status status = driver->context_.create(options); !status) return status.error();
+    driver->startUp_ = watch.milliseconds();
+    return driver;
+}
+
+std::string VulkanDriver::name() const { return context_.properties().deviceName; }
+
+std::string VulkanDriver::version() const {
+    const VkPhysicalDeviceProperties& properties = context_.properties();
+    const auto dotted = [](uint32_t version) {
+        return std::to_string(VK_API_VERSION_MAJOR(version)) + "." + std::to_string(VK_API_VERSION_MINOR(version)) +
+               "." + std::to_string(VK_API_VERSION_PATCH(version));
+    };
+    return "driver " + dotted(properties.driverVersion) + ", Vulkan " + dotted(properties.apiVersion);
+}
+
+std::string VulkanDriver::limits() const {
+    const VkPhysicalDeviceLimits& limits = context_.properties().limits;
+    const auto line = [](const char* name, auto value) { return std::string(name) + " " + std::to_string(value) + "\n"; };
+    return line("subPixelPrecisionBits", limits.subPixelPrecisionBits) +
+           line("subTexelPrecisionBits", limits.subTexelPrecisionBits) +
+           line("mipmapPrecisionBits", limits.mipmapPrecisionBits) +
+           line("viewportSubPixelBits", limits.viewportSubPixelBits) +
+           line("maxImageDimension2D", limits.maxImageDimension2D) +
+           line("standardSampleLocations", limits.standardSampleLocations);
+}
+
+Result<std::vector<RenderedImage>> VulkanDriver::render(const Scene& scene, Timing* timing) {
+    const Stopwatch watch;
+    VERNIER_TRY(validateScene(scene));
+    if (hasNegativeViewport(scene) && !context_.hasNegativeViewports()) {
+        return unsupported("viewports of negative height: the device has neither Vulkan 1.1 nor VK_KHR_maintenance1");
+    }
+    SceneRun run(context_, scene);
+    VERNIER_TRY(run.prepare());
+    VERNIER_TRY(run.runFrame());
+    Result<std::vector<RenderedImage>> images = run.readBack();
+    if (images && timing != nullptr) {
+        timing->startUp = startUp_;
+        timing->pipelines = run.pipelineTime();
+        timing->firstImage = startUp_ + watch.milliseconds();
+        const Result<FrameTimes> frames = measureFrames([&] { return run.runFrame(); });
+        if (!frames) return frames.error();
+        timing->frame = frames.value().median;
+        timing->frames = frames.value().count;
+    }
+    if (!context_.validationErrors().empty()) {
+        return invalidArgument("validation errors:\n" + context_.validationErrors());
+    }
+    return images;
+}
+
+}  // namespace vernier::conformance

@@ -1,0 +1,56 @@
+// A scene's render passes, framebuffers, pipelines and descriptor sets on a Vulkan device.
+#pragma once
+
+#include "conformance/drivers/vulkan_resources.h"
+#include "conformance/scene/scene.h"
+
+#include <vector>
+
+namespace vernier::conformance {
+
+struct VulkanPipeline {
+    std::vector<VkDescriptorSetLayout> setLayouts;
+    VkPipelineLayout layout = VK_NULL_HANDLE;
+    VkPipeline handle = VK_NULL_HANDLE;
+};
+
+struct VulkanDraw {
+    size_t pipeline = 0;  // into VulkanPass::pipelines
+    std::vector<VkDescriptorSet> sets;
+};
+
+struct VulkanPass {
+    VkRenderPass renderPass = VK_NULL_HANDLE;
+    VkFramebuffer framebuffer = VK_NULL_HANDLE;
+    std::vector<VkClearValue> clears;
+    std::vector<VulkanPipeline> pipelines;
+    std::vector<VulkanDraw> draws;  // one per ScenePass::draws
+};
+
+/// Makes passes ready to record. Everything is destroyed with the resources.
+class VulkanPassBuilder {
+  public:
+    VulkanPassBuilder(VulkanContext& context, VulkanResources& resources, const Scene& scene)
+        : context_(context), resources_(resources), scene_(scene) {}
+
+    Result<VulkanPass> build(const ScenePass& pass);
+
+    /// Milliseconds spent in creating shader modules and pipelines.
+    double pipelineTime() const { return pipelineTime_; }
+
+  private:
+    Status createRenderPass(const ScenePass& scene, VulkanPass& pass);
+    Result<VulkanPipeline> createPipeline(const SceneDraw& draw, VkRenderPass renderPass);
+    Status createLayouts(const SceneDraw& draw, VulkanPipeline& pipeline);
+    Result<VkShaderModule> shaderModule(uint32_t index);
+    Result<std::vector<VkDescriptorSet>> createSets(const SceneDraw& draw, const VulkanPipeline& pipeline);
+    Status checkFeatures(const ScenePipeline& scene) const;
+
+    VulkanContext& context_;
+    VulkanResources& resources_;
+    const Scene& scene_;
+    std::vector<VkShaderModule> modules_;
+    double pipelineTime_ = 0;
+};
+
+}  // namespace vernier::conformance

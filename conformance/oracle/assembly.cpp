@@ -1,0 +1,196 @@
+#include "conformance/oracle/assembly.h"
+
+#include "conformance/oracle/quantise.h"
+
+#include <cstring>
+#include <optional>
+#include <string>
+
+namespace vernier::conformance::exact {
+
+namespace {
+
+using Interpreter = reference::Interpreter<double>;
+using Values = reference::InterfaceValues<double>;
+
+struct VertexFetcher {
+    const Scene& scene;
+    const SceneDraw& draw;
+    const ScenePipeline& pipeline;
+
+    // Reads outside the buffer give 0, as with robust access.
+    Values fetch(uint32_t vertexIndex, uint32_t instance) const {
+        Values values;
+        for (const VkVertexInputAttributeDescription& attribute : pipeline.vertexAttributes) {
+            const PixelFormat* format = findPixelFormat(attribute.format);
+            reference::Texel<double> texel = defaults(format);
+            const std::byte* bytes = address(attribute, vertexIndex, instance, format);
+            if (bytes) {
+                for (const Component& c : format->all()) {
+                    const uint64_t code = extractBits(bytes, c.offset, c.bits);
+                    const double number = decodeNumber(c, code);
+                    texel[c.channel] = format->isInteger() ? integer(number) : reference::Scalar<double>::ofNumber(number);
+                }
+            }
+            values.locations[attribute.location] = texel;
+        }
+        return values;
+    }
+
+    static reference::Scalar<double> integer(double number) {
+        return reference::Scalar<double>::ofBits(static_cast<uint32_t>(static_cast<int64_t>(number)));
+    }
+
+    static reference::Texel<double> defaults(const PixelFormat* format) {
+        reference::Texel<double> texel{};
+        texel[3] = format && format->isInteger() ? integer(1) : reference::Scalar<double>::ofNumber(1);
+        return texel;
+    }
+
+    const std::byte* address(const VkVertexInputAttributeDescription& attribute, uint32_t vertexIndex, uint32_t instance,
+                             const PixelFormat* format) const {
+        if (!format) return nullptr;
+        for (const VkVertexInputBindingDescription& binding : pipeline.vertexBindings) {
+            if (binding.binding != attribute.binding) continue;
+            for (const SceneVertexBuffer& source : draw.vertexBuffers) {
+                if (source.binding != binding.binding || source.buffer >= scene.buffers.size()) continue;
+                const Bytes& data = scene.buffers[source.buffer].data;
+                const uint64_t element = binding.inputRate == VK_VERTEX_INPUT_RATE_INSTANCE ? instance : vertexIndex;
+                const uint64_t offset = source.offset + element * binding.stride + attribute.offset;
+                return offset + format->bytes <= data.size() ? data.data() + offset : nullptr;
+            }
+        }
+        return nullptr;
+    }
+};
+
+// The draw's vertex numbers in order; nothing marks a primitive restart.
+std::vector<std::optional<uint32_t>> vertexOrder(const Scene& scene, const SceneDraw& draw, const ScenePipeline& pipeline) {
+    std::vector<std::optional<uint32_t>> order;
+    for (uint32_t i = 0; i < draw.count; ++i) {
+        if (draw.indexBuffer == kNone) {
+            order.push_back(draw.first + i);
+            continue;
+        }
+        const size_t size = draw.indexType == VK_INDEX_TYPE_UINT32 ? 4 : draw.indexType == VK_INDEX_TYPE_UINT8_EXT ? 1 : 2;
+        const Bytes& data = scene.buffers[draw.indexBuffer].data;
+        const uint64_t offset = draw.indexOffset + (uint64_t{draw.first} + i) * size;
+        const uint64_t index = offset + size <= data.size()
+                                   ? extractBits(data.data() + offset, 0, static_cast<unsigned>(size * 8))
+                                   : 0;
+        const bool restart = pipeline.primitiveRestart && index == (uint64_t{1} << (size * 8)) - 1;
+        if (restart) {
+            order.push_back(std::nullopt);
+        } else {
+            order.push_back(static_cast<uint32_t>(index) + static_cast<uint32_t>(draw.vertexOffset));
+        }
+    }
+    return order;
+}
+
+Result<ShadedVertex> shadeVertex(const Interpreter& shader, Values inputs, uint32_t vertexIndex, uint32_t instance,
+                                 const SceneDraw& draw, ShaderResources& resources) {
+    const auto set = [&inputs](spv::BuiltIn builtin, uint32_t value) { inputs.setInt(builtin, static_cast<int32_t>(value)); };
+    set(spv::BuiltInVertexIndex, vertexIndex);
+    set(spv::BuiltInInstanceIndex, instance);
+    set(spv::BuiltInBaseVertex, draw.indexBuffer == kNone ? draw.first : static_cast<uint32_t>(draw.vertexOffset));
+    set(spv::BuiltInBaseInstance, draw.firstInstance);
+    set(spv::BuiltInDrawIndex, 0);
+    const auto outcome = shader.run(inputs, resources);
+    if (!outcome) return outcome.error();
+    ShadedVertex vertex;
+    const auto& builtins = outcome->outputs.builtins;
+    if (const auto position = builtins.find(spv::BuiltInPosition); position != builtins.end()) {
+        for (size_t i = 0; i < 4 && i < position->second.size(); ++i) vertex.position[i] = position->second[i].number;
+    }
+    if (const auto clip = builtins.find(spv::BuiltInClipDistance); clip != builtins.end()) {
+        for (const auto& distance : clip->second) vertex.clipDistances.push_back(distance.number);
+    }
+    vertex.varyings = outcome->outputs.locations;
+    return vertex;
+}
+
+}  // namespace
+
+Result<reference::Module> parseShader(const SceneShader& shader) {
+    reference::Module::Specialization specialization;
+    for (const VkSpecializationMapEntry& entry : shader.specialization) {
+        if (entry.offset + entry.size > shader.specializationData.size() || entry.size > 8) {
+            return invalidArgument("oracle: specialization constant " + std::to_string(entry.constantID) +
+                                   " reaches outside its data");
+        }
+        uint64_t value = 0;
+        std::memcpy(&value, shader.specializationData.data() + entry.offset, entry.size);
+        specialization[entry.constantID] = value;
+    }
+    return reference::Module::parse(shader.spirv, specialization);
+}
+
+std::vector<std::array<uint32_t, 3>> trianglesOf(VkPrimitiveTopology topology, uint32_t count) {
+    std::vector<std::array<uint32_t, 3>> result;
+    switch (topology) {
+        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST:
+            for (uint32_t i = 0; i + 2 < count; i += 3) result.push_back({i, i + 1, i + 2});
+            break;
+        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP:
+            for (uint32_t i = 0; i + 2 < count; ++i) result.push_back({i, i + 1 + i % 2, i + 2 - i % 2});
+            break;
+        default:  // fan
+            for (uint32_t i = 0; i + 2 < count; ++i) result.push_back({i + 1, i + 2, 0});
+            break;
+    }
+    return result;
+}
+
+Result<DrawGeometry> assembleDraw(const Scene& scene, const SceneDraw& draw, ShaderResources& resources) {
+    const ScenePipeline& pipeline = scene.pipelines[draw.pipeline];
+    if (pipeline.topology != VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST &&
+        pipeline.topology != VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP && pipeline.topology != VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN) {
+        return unsupported("oracle: pipeline " + std::to_string(draw.pipeline) + ": topology " +
+                           std::to_string(pipeline.topology) + " is not triangles");
+    }
+    for (const VkVertexInputAttributeDescription& attribute : pipeline.vertexAttributes) {
+        if (!findPixelFormat(attribute.format)) {
+            return unsupported("oracle: vertex attribute at location " + std::to_string(attribute.location) +
+                               " has format " + std::to_string(attribute.format) + ", which is not in the oracle's table");
+        }
+    }
+    const auto module = parseShader(scene.shaders[pipeline.vertexShader]);
+    if (!module) return module.error();
+    const auto shader = Interpreter::create(*module, spv::ExecutionModelVertex);
+    if (!shader) return shader.error();
+
+    const VertexFetcher fetcher{scene, draw, pipeline};
+    const auto order = vertexOrder(scene, draw, pipeline);
+    DrawGeometry geometry;
+    for (uint32_t i = 0; i < draw.instances; ++i) {
+        const uint32_t instance = draw.firstInstance + i;
+        std::map<uint32_t, uint32_t> shaded;  // vertex number -> index into geometry.vertices
+        std::vector<uint32_t> run;            // vertices since the last restart
+        uint32_t primitiveId = 0;
+        const auto flush = [&] {
+            for (const auto& t : trianglesOf(pipeline.topology, static_cast<uint32_t>(run.size()))) {
+                geometry.triangles.push_back({run[t[0]], run[t[1]], run[t[2]]});
+                geometry.primitiveIds.push_back(primitiveId++);
+            }
+            run.clear();
+        };
+        for (const std::optional<uint32_t>& number : order) {
+            if (!number) {
+                flush();
+                continue;
+            }
+            const auto [entry, fresh] = shaded.try_emplace(*number, static_cast<uint32_t>(geometry.vertices.size()));
+            if (fresh) {
+                auto vertex = shadeVertex(*shader, fetcher.fetch(*number, instance), *number, instance, draw, resources);
+                if (!vertex) return vertex.error();
+                geometry.vertices.push_back(std::move(*vertex));
+            }
+            run.push_back(entry->second);
+        }
+        flush();
+    }
+    return geometry;
+}
+
+}  // namespace vernier::conformance::exact

@@ -1,0 +1,58 @@
+// The oracle's images: every texel of every level, layer and sample as a range of permitted values.
+#pragma once
+
+#include "base/result.h"
+#include "conformance/oracle/interval.h"
+#include "conformance/oracle/oracle.h"
+#include "conformance/oracle/pixel_format.h"
+#include "conformance/scene/scene.h"
+
+#include <vector>
+
+namespace vernier::conformance::exact {
+
+/// Colour, or depth in channel 0 and stencil in channel 1; flags of OracleFlag.
+struct StoredTexel {
+    Color channels{};
+    uint8_t flags = 0;
+};
+
+/// One level of one layer; samples of a pixel are consecutive.
+struct ImageLevel {
+    VkExtent2D extent{};
+    uint32_t samples = 1;
+    std::vector<StoredTexel> texels;
+
+    StoredTexel& at(uint32_t x, uint32_t y, uint32_t sample = 0) {
+        return texels[(static_cast<size_t>(y) * extent.width + x) * samples + sample];
+    }
+    const StoredTexel& at(uint32_t x, uint32_t y, uint32_t sample = 0) const {
+        return const_cast<ImageLevel*>(this)->at(x, y, sample);
+    }
+};
+
+class ImageStore {
+  public:
+    /// Takes over the image's initial contents; texels without any are flagged kOracleUnknown.
+    static Result<ImageStore> create(const SceneImage& image);
+
+    const PixelFormat& format() const { return *format_; }
+    uint32_t mipLevels() const { return mipLevels_; }
+    uint32_t arrayLayers() const { return arrayLayers_; }
+
+    ImageLevel& level(uint32_t mip, uint32_t layer) { return levels_[mip * arrayLayers_ + layer]; }
+    const ImageLevel& level(uint32_t mip, uint32_t layer) const { return levels_[mip * arrayLayers_ + layer]; }
+
+  private:
+    const PixelFormat* format_ = nullptr;
+    uint32_t mipLevels_ = 1, arrayLayers_ = 1;
+    std::vector<ImageLevel> levels_;
+};
+
+/// Stores a colour: each channel that the format has is quantised, the others read back as 0, alpha as 1.
+Color quantiseColor(const PixelFormat& format, const Color& color);
+
+/// Average of the samples of a pixel. sRGB may be averaged in linear or in encoded space, integers may be any one sample.
+StoredTexel resolveSamples(const PixelFormat& format, const ImageLevel& source, uint32_t x, uint32_t y);
+
+}  // namespace vernier::conformance::exact

@@ -1,0 +1,240 @@
+#include "conformance/oracle/sample_states.h"
+
+#include "conformance/oracle/blending.h"
+#include "conformance/oracle/quantise.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace vernier::conformance::exact {
+
+namespace {
+
+// States beyond this number are united, which loses their edge decisions but stays on the permitting side.
+constexpr size_t kMaxStates = 8;
+
+struct Answer {
+    bool value = false, open = false;
+};
+
+bool holds(VkCompareOp op, double a, double b) {
+    switch (op) {
+        case VK_COMPARE_OP_NEVER: return false;
+        case VK_COMPARE_OP_LESS: return a < b;
+        case VK_COMPARE_OP_EQUAL: return a == b;
+        case VK_COMPARE_OP_LESS_OR_EQUAL: return a <= b;
+        case VK_COMPARE_OP_GREATER: return a > b;
+        case VK_COMPARE_OP_NOT_EQUAL: return a != b;
+        case VK_COMPARE_OP_GREATER_OR_EQUAL: return a >= b;
+        default: return true;
+    }
+}
+
+Answer compareDepth(VkCompareOp op, const Interval& fragment, const Interval& stored, bool sameTriangle) {
+    if (op == VK_COMPARE_OP_NEVER || op == VK_COMPARE_OP_ALWAYS) return {op == VK_COMPARE_OP_ALWAYS, false};
+    if (sameTriangle) return {holds(op, 0, 0), false};
+    const bool value = holds(op, fragment.value, stored.value);
+    if (fragment.high < stored.low || fragment.low > stored.high || (fragment.isExact() && stored.isExact())) {
+        return {value, false};
+    }
+    // Touching ranges with one common point still decide the inclusive or exclusive comparison.
+    if (fragment.low == stored.high && (op == VK_COMPARE_OP_LESS || op == VK_COMPARE_OP_GREATER_OR_EQUAL)) return {value, false};
+    if (fragment.high == stored.low && (op == VK_COMPARE_OP_GREATER || op == VK_COMPARE_OP_LESS_OR_EQUAL)) return {value, false};
+    return {value, true};
+}
+
+uint8_t applyStencilOp(VkStencilOp op, uint8_t stored, uint8_t reference) {
+    switch (op) {
+        case VK_STENCIL_OP_ZERO: return 0;
+        case VK_STENCIL_OP_REPLACE: return reference;
+        case VK_STENCIL_OP_INCREMENT_AND_CLAMP: return static_cast<uint8_t>(stored == 255 ? 255 : stored + 1);
+        case VK_STENCIL_OP_DECREMENT_AND_CLAMP: return static_cast<uint8_t>(stored == 0 ? 0 : stored - 1);
+        case VK_STENCIL_OP_INVERT: return static_cast<uint8_t>(~stored);
+        case VK_STENCIL_OP_INCREMENT_AND_WRAP: return static_cast<uint8_t>(stored + 1);
+        case VK_STENCIL_OP_DECREMENT_AND_WRAP: return static_cast<uint8_t>(stored - 1);
+        default: return stored;
+    }
+}
+
+void updateStencil(const VkStencilOpState& state, VkStencilOp op, SampleState& s) {
+    const auto reference = static_cast<uint8_t>(state.reference), mask = static_cast<uint8_t>(state.writeMask);
+    const uint8_t updated = applyStencilOp(op, s.stencil, reference);
+    s.stencil = static_cast<uint8_t>((s.stencil & ~mask) | (updated & mask));
+}
+
+Color clampForFormat(const PixelFormat& format, Color color) {
+    const Encoding encoding = format.components[0].encoding;
+    const bool fixed = encoding == Encoding::unorm || encoding == Encoding::srgb || encoding == Encoding::snorm;
+    if (!fixed) return color;
+    for (Interval& c : color) c = c.clamped(encoding == Encoding::snorm ? -1 : 0, 1);
+    return color;
+}
+
+void writeColors(const OutputState& output, const FragmentResult& fragment, SampleState& s) {
+    for (size_t i = 0; i < output.colorCount; ++i) {
+        const PixelFormat* format = output.colorFormats[i];
+        if (!format || i >= output.pipeline->blend.size()) continue;
+        const VkPipelineColorBlendAttachmentState& state = output.pipeline->blend[i];
+        uint32_t present = 0;
+        for (const Component& c : format->all()) present |= 1u << c.channel;
+        const uint32_t mask = state.colorWriteMask & present;
+        if (mask == 0) continue;
+        const Color source = clampForFormat(*format, fragment.colors[i]);
+        Color result = source;
+        const bool blend = state.blendEnable && !format->isInteger();
+        if (blend) {
+            Color constants;
+            for (size_t c = 0; c < 4; ++c) constants[c] = static_cast<double>(output.pipeline->blendConstants[c]);
+            constants = clampForFormat(*format, constants);
+            const Color source1 = clampForFormat(*format, fragment.source1.value_or(Color{}));
+            for (size_t c = 0; c < 4; ++c) {
+                result[c] = blendComponent(state, c, source, s.colors[i], constants, source1);
+            }
+        }
+        uint8_t& flags = s.flags[i];
+        if (!blend && mask == present) flags = 0;
+        flags |= fragment.colorFlags[i];
+        for (const Component& c : format->all()) {
+            if (!(mask & (1u << c.channel))) continue;
+            if (result[c.channel].isNan()) flags |= kOracleUnknown;
+            s.colors[i][c.channel] = quantise(c, result[c.channel]);
+        }
+    }
+}
+
+class Splitter {
+  public:
+    Splitter(const OutputState& output, const SampleInput& input) : output_(output), input_(input) {}
+
+    void add(SampleState state, bool nominal) {
+        for (size_t i = 0; i < states_.size(); ++i) {
+            if (!states_[i].sameContents(state)) continue;
+            // Keep what both know.
+            std::erase_if(states_[i].decisions, [&](const EdgeDecision& d) {
+                return std::ranges::find(state.decisions, d) == state.decisions.end();
+            });
+            if (nominal) makeFirst(i);
+            return;
+        }
+        states_.push_back(std::move(state));
+        if (nominal) makeFirst(states_.size() - 1);
+        if (states_.size() > kMaxStates) uniteLastTwo();
+    }
+
+    // One state meets the triangle.
+    void process(const SampleState& before, bool nominal) {
+        SampleState state = before;
+        const SampleVerdict& verdict = input_.verdict;
+        for (uint32_t i = 0; i < verdict.edgeCount; ++i) {
+            const OpenEdge& edge = verdict.edges[i];
+            const auto known = std::ranges::find(state.decisions, edge.key, &EdgeDecision::key);
+            if (known != state.decisions.end()) {
+                if (known->side == edge.insideSide) continue;
+                add(std::move(state), nominal);
+                return;
+            }
+            SampleState outside = state;
+            outside.decisions.push_back({edge.key, !edge.insideSide});
+            add(std::move(outside), nominal && !edge.nominalInside);
+            state.decisions.push_back({edge.key, edge.insideSide});
+            nominal = nominal && edge.nominalInside;
+        }
+        splitOff(state, nominal, verdict.openAsWhole, verdict.nominalAsWhole);
+        splitOff(state, nominal, verdict.cutOpen, verdict.cutNominal);
+        splitOff(state, nominal, input_.coverageOpen, true);
+        splitOff(state, nominal, input_.fragment->discardOpen, !input_.fragment->discarded);
+        if (input_.fragment->discarded && !input_.fragment->discardOpen) {
+            add(std::move(state), nominal);
+            return;
+        }
+        testAndWrite(std::move(state), nominal);
+    }
+
+    Sample take() { return std::move(states_); }
+
+  private:
+    void makeFirst(size_t index) {
+        if (index != 0) std::swap(states_[0], states_[index]);
+    }
+
+    // The uncovered alternative of an open question goes its own way.
+    void splitOff(const SampleState& state, bool& nominal, bool open, bool covered) {
+        if (!open) return;
+        add(state, nominal && !covered);
+        nominal = nominal && covered;
+    }
+
+    void testAndWrite(SampleState state, bool nominal) {
+        const ScenePipeline& pipeline = *output_.pipeline;
+        const VkStencilOpState& stencil = input_.frontFacing ? pipeline.front : pipeline.back;
+        const bool stencilTest = pipeline.stencilTest && output_.depthFormat && output_.depthFormat->stencil;
+        const bool depthTest = pipeline.depthTest && output_.depthFormat && output_.depthFormat->depth;
+        if (stencilTest) {
+            const auto masked = [&stencil](uint32_t v) { return static_cast<double>(v & stencil.compareMask & 0xff); };
+            if (!holds(stencil.compareOp, masked(stencil.reference), masked(state.stencil))) {
+                updateStencil(stencil, stencil.failOp, state);
+                add(std::move(state), nominal);
+                return;
+            }
+        }
+        Interval depth = input_.fragment->depth.value_or(input_.depth);
+        if (pipeline.depthClamp) {
+            const auto [low, high] = std::minmax(output_.viewport.minDepth, output_.viewport.maxDepth);
+            depth = depth.clamped(low, high);
+        }
+        if (output_.depthFormat && output_.depthFormat->depth) depth = quantise(output_.depthFormat->components[0], depth);
+        Answer passes{true, false};
+        if (depthTest) {
+            const bool same = input_.depthOrigin != 0 && input_.depthOrigin == state.depthOrigin && !input_.fragment->depth;
+            passes = compareDepth(pipeline.depthCompare, depth, state.depth, same);
+        }
+        if (passes.open || !passes.value) {
+            SampleState failed = state;
+            if (stencilTest) updateStencil(stencil, stencil.depthFailOp, failed);
+            add(std::move(failed), nominal && !passes.value);
+        }
+        if (passes.open || passes.value) {
+            if (stencilTest) updateStencil(stencil, stencil.passOp, state);
+            if (depthTest && pipeline.depthWrite) {
+                state.depth = depth;
+                state.depthOrigin = input_.fragment->depth ? 0 : input_.depthOrigin;
+                state.flags[kDepthFlags] &= static_cast<uint8_t>(~kOracleUnknown);
+            }
+            writeColors(output_, *input_.fragment, state);
+            add(std::move(state), nominal && passes.value);
+        }
+    }
+
+    void uniteLastTwo() {
+        SampleState last = std::move(states_.back());
+        states_.pop_back();
+        SampleState& into = states_.back();
+        for (size_t i = 0; i < kMaxColorAttachments; ++i) {
+            for (size_t c = 0; c < 4; ++c) into.colors[i][c] = into.colors[i][c].united(last.colors[i][c]);
+        }
+        into.depth = into.depth.united(last.depth);
+        if (into.depthOrigin != last.depthOrigin) into.depthOrigin = 0;
+        const uint8_t lost = into.stencil == last.stencil ? kOracleEdge : kOracleEdge | kOracleUnknown;
+        for (size_t i = 0; i < into.flags.size(); ++i) into.flags[i] |= last.flags[i] | lost;
+        into.decisions.clear();
+    }
+
+    const OutputState& output_;
+    const SampleInput& input_;
+    Sample states_;
+};
+
+}  // namespace
+
+bool SampleState::sameContents(const SampleState& other) const {
+    return stencil == other.stencil && depth == other.depth && depthOrigin == other.depthOrigin && flags == other.flags &&
+           colors == other.colors;
+}
+
+void applyTriangle(const OutputState& output, const SampleInput& input, Sample& sample) {
+    Splitter splitter(output, input);
+    for (size_t i = 0; i < sample.size(); ++i) splitter.process(sample[i], i == 0);
+    sample = splitter.take();
+}
+
+}  // namespace vernier::conformance::exact

@@ -1,0 +1,147 @@
+#include "conformance/oracle/shader_resources.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vernier::conformance::exact {
+
+namespace {
+
+SampleQuery queryOf(const reference::ImageRequest<double>& r) {
+    SampleQuery q;
+    q.s = r.coordinates[0];
+    q.t = r.shape.dim == spv::Dim1D ? 0.5 : r.coordinates[1];
+    if (r.shape.arrayed) q.layer = r.coordinates[r.shape.dim == spv::Dim1D ? 1 : 2];
+    for (size_t i = 0; i < 2; ++i) {
+        q.ddx[i] = r.ddx[i];
+        q.ddy[i] = r.ddy[i];
+        q.offset[i] = r.offset[i];
+    }
+    if (r.lodMode == reference::LodMode::explicitLod) q.lod = r.lod;
+    q.bias = r.bias;
+    if (r.minLod) q.minLod = *r.minLod;
+    q.dref = r.dref;
+    return q;
+}
+
+}  // namespace
+
+ShaderResources::ShaderResources(const Scene& scene, const std::vector<ImageStore>& images, const SceneDraw& draw)
+    : scene_(scene), images_(images), draw_(draw), pushConstants_(draw.pushConstants) {
+    for (const SceneBinding& binding : draw.bindings) {
+        Bytes bytes;
+        if (binding.buffer < scene.buffers.size()) {
+            const Bytes& data = scene.buffers[binding.buffer].data;
+            const size_t begin = std::min<size_t>(binding.offset, data.size());
+            const size_t length = std::min<size_t>(binding.range, data.size() - begin);
+            bytes.assign(data.begin() + static_cast<ptrdiff_t>(begin), data.begin() + static_cast<ptrdiff_t>(begin + length));
+        }
+        buffers_.push_back(std::move(bytes));
+    }
+}
+
+const SceneBinding* ShaderResources::find(const reference::Descriptor& descriptor) const {
+    const auto found = std::ranges::find_if(draw_.bindings, [&](const SceneBinding& b) {
+        return b.set == descriptor.set && b.binding == descriptor.binding;
+    });
+    return found == draw_.bindings.end() || descriptor.arrayIndex != 0 ? nullptr : &*found;
+}
+
+const ImageStore* ShaderResources::imageOf(const reference::Descriptor& descriptor) const {
+    const SceneBinding* binding = find(descriptor);
+    return binding && binding->image < images_.size() ? &images_[binding->image] : nullptr;
+}
+
+const SceneSampler* ShaderResources::samplerOf(const reference::Descriptor& descriptor) const {
+    const SceneBinding* binding = find(descriptor);
+    return binding && binding->sampler < scene_.samplers.size() ? &scene_.samplers[binding->sampler] : nullptr;
+}
+
+std::span<std::byte> ShaderResources::buffer(reference::BufferKind kind, const reference::Descriptor& descriptor) {
+    if (kind == reference::BufferKind::pushConstants) return pushConstants_;
+    if (kind == reference::BufferKind::storage) wrote = true;
+    const SceneBinding* binding = find(descriptor);
+    if (!binding) return {};
+    return buffers_[static_cast<size_t>(binding - draw_.bindings.data())];
+}
+
+reference::Texel<double> ShaderResources::deliver(const SampleResult& result, const reference::ImageShape& shape) {
+    flags |= result.flags;
+    reference::Texel<double> texel;
+    for (size_t c = 0; c < 4; ++c) {
+        const Interval& v = result.color[c];
+        sawRange = sawRange || !v.isExact();
+        const double number = end == RangeEnd::nominal ? v.value : end == RangeEnd::low ? v.low : v.high;
+        texel[c] = shape.floating ? reference::Scalar<double>::ofNumber(number)
+                                  : reference::Scalar<double>::ofBits(static_cast<uint32_t>(static_cast<int64_t>(number)));
+    }
+    return texel;
+}
+
+reference::Texel<double> ShaderResources::sample(const reference::ImageRequest<double>& request) {
+    const ImageStore* image = imageOf(request.image);
+    const SceneSampler* sampler = samplerOf(request.sampler);
+    if (!image || !sampler || (request.shape.dim != spv::Dim2D && request.shape.dim != spv::Dim1D)) {
+        flags |= kOracleUnknown;
+        return {};
+    }
+    return deliver(sampleImage(*image, *sampler, queryOf(request)), request.shape);
+}
+
+reference::Texel<double> ShaderResources::gather(const reference::ImageRequest<double>& request) {
+    const ImageStore* image = imageOf(request.image);
+    const SceneSampler* sampler = samplerOf(request.sampler);
+    if (!image || !sampler || request.shape.dim != spv::Dim2D || request.gatherOffsets) {
+        flags |= kOracleUnknown;
+        return {};
+    }
+    return deliver(gatherImage(*image, *sampler, queryOf(request), request.component), request.shape);
+}
+
+reference::Texel<double> ShaderResources::fetch(const reference::ImageRequest<double>& request) {
+    const ImageStore* image = imageOf(request.image);
+    if (!image || (request.shape.dim != spv::Dim2D && request.shape.dim != spv::Dim1D)) {
+        flags |= kOracleUnknown;
+        return {};
+    }
+    const bool oneDimensional = request.shape.dim == spv::Dim1D;
+    const int64_t y = oneDimensional ? 0 : int64_t{request.texel[1]} + request.offset[1];
+    const int64_t layer = request.shape.arrayed ? request.texel[oneDimensional ? 1 : 2] : 0;
+    return deliver(fetchImage(*image, int64_t{request.texel[0]} + request.offset[0], y, layer, request.texelLod,
+                              static_cast<uint32_t>(request.sample)),
+                   request.shape);
+}
+
+std::array<int32_t, 4> ShaderResources::querySize(const reference::Descriptor& descriptor,
+                                                  const reference::ImageShape& shape, int32_t lod) {
+    const ImageStore* image = imageOf(descriptor);
+    if (!image || lod < 0 || static_cast<uint32_t>(lod) >= image->mipLevels()) return {};
+    const VkExtent2D extent = image->level(static_cast<uint32_t>(lod), 0).extent;
+    const auto layers = static_cast<int32_t>(image->arrayLayers());
+    if (shape.dim == spv::Dim1D) return {static_cast<int32_t>(extent.width), layers};
+    return {static_cast<int32_t>(extent.width), static_cast<int32_t>(extent.height), layers};
+}
+
+int32_t ShaderResources::queryLevels(const reference::Descriptor& descriptor, const reference::ImageShape&) {
+    const ImageStore* image = imageOf(descriptor);
+    return image ? static_cast<int32_t>(image->mipLevels()) : 0;
+}
+
+std::array<double, 2> ShaderResources::queryLod(const reference::ImageRequest<double>& request) {
+    const ImageStore* image = imageOf(request.image);
+    const SceneSampler* sampler = samplerOf(request.sampler);
+    if (!image || !sampler) return {};
+    SceneSampler unclamped = *sampler;
+    unclamped.minLod = -VK_LOD_CLAMP_NONE;
+    SampleQuery query = queryOf(request);
+    query.minLod = -VK_LOD_CLAMP_NONE;
+    const Interval lambda = levelOfDetail(query, unclamped, image->level(0, 0).extent);
+    sawRange = sawRange || !lambda.isExact();
+    const double at = end == RangeEnd::nominal ? lambda.value : end == RangeEnd::low ? lambda.low : lambda.high;
+    const double last = image->mipLevels() - 1;
+    const double clamped = std::clamp(std::clamp<double>(at, sampler->minLod, std::max(sampler->minLod, sampler->maxLod)), 0.0, last);
+    const bool nearest = sampler->mipmapMode == VK_SAMPLER_MIPMAP_MODE_NEAREST;
+    return {nearest ? std::clamp(std::ceil(clamped + 0.5) - 1, 0.0, last) : clamped, at};
+}
+
+}  // namespace vernier::conformance::exact

@@ -1,0 +1,284 @@
+#include "conformance/oracle/texture_unit.h"
+
+#include "conformance/oracle/filtering.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace vernier::conformance::exact {
+
+namespace {
+
+// CTS "high quality": 20 bits of coordinate; 8 bits of weight (subTexelPrecisionBits of every driver compared); 6 bits of
+// level of detail. Derivatives may be coarse or fine, which moves lambda a little more on perspective surfaces.
+constexpr double kCoordinateSlack = 0x1p-20;
+constexpr double kWeightSlack = 0x1p-8;
+constexpr double kLodSlack = 0x1p-6 + 0.03;
+// Rounding of a compared reference value.
+constexpr double kReferenceSlack = 0x1p-20;
+
+struct Sampler {
+    const ImageStore& image;
+    const SceneSampler& state;
+    uint32_t layer = 0;
+    std::array<int32_t, 2> offset{};
+    std::optional<Interval> dref;
+    double weightSlack = kWeightSlack;
+};
+
+Color borderColor(VkBorderColor border) {
+    switch (border) {
+        case VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE:
+        case VK_BORDER_COLOR_INT_OPAQUE_WHITE: return {1.0, 1.0, 1.0, 1.0};
+        case VK_BORDER_COLOR_FLOAT_OPAQUE_BLACK:
+        case VK_BORDER_COLOR_INT_OPAQUE_BLACK: return {0.0, 0.0, 0.0, 1.0};
+        default: return {0.0, 0.0, 0.0, 0.0};
+    }
+}
+
+// Result of comparing two ranges: 0 or 1, with both open when they overlap.
+Interval compareRanges(VkCompareOp op, const Interval& a, const Interval& b) {
+    const auto holds = [op](double x, double y) {
+        switch (op) {
+            case VK_COMPARE_OP_NEVER: return false;
+            case VK_COMPARE_OP_LESS: return x < y;
+            case VK_COMPARE_OP_EQUAL: return x == y;
+            case VK_COMPARE_OP_LESS_OR_EQUAL: return x <= y;
+            case VK_COMPARE_OP_GREATER: return x > y;
+            case VK_COMPARE_OP_NOT_EQUAL: return x != y;
+            case VK_COMPARE_OP_GREATER_OR_EQUAL: return x >= y;
+            default: return true;
+        }
+    };
+    const bool value = holds(a.value, b.value), oneWay = holds(a.low, b.high), otherWay = holds(a.high, b.low);
+    const bool overlap = a.low <= b.high && b.low <= a.high && !(a.isExact() && b.isExact());
+    const bool equality = op == VK_COMPARE_OP_EQUAL || op == VK_COMPARE_OP_NOT_EQUAL;
+    const bool open = equality ? overlap : oneWay != otherWay;
+    return open ? Interval(value, 0, 1) : Interval(value);
+}
+
+// The texel at integer coordinates after wrapping, compared if the sampler compares.
+SampleResult tap(const Sampler& s, uint32_t mip, int64_t x, int64_t y) {
+    const ImageLevel& level = s.image.level(mip, s.layer);
+    const auto column = wrapTexel(s.state.addressModeU, x + s.offset[0], level.extent.width);
+    const auto row = wrapTexel(s.state.addressModeV, y + s.offset[1], level.extent.height);
+    SampleResult result;
+    if (column && row) {
+        const StoredTexel& texel = level.at(static_cast<uint32_t>(*column), static_cast<uint32_t>(*row));
+        result = {texel.channels, texel.flags};
+    } else {
+        result.color = borderColor(s.state.borderColor);
+    }
+    if (s.dref) {
+        result.color[0] = compareRanges(s.state.compareOp, *s.dref, result.color[0]);
+        result.color[1] = result.color[2] = 0.0;
+        result.color[3] = 1.0;
+    }
+    return result;
+}
+
+Interval mix(const Interval& a, const Interval& b, double t) {
+    return {a.value + t * (b.value - a.value), a.low + t * (b.low - a.low), a.high + t * (b.high - a.high)};
+}
+
+SampleResult mix(const SampleResult& a, const SampleResult& b, double t) {
+    SampleResult result;
+    for (size_t c = 0; c < 4; ++c) result.color[c] = mix(a.color[c], b.color[c], t);
+    result.flags = a.flags | b.flags;
+    return result;
+}
+
+SampleResult bilinearAt(const Sampler& s, uint32_t mip, double u, double v) {
+    const double x = std::floor(u - 0.5), y = std::floor(v - 0.5);
+    const double a = u - 0.5 - x, b = v - 0.5 - y;
+    const auto i = static_cast<int64_t>(x), j = static_cast<int64_t>(y);
+    // A tap without weight is not read: what lies beyond it must not leak in.
+    const auto row = [&](int64_t at) {
+        return a == 0 ? tap(s, mip, i, at) : mix(tap(s, mip, i, at), tap(s, mip, i + 1, at), a);
+    };
+    return b == 0 ? row(j) : mix(row(j), row(j + 1), b);
+}
+
+// Accumulates the box over several evaluations; the first one is the nominal value.
+class Box {
+  public:
+    void add(const SampleResult& r) {
+        if (first_) {
+            result_ = r;
+            first_ = false;
+            return;
+        }
+        for (size_t c = 0; c < 4; ++c) result_.color[c] = result_.color[c].united(r.color[c]);
+        result_.flags |= r.flags;
+    }
+    const SampleResult& result() const { return result_; }
+
+  private:
+    SampleResult result_;
+    bool first_ = true;
+};
+
+// The ends of [at - reach, at + reach] and the integers + `phase` between them.
+std::vector<double> breaks(double at, double reach, double phase) {
+    std::vector<double> result{at - reach, at + reach};
+    for (double i = std::ceil(at - reach - phase); i + phase < at + reach; ++i) result.push_back(i + phase);
+    return result;
+}
+
+SampleResult filterLevel(const Sampler& s, uint32_t mip, VkFilter filter, double sCoordinate, double tCoordinate) {
+    const VkExtent2D extent = s.image.level(mip, s.layer).extent;
+    const double u = sCoordinate * extent.width, v = tCoordinate * extent.height;
+    const double reachU = s.weightSlack + kCoordinateSlack * extent.width * std::max(1.0, std::abs(sCoordinate));
+    const double reachV = s.weightSlack + kCoordinateSlack * extent.height * std::max(1.0, std::abs(tCoordinate));
+    Box box;
+    if (filter == VK_FILTER_NEAREST) {
+        const auto nearest = [&](double x, double y) {
+            return tap(s, mip, static_cast<int64_t>(std::floor(x)), static_cast<int64_t>(std::floor(y)));
+        };
+        box.add(nearest(u, v));
+        for (const double x : {u - reachU, u + reachU}) {
+            for (const double y : {v - reachV, v + reachV}) {
+                if (std::floor(x) != std::floor(u) || std::floor(y) != std::floor(v)) box.add(nearest(x, y));
+            }
+        }
+        return box.result();
+    }
+    box.add(bilinearAt(s, mip, u, v));
+    for (const double x : breaks(u, reachU, 0.5)) {
+        for (const double y : breaks(v, reachV, 0.5)) box.add(bilinearAt(s, mip, x, y));
+    }
+    return box.result();
+}
+
+// All that one lambda allows: magnification at or below 0, otherwise the minification filter over one or two levels.
+void addAtLod(Box& box, const Sampler& s, double lambda, bool magnify, double sCoordinate, double tCoordinate) {
+    if (magnify) {
+        box.add(filterLevel(s, 0, s.state.magFilter, sCoordinate, tCoordinate));
+        return;
+    }
+    const double last = s.image.mipLevels() - 1;
+    const VkFilter filter = s.state.minFilter;
+    const auto at = [&](double level) {
+        return filterLevel(s, static_cast<uint32_t>(std::clamp(level, 0.0, last)), filter, sCoordinate, tCoordinate);
+    };
+    if (s.state.mipmapMode == VK_SAMPLER_MIPMAP_MODE_NEAREST) {
+        box.add(at(std::ceil(lambda + 0.5) - 1));
+        if (std::ceil(lambda + 0.5) - 1 != std::floor(lambda + 0.5)) box.add(at(std::floor(lambda + 0.5)));
+        return;
+    }
+    const double clamped = std::clamp(lambda, 0.0, last), low = std::floor(clamped);
+    box.add(clamped == low ? at(low) : mix(at(low), at(low + 1), clamped - low));
+}
+
+SampleResult filterLod(const Sampler& s, const Interval& lambda, double sCoordinate, double tCoordinate) {
+    Box box;
+    addAtLod(box, s, lambda.value, lambda.value <= 0, sCoordinate, tCoordinate);
+    std::vector<double> candidates{lambda.low, lambda.high};
+    const double first = std::max(lambda.low, -1.0), last = std::min(lambda.high, s.image.mipLevels() * 1.0);
+    for (double k = std::ceil(first * 2); k / 2 <= last; ++k) candidates.push_back(k / 2);
+    for (const double candidate : candidates) {
+        if (candidate <= 0) addAtLod(box, s, candidate, true, sCoordinate, tCoordinate);
+        if (candidate > 0 || (candidate == 0 && lambda.high > 0)) {
+            addAtLod(box, s, candidate, false, sCoordinate, tCoordinate);
+        }
+    }
+    return box.result();
+}
+
+uint32_t selectLayer(const ImageStore& image, double layer) {
+    const double last = image.arrayLayers() - 1;
+    return static_cast<uint32_t>(std::clamp(std::nearbyint(layer), 0.0, last));
+}
+
+Sampler prepare(const ImageStore& image, const SceneSampler& state, const SampleQuery& query) {
+    Sampler s{image, state, selectLayer(image, query.layer), query.offset, std::nullopt};
+    if (query.dref && state.compareEnable) {
+        const double slack = kReferenceSlack * std::max(1.0, std::abs(*query.dref));
+        Interval dref = Interval(*query.dref).widened(slack);
+        if (image.format().components[0].encoding == Encoding::unorm) dref = dref.clamped(0, 1);
+        s.dref = dref;
+    }
+    return s;
+}
+
+}  // namespace
+
+bool SampleResult::isExact() const {
+    return std::ranges::all_of(color, [](const Interval& c) { return c.isExact(); });
+}
+
+Interval levelOfDetail(const SampleQuery& query, const SceneSampler& sampler, VkExtent2D extent) {
+    const double infinity = std::numeric_limits<double>::infinity();
+    Interval lambda;
+    if (query.lod) {
+        lambda = Interval(*query.lod + sampler.mipLodBias);
+        if (lambda.value != std::floor(lambda.value)) lambda = lambda.widened(kLodSlack);
+    } else {
+        const double ux = query.ddx[0] * extent.width, vx = query.ddx[1] * extent.height;
+        const double uy = query.ddy[0] * extent.width, vy = query.ddy[1] * extent.height;
+        const double mu = std::max(std::abs(ux), std::abs(uy)), mv = std::max(std::abs(vx), std::abs(vy));
+        const double rho = std::max(std::hypot(ux, vx), std::hypot(uy, vy));
+        if (!(rho > 0)) return {-infinity, -infinity, -infinity};
+        lambda = {std::log2(rho), std::log2(std::max(mu, mv)) - kLodSlack, std::log2(mu + mv) + kLodSlack};
+        const double bias = query.bias + sampler.mipLodBias;
+        lambda = lambda + Interval(bias);
+    }
+    const double low = std::max<double>(sampler.minLod, query.minLod);
+    return lambda.clamped(low, std::max<double>(low, sampler.maxLod));
+}
+
+SampleResult sampleImage(const ImageStore& image, const SceneSampler& sampler, const SampleQuery& query) {
+    const Sampler s = prepare(image, sampler, query);
+    Interval lambda = levelOfDetail(query, sampler, image.level(0, s.layer).extent);
+    if (!std::isfinite(query.s) || !std::isfinite(query.t) || std::isnan(lambda.value)) {
+        SampleResult unknown;
+        unknown.flags = kOracleUnknown;
+        return unknown;
+    }
+    const double floorLod = -1;  // anything below magnifies alike
+    lambda = lambda.clamped(floorLod, std::numeric_limits<double>::max());
+    return filterLod(s, lambda, query.s, query.t);
+}
+
+SampleResult gatherImage(const ImageStore& image, const SceneSampler& sampler, const SampleQuery& query,
+                         uint32_t channel) {
+    Sampler s = prepare(image, sampler, query);
+    const VkExtent2D extent = image.level(0, s.layer).extent;
+    const double u = query.s * extent.width - 0.5, v = query.t * extent.height - 0.5;
+    SampleResult result;
+    const std::array<std::array<int, 2>, 4> order{{{0, 1}, {1, 1}, {1, 0}, {0, 0}}};
+    const auto at = [&](double x, double y, size_t i) {
+        return tap(s, 0, static_cast<int64_t>(std::floor(x)) + order[i][0], static_cast<int64_t>(std::floor(y)) + order[i][1]);
+    };
+    for (size_t i = 0; i < 4; ++i) {
+        Box box;
+        box.add(at(u, v, i));
+        for (const double du : {-kWeightSlack, kWeightSlack}) {
+            for (const double dv : {-kWeightSlack, kWeightSlack}) box.add(at(u + du, v + dv, i));
+        }
+        result.color[i] = box.result().color[s.dref ? 0 : channel];
+        result.flags |= box.result().flags;
+    }
+    return result;
+}
+
+SampleResult fetchImage(const ImageStore& image, int64_t x, int64_t y, int64_t layer, int64_t mip, uint32_t sample) {
+    if (mip < 0 || mip >= image.mipLevels() || layer < 0 || layer >= image.arrayLayers()) return {};
+    const ImageLevel& level = image.level(static_cast<uint32_t>(mip), static_cast<uint32_t>(layer));
+    if (x < 0 || y < 0 || x >= level.extent.width || y >= level.extent.height || sample >= level.samples) return {};
+    const StoredTexel& texel = level.at(static_cast<uint32_t>(x), static_cast<uint32_t>(y), sample);
+    return {texel.channels, texel.flags};
+}
+
+SampleResult blitTexel(const ImageStore& image, uint32_t mip, uint32_t layer, double u, double v, VkFilter filter) {
+    SceneSampler state;
+    state.addressModeU = state.addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    // Texel centres map to dyadic positions in nearly all blits: a nearest blit has coordinate error only.
+    const Sampler s{image, state, layer, {}, std::nullopt, filter == VK_FILTER_NEAREST ? 0 : kWeightSlack};
+    const VkExtent2D extent = image.level(mip, layer).extent;
+    return filterLevel(s, mip, filter, u / extent.width, v / extent.height);
+}
+
+}  // namespace vernier::conformance::exact

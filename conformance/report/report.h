@@ -1,0 +1,68 @@
+// The report of a run: what was drawn, by whom, how it compares, how long it took.
+#pragma once
+
+#include "base/result.h"
+#include "conformance/differ/classify.h"
+#include "conformance/differ/known_gaps.h"
+#include "conformance/drivers/driver.h"
+#include "conformance/oracle/oracle.h"
+#include "conformance/scene/scene.h"
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vernier::conformance {
+
+struct ReportDriver {
+    std::string name, title;  // "lavapipe"; how to call it in a headline
+    bool ours = false;
+    std::string device, version, limits;  // as the implementation names itself; empty when it never answered
+    std::string absence;                  // why it was not tried; empty: it was
+};
+
+/// One driver's rendering of one scene.
+struct ReportRendering {
+    std::vector<RenderedImage> images;
+    Timing timing;
+    std::string failure;  // why there are no images; empty: there are
+};
+
+/// One of our renderings against another driver's, or against the oracle, in one output.
+struct ReportComparison {
+    std::string ours, other;  // driver names; other may be "oracle"
+    size_t output = 0;
+    ImageDiff diff;
+};
+
+struct ReportScene {
+    Scene scene;
+    std::map<std::string, ReportRendering> renderings;  // by driver name
+    std::vector<OracleImage> oracle;                    // empty: none
+    std::string oracleAbsence;
+    double oracleSeconds = 0;
+    std::vector<ReportComparison> comparisons;
+    bool failed = false;  // a finding that no known gap covers
+};
+
+struct Report {
+    std::vector<std::pair<std::string, std::string>> facts;  // machine, date, settings: name and value
+    std::vector<ReportDriver> drivers;
+    std::vector<ReportScene> scenes;
+    GapJudgement judgement;
+};
+
+/// Fills in ReportScene::comparisons: every driver of ours against every other one that drew the scene, and every driver
+/// against the oracle. An error means images that cannot be compared.
+Status compareScene(ReportScene& scene, const std::vector<ReportDriver>& drivers);
+
+/// What of a scene's comparisons and renderings counts as failed.
+std::vector<Finding> findingsOf(const ReportScene& scene, const std::vector<ReportDriver>& drivers);
+
+/// Writes index.html, a page per scene, and report.json. All pages carry their pictures inside.
+Status writeReport(const Report& report, const std::filesystem::path& directory);
+
+}  // namespace vernier::conformance

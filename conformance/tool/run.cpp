@@ -1,0 +1,209 @@
+#include "conformance/tool/run.h"
+
+#include "conformance/drivers/stopwatch.h"
+#include "conformance/drivers/try.h"
+#include "conformance/report/report.h"
+#include "conformance/scenes/scenes.h"
+#include "conformance/tool/child_process.h"
+#include "conformance/tool/oracle_file.h"
+#include "conformance/tool/rendering.h"
+
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <fstream>
+#include <system_error>
+#include <thread>
+
+namespace vernier::conformance {
+namespace {
+
+/// One line that is drawn over itself on a terminal, and nothing elsewhere.
+class Progress {
+  public:
+    explicit Progress(size_t total) : total_(total), terminal_(isatty(STDERR_FILENO) == 1) {}
+    ~Progress() {
+        if (terminal_) std::fprintf(stderr, "\r\033[K");
+    }
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
+    void step(const std::string& what) {
+        constexpr size_t kWidth = 30;
+        if (terminal_) {
+            const size_t filled = kWidth * done_ / std::max<size_t>(total_, 1);
+            std::fprintf(stderr, "\r\033[K[%s%s] %zu/%zu %s", std::string(filled, '=').c_str(),
+                         std::string(kWidth - filled, ' ').c_str(), done_, total_, what.c_str());
+        }
+        ++done_;
+    }
+
+  private:
+    size_t total_, done_ = 0;
+    bool terminal_;
+};
+
+std::string cpuModel() {
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line);) {
+        if (line.starts_with("model name")) return line.substr(std::min(line.find(':') + 2, line.size()));
+    }
+    return "unknown";
+}
+
+std::vector<std::pair<std::string, std::string>> facts(const RunOptions& options) {
+    utsname system{};
+    uname(&system);
+    const std::time_t now = std::time(nullptr);
+    std::tm utc{};
+    gmtime_r(&now, &utc);
+    std::array<char, 32> date{};
+    std::strftime(date.data(), date.size(), "%Y-%m-%d %H:%M UTC", &utc);
+    return {{"Date", date.data()},
+            {"Machine", cpuModel() + ", " + std::to_string(std::thread::hardware_concurrency()) + " CPUs"},
+            {"System", std::string(system.sysname) + " " + system.release + " " + system.machine},
+            {"Processes", "one per scene and driver; shader caches off"},
+            {"Start-up", "instance and device creation"},
+            {"First image", "from before start-up until the pixels are in host memory"},
+            {"Frame", "median of 5 to 60 runs of the recorded commands, each waited for; copies to the host not included"},
+            {"Validation", options.validate ? "VK_LAYER_KHRONOS_validation on: its times count" : "off"}};
+}
+
+/// Draws one scene with one driver in a child process.
+ReportRendering renderInChild(const DriverChoice& choice, const std::string& scene, const RunOptions& options,
+                              ReportDriver& driver) {
+    const std::filesystem::path folder = options.out / "work" / choice.name;
+    std::error_code ignored;
+    std::filesystem::create_directories(folder, ignored);
+    std::filesystem::remove(folder / (scene + ".json"), ignored);  // an old one must not stand in for a failure
+    std::vector<std::string> arguments = options.commonArguments;
+    arguments.insert(arguments.end(),
+                     {"render", "--driver", choice.name, "--scene", scene, "--out", folder.string()});
+    if (options.validate) arguments.push_back("--validate");
+    const ChildResult child = runChild(arguments, folder / (scene + ".log"), options.timeoutSeconds);
+    ReportRendering rendering;
+    rendering.failure = child.failure;
+    if (!child.ok) return rendering;
+    Result<Rendering> loaded = loadRendering(folder, scene);
+    if (!loaded) {
+        rendering.failure = loaded.error().message;
+        return rendering;
+    }
+    driver.device = loaded->driver;
+    driver.version = loaded->version;
+    driver.limits = loaded->limits;
+    rendering.images = std::move(loaded->images);
+    rendering.timing = loaded->timing;
+    return rendering;
+}
+
+void oracleInChild(const RunOptions& options, ReportScene& scene) {
+    const std::filesystem::path folder = options.out / "work" / "oracle";
+    const std::filesystem::path file = folder / (scene.scene.name + ".bin");
+    std::error_code ignored;
+    std::filesystem::create_directories(folder, ignored);
+    std::filesystem::remove(file, ignored);
+    const Stopwatch watch;
+    const ChildResult child = runChild({"oracle", "--scene", scene.scene.name, "--out", file.string()},
+                                       folder / (scene.scene.name + ".log"), options.oracleTimeoutSeconds);
+    scene.oracleSeconds = watch.milliseconds() / 1000;
+    scene.oracleAbsence = child.failure;
+    if (!child.ok) return;
+    Result<std::vector<OracleImage>> images = loadOracle(file);
+    if (!images) {
+        scene.oracleAbsence = images.error().message;
+    } else if (images->size() != scene.scene.outputs.size()) {
+        scene.oracleAbsence = "the oracle made " + std::to_string(images->size()) + " images, not " +
+                              std::to_string(scene.scene.outputs.size());
+    } else {
+        scene.oracle = std::move(images).value();
+    }
+}
+
+Result<std::vector<const SceneEntry*>> chosenScenes(const RunOptions& options) {
+    std::vector<const SceneEntry*> chosen;
+    for (const SceneEntry& entry : allScenes()) {
+        if (options.scenes.empty()) chosen.push_back(&entry);
+    }
+    for (const std::string& name : options.scenes) {
+        const SceneEntry* entry = findScene(name);
+        if (entry == nullptr) return invalidArgument("no scene is called '" + name + "'");
+        chosen.push_back(entry);
+    }
+    return chosen;
+}
+
+Result<std::vector<KnownGap>> loadGaps(const std::filesystem::path& path) {
+    if (path.empty()) return std::vector<KnownGap>{};
+    const Result<std::string> text = readFile(path);
+    if (!text) return text.error();
+    return parseKnownGaps(text.value());
+}
+
+bool wanted(const RunOptions& options, const std::string& driver) {
+    return options.drivers.empty() ||
+           std::find(options.drivers.begin(), options.drivers.end(), driver) != options.drivers.end();
+}
+
+void printVerdict(const Report& report, const std::filesystem::path& out) {
+    for (const ReportDriver& driver : report.drivers) {
+        if (!driver.absence.empty()) std::printf("skipped %s: %s\n", driver.name.c_str(), driver.absence.c_str());
+    }
+    for (const std::string& line : report.judgement.covered) std::printf("known gap: %s\n", line.c_str());
+    for (const std::string& line : report.judgement.stale) std::printf("stale gap: %s\n", line.c_str());
+    for (const std::string& line : report.judgement.violations) std::printf("UNEXPLAINED: %s\n", line.c_str());
+    std::printf("%s: %zu scenes, report in %s\n", report.judgement.passed() ? "passed" : "FAILED", report.scenes.size(),
+                (out / "index.html").c_str());
+}
+
+}  // namespace
+
+Result<bool> runComparison(const std::vector<DriverChoice>& choices, const RunOptions& options) {
+    const Result<std::vector<const SceneEntry*>> scenes = chosenScenes(options);
+    if (!scenes) return scenes.error();
+    const Result<std::vector<KnownGap>> gaps = loadGaps(options.knownGaps);
+    if (!gaps) return gaps.error();
+
+    Report report;
+    report.facts = facts(options);
+    RunExtent extent;
+    for (const DriverChoice& choice : choices) {
+        const std::string absence = !wanted(options, choice.name) ? "not asked for" : choice.absence;
+        report.drivers.push_back({choice.name, choice.title, choice.ours, {}, {}, {}, absence});
+        if (absence.empty()) extent.drivers.push_back(choice.name);
+    }
+    std::vector<Finding> findings;
+    Progress progress(scenes.value().size() * (extent.drivers.size() + (options.oracle ? 1 : 0)));
+    for (const SceneEntry* entry : scenes.value()) {
+        Result<Scene> built = entry->build();
+        if (!built) return built.error();
+        ReportScene scene;
+        scene.scene = std::move(built).value();
+        extent.scenes.push_back(scene.scene.name);
+        for (size_t i = 0; i < choices.size(); ++i) {
+            if (!report.drivers[i].absence.empty()) continue;
+            progress.step(choices[i].name + " " + scene.scene.name);
+            scene.renderings[choices[i].name] = renderInChild(choices[i], scene.scene.name, options, report.drivers[i]);
+        }
+        scene.oracleAbsence = "not asked for";
+        if (options.oracle) {
+            progress.step("oracle " + scene.scene.name);
+            oracleInChild(options, scene);
+        }
+        if (!scene.oracle.empty()) extent.drivers.push_back("oracle");
+        VERNIER_TRY(compareScene(scene, report.drivers));
+        const std::vector<Finding> found = findingsOf(scene, report.drivers);
+        scene.failed = !judgeFindings(found, gaps.value(), {}).violations.empty();
+        findings.insert(findings.end(), found.begin(), found.end());
+        report.scenes.push_back(std::move(scene));
+    }
+    report.judgement = judgeFindings(findings, gaps.value(), extent);
+    VERNIER_TRY(writeReport(report, options.out));
+    printVerdict(report, options.out);
+    return report.judgement.passed();
+}
+
+}  // namespace vernier::conformance

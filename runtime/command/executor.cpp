@@ -1,0 +1,226 @@
+#include "runtime/command/executor.h"
+
+#include <algorithm>
+
+#include "runtime/command/query_pool.h"
+
+namespace vernier {
+namespace {
+
+/// Applies what a pipeline fixes for every state the dynamic mask leaves out.
+void applyFixedState(const DynamicState& fixed, uint32_t dynamicMask, DynamicState& state) {
+    const auto isFixed = [&](VkDynamicState name) { return (dynamicMask >> name & 1u) == 0; };
+    if (isFixed(VK_DYNAMIC_STATE_VIEWPORT)) {
+        state.viewports = fixed.viewports;
+        state.viewportCount = fixed.viewportCount;
+    }
+    if (isFixed(VK_DYNAMIC_STATE_SCISSOR)) state.scissors = fixed.scissors;
+    if (isFixed(VK_DYNAMIC_STATE_LINE_WIDTH)) state.lineWidth = fixed.lineWidth;
+    if (isFixed(VK_DYNAMIC_STATE_DEPTH_BIAS)) {
+        state.depthBiasConstant = fixed.depthBiasConstant;
+        state.depthBiasClamp = fixed.depthBiasClamp;
+        state.depthBiasSlope = fixed.depthBiasSlope;
+    }
+    if (isFixed(VK_DYNAMIC_STATE_BLEND_CONSTANTS)) state.blendConstants = fixed.blendConstants;
+    if (isFixed(VK_DYNAMIC_STATE_DEPTH_BOUNDS)) {
+        state.minDepthBounds = fixed.minDepthBounds;
+        state.maxDepthBounds = fixed.maxDepthBounds;
+    }
+    const auto stencil = [&](VkDynamicState name, uint32_t DynamicState::StencilFace::*field) {
+        if (!isFixed(name)) return;
+        state.stencilFront.*field = fixed.stencilFront.*field;
+        state.stencilBack.*field = fixed.stencilBack.*field;
+    };
+    stencil(VK_DYNAMIC_STATE_STENCIL_COMPARE_MASK, &DynamicState::StencilFace::compareMask);
+    stencil(VK_DYNAMIC_STATE_STENCIL_WRITE_MASK, &DynamicState::StencilFace::writeMask);
+    stencil(VK_DYNAMIC_STATE_STENCIL_REFERENCE, &DynamicState::StencilFace::reference);
+}
+
+VertexStream streamOf(const command::BufferRange& range) {
+    if (!range.buffer || !range.buffer->data() || range.offset > range.buffer->size()) return {};
+    return {range.buffer->data() + range.offset, range.buffer->size() - range.offset};
+}
+
+/// The indirect arguments as Vulkan lays them out, or nullptr if they reach outside the buffer.
+template <class Arguments>
+const Arguments* argumentsAt(const command::BufferRange& range, VkDeviceSize offset) {
+    const VertexStream stream = streamOf(range);
+    if (!stream.data || offset > stream.size || stream.size - offset < sizeof(Arguments)) return nullptr;
+    return reinterpret_cast<const Arguments*>(stream.data + offset);
+}
+
+}  // namespace
+
+Executor::Executor(Device& device) : device_(device), pass_(device.pool()) {}
+Executor::~Executor() = default;
+
+bool Executor::run(const CommandBuffer& commands) {
+    pipeline_ = nullptr;
+    dynamic_ = {};
+    dynamicSnapshot_ = nullptr;
+    bound_ = {};
+    pushConstants_ = {};
+    vertexStreams_ = {};
+    indices_ = {};
+    bindingsChanged_ = true;
+    arena_.reset();
+    runAll(commands);
+    if (inPass_) run(command::EndRendering{});
+    return !lost_;
+}
+
+void Executor::runAll(const CommandBuffer& commands) {
+    for (const CommandHeader* header = commands.first(); header; header = header->next) {
+        switch (header->type) {
+#define VERNIER_COMMAND(name) \
+    case CommandType::name: run(*static_cast<const command::name*>(header->payload)); break;
+#include "runtime/command/commands.def"
+#undef VERNIER_COMMAND
+        }
+    }
+}
+
+void Executor::run(const command::BindPipeline& command) {
+    pipeline_ = command.pipeline;
+    if (command.fixed) applyFixedState(*command.fixed, command.dynamicMask, dynamic_);
+    dynamicSnapshot_ = nullptr;
+    bindingsChanged_ = true;
+}
+
+void Executor::run(const command::BindDescriptorSets& command) {
+    for (size_t i = 0; i < command.sets.size() && command.firstSet + i < std::size(bound_.sets); ++i) {
+        bound_.sets[command.firstSet + i] = command.sets[i];
+        bound_.dynamicOffsets[command.firstSet + i] =
+            i < command.dynamicOffsets.size() ? command.dynamicOffsets[i] : std::span<const uint32_t>{};
+    }
+    bindingsChanged_ = true;
+}
+
+void Executor::run(const command::PushConstants& command) {
+    if (command.offset > pushConstants_.size()) return;
+    const size_t room = pushConstants_.size() - command.offset;
+    std::copy_n(command.bytes.data(), std::min(command.bytes.size(), room), pushConstants_.data() + command.offset);
+    bindingsChanged_ = true;
+}
+
+void Executor::run(const command::BindVertexBuffers& command) {
+    for (size_t i = 0; i < command.ranges.size() && command.first + i < vertexStreams_.size(); ++i)
+        vertexStreams_[command.first + i] = streamOf(command.ranges[i]);
+}
+
+void Executor::run(const command::BindIndexBuffer& command) {
+    const VertexStream stream = streamOf(command.range);
+    indices_ = {stream.data, stream.size, command.type};
+}
+
+void Executor::run(const command::SetViewports& command) {
+    for (size_t i = 0; i < command.viewports.size() && command.first + i < kMaxViewports; ++i)
+        dynamic_.viewports[command.first + i] = command.viewports[i];
+    dynamicSnapshot_ = nullptr;
+}
+
+void Executor::run(const command::SetScissors& command) {
+    for (size_t i = 0; i < command.scissors.size() && command.first + i < kMaxViewports; ++i)
+        dynamic_.scissors[command.first + i] = command.scissors[i];
+    dynamicSnapshot_ = nullptr;
+}
+
+void Executor::run(const command::SetLineWidth& command) {
+    dynamic_.lineWidth = command.width;
+    dynamicSnapshot_ = nullptr;
+}
+
+void Executor::run(const command::SetDepthBias& command) {
+    dynamic_.depthBiasConstant = command.constant;
+    dynamic_.depthBiasClamp = command.clamp;
+    dynamic_.depthBiasSlope = command.slope;
+    dynamicSnapshot_ = nullptr;
+}
+
+void Executor::run(const command::SetBlendConstants& command) {
+    dynamic_.blendConstants = command.constants;
+    dynamicSnapshot_ = nullptr;
+}
+
+void Executor::run(const command::SetDepthBounds& command) {
+    dynamic_.minDepthBounds = command.min;
+    dynamic_.maxDepthBounds = command.max;
+    dynamicSnapshot_ = nullptr;
+}
+
+void Executor::run(const command::SetStencil& command) {
+    using Field = command::SetStencil::Field;
+    uint32_t DynamicState::StencilFace::*field = command.field == Field::compareMask ? &DynamicState::StencilFace::compareMask
+                                                 : command.field == Field::writeMask ? &DynamicState::StencilFace::writeMask
+                                                                                     : &DynamicState::StencilFace::reference;
+    if (command.faces & VK_STENCIL_FACE_FRONT_BIT) dynamic_.stencilFront.*field = command.value;
+    if (command.faces & VK_STENCIL_FACE_BACK_BIT) dynamic_.stencilBack.*field = command.value;
+    dynamicSnapshot_ = nullptr;
+}
+
+void Executor::refreshBindings() {
+    if (!bindingsChanged_) return;
+    bindingsChanged_ = false;
+    bound_.pushConstants = arena_.copy(std::span<const std::byte>(pushConstants_));
+    vertexResources_ = resolveBindings(pipeline_->vertexIr(), bound_, arena_);
+    fragmentResources_ =
+        pipeline_->fragmentIr() ? resolveBindings(*pipeline_->fragmentIr(), bound_, arena_) : ResourceBindings{};
+}
+
+void Executor::draw(const command::Draw& command, uint32_t drawIndex) {
+    if (!pipeline_ || !inPass_ || command.count == 0 || command.instances == 0) return;
+    if (command.indexed && !indices_.data) return;
+    refreshBindings();
+    if (!dynamicSnapshot_) dynamicSnapshot_ = arena_.create(dynamic_);
+    DrawCall call;
+    call.pipeline = pipeline_;
+    call.dynamic = dynamicSnapshot_;
+    call.vertexStreams = vertexStreams_;
+    if (command.indexed) call.indices = indices_;
+    call.vertexResources = vertexResources_;
+    call.fragmentResources = fragmentResources_;
+    call.count = command.count;
+    call.instances = command.instances;
+    call.first = command.first;
+    call.vertexOffset = command.vertexOffset;
+    call.firstInstance = command.firstInstance;
+    call.drawIndex = drawIndex;
+    pass_.draw(call);
+}
+
+void Executor::run(const command::Draw& command) { draw(command, 0); }
+
+void Executor::run(const command::DrawIndirect& command) {
+    uint32_t count = command.drawCount;
+    if (command.countBuffer.buffer) {
+        const auto* available = argumentsAt<uint32_t>(command.countBuffer, 0);
+        count = available ? std::min(count, *available) : 0;
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+        const VkDeviceSize offset = VkDeviceSize{i} * command.stride;
+        if (command.indexed) {
+            const auto* a = argumentsAt<VkDrawIndexedIndirectCommand>(command.arguments, offset);
+            if (!a) return;
+            draw({true, a->indexCount, a->instanceCount, a->firstIndex, a->firstInstance, a->vertexOffset}, i);
+        } else {
+            const auto* a = argumentsAt<VkDrawIndirectCommand>(command.arguments, offset);
+            if (!a) return;
+            draw({false, a->vertexCount, a->instanceCount, a->firstVertex, a->firstInstance, 0}, i);
+        }
+    }
+}
+
+void Executor::run(const command::ExecuteCommands& command) {
+    for (const CommandBuffer* buffer : command.buffers) runAll(*buffer);
+}
+
+void Executor::run(const command::SetEvent& command) {
+    // Work before an event is done when the event is seen to be set.
+    if (inPass_) pass_.flush();
+    command.event->store(command.value, std::memory_order_release);
+    command.event->notify_all();
+}
+
+void Executor::run(const command::WaitEvent& command) { command.event->wait(false, std::memory_order_acquire); }
+
+}  // namespace vernier

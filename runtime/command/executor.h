@@ -1,0 +1,62 @@
+// Runs the commands of command buffers, one after the other, on the queue's thread. The work inside a command is shared
+// out over the device's threads.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "base/arena.h"
+#include "runtime/command/command_buffer.h"
+#include "runtime/command/device.h"
+#include "runtime/raster/render_pass.h"
+
+namespace vernier {
+
+class Executor {
+  public:
+    explicit Executor(Device& device);
+    ~Executor();
+
+    /// State set by commands (pipeline, descriptors, dynamic state) starts anew. False: a shader ran out of its loop budget.
+    bool run(const CommandBuffer& commands);
+
+  private:
+    void runAll(const CommandBuffer& commands);
+#define VERNIER_COMMAND(name) void run(const command::name& command);
+#include "runtime/command/commands.def"
+#undef VERNIER_COMMAND
+
+    void beginTargets(const command::BeginRendering& command);
+    void draw(const command::Draw& command, uint32_t drawIndex);
+    void refreshBindings();
+    PassStatistics totals() const;
+
+    Device& device_;
+    RenderPass pass_;
+    bool inPass_ = false;
+    bool lost_ = false;
+    PassStatistics* passSink_ = nullptr;
+    PassStatistics finished_;  // of the passes that have ended
+
+    /// What draws point to until their pass ends.
+    Arena arena_;
+    const GraphicsPipeline* pipeline_ = nullptr;
+    DynamicState dynamic_;
+    const DynamicState* dynamicSnapshot_ = nullptr;  // in the arena; nullptr after a change
+    BoundDescriptors bound_;
+    std::array<std::byte, kMaxPushConstantBytes> pushConstants_{};
+    ResourceBindings vertexResources_, fragmentResources_;
+    bool bindingsChanged_ = true;
+    std::array<VertexStream, kMaxVertexBindings> vertexStreams_{};
+    IndexStream indices_;
+
+    struct ActiveQuery {
+        QueryPool* pool;
+        uint32_t query;
+        PassStatistics start;
+    };
+    std::vector<ActiveQuery> queries_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,177 @@
+#include "runtime/geometry/assemble.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/geometry/project.h"
+
+namespace vernier {
+namespace {
+
+/// The same operations in the same order as projectFunction(), for one vertex that clipping made.
+bool projectVertex(const PreparedDraw& draw, const std::array<double, 4>& clip, WindowVertex& out) {
+    const double w = clip[3];
+    if (!(w > 0)) return false;
+    double window[3];
+    for (uint32_t c = 0; c < 3; ++c) window[c] = clip[c] / w * draw.viewport.scale[c] + draw.viewport.offset[c];
+    const double subUnits = static_cast<double>(1u << draw.subPixelBits);
+    for (uint32_t c = 0; c < 2; ++c) {
+        if (!std::isfinite(window[c])) return false;
+        window[c] = std::clamp(window[c], double{kGuardBandMin}, double{kGuardBandMax});
+    }
+    out.x = static_cast<int32_t>(std::nearbyint(window[0] * subUnits));
+    out.y = static_cast<int32_t>(std::nearbyint(window[1] * subUnits));
+    out.z = static_cast<float>(window[2]);
+    out.inverseW = 1.0 / w;
+    return std::isfinite(out.z);
+}
+
+}  // namespace
+
+uint32_t Assembler::localVertex(const VertexRef& ref) {
+    uint32_t slot = (ref.index * 0x9E3779B1u ^ ref.instance * 0x85EBCA6Bu) >> 19;  // 13 bits: kReuseSlots
+    while (true) {
+        ReuseSlot& entry = reuse_[slot];
+        if (entry.epoch != epoch_) {
+            entry = {ref, static_cast<uint32_t>(refs_.size()), epoch_};
+            refs_.push_back(ref);
+            return entry.local;
+        }
+        if (entry.ref.index == ref.index && entry.ref.instance == ref.instance) return entry.local;
+        slot = (slot + 1) % kReuseSlots;
+    }
+}
+
+void Assembler::number(const PreparedDraw& draw, const PrimitiveRange& range) {
+    refs_.clear();
+    primitives_.clear();
+    if (++epoch_ == 0) {  // wrapped: old stamps would look new
+        std::fill(reuse_.begin(), reuse_.end(), ReuseSlot{});
+        epoch_ = 1;
+    }
+    const VkPrimitiveTopology topology = draw.state->topology;
+    const uint32_t vertexCount = verticesPerPrimitive(topology);
+    const bool indexed = draw.call.indices.data != nullptr;
+    const bool shared = indexed || topology != VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    auto instance = static_cast<uint32_t>(range.first / draw.primitivesPerInstance);
+    auto primitive = static_cast<uint32_t>(range.first % draw.primitivesPerInstance);
+    const auto runAt = [&](uint32_t p) {
+        return std::upper_bound(draw.runs.begin(), draw.runs.end(), p,
+                                [](uint32_t value, const VertexRun& run) { return value < run.firstPrimitive; }) -
+               1;
+    };
+    auto run = runAt(primitive);
+    for (uint32_t n = 0; n < range.count; ++n) {
+        const PrimitiveVertices numbers = primitiveVertices(topology, primitive - run->firstPrimitive);
+        LocalPrimitive local{};
+        local.primitiveId = primitive;
+        local.provoking = draw.state->provokingVertexLast ? numbers.provokingLast : numbers.provokingFirst;
+        for (uint32_t v = 0; v < vertexCount; ++v) {
+            const uint32_t number = run->first + numbers.vertex[v];
+            const uint32_t index = indexed ? fetchIndex(draw.call, number) + static_cast<uint32_t>(draw.call.vertexOffset)
+                                           : draw.call.first + number;
+            if (shared) {
+                local.vertex[v] = localVertex({index, instance});
+            } else {
+                local.vertex[v] = static_cast<uint32_t>(refs_.size());
+                refs_.push_back({index, instance});
+            }
+        }
+        primitives_.push_back(local);
+        if (++primitive == draw.primitivesPerInstance) {
+            primitive = 0;
+            ++instance;
+            run = draw.runs.begin();
+        } else if (primitive == run->firstPrimitive + run->primitives) {
+            ++run;
+        }
+    }
+}
+
+WindowVertex Assembler::windowVertex(uint32_t v) const {
+    return {vertices_.x[v], vertices_.y[v], vertices_.z[v], vertices_.inverseW[v], attributesOf(v)};
+}
+
+void Assembler::addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, uint32_t v) {
+    // A point is drawn or not by its vertex alone.
+    if ((vertices_.flags[v] & (kOutsideVolume | kOutsideGuard | kOutsideUserAll)) != 0) return;
+    const double w = vertices_.clip[3][v];
+    const double x = vertices_.clip[0][v] / w * draw.viewport.scale[0] + draw.viewport.offset[0];
+    const double y = vertices_.clip[1][v] / w * draw.viewport.scale[1] + draw.viewport.offset[1];
+    setup_.addPoint(draw, info, windowVertex(v), x, y, vertices_.pointSize.empty() ? 1.0f : vertices_.pointSize[v]);
+}
+
+void Assembler::clipAndAdd(const PreparedDraw& draw, const PrimitiveInfo& info, const LocalPrimitive& primitive,
+                           uint32_t vertexCount, Chunk& chunk) {
+    const auto clipCount = static_cast<uint32_t>(draw.plan->clipDistanceSlots.size());
+    ClipPolygon polygon;
+    polygon.count = vertexCount;
+    for (uint32_t n = 0; n < vertexCount; ++n) {
+        const uint32_t v = primitive.vertex[n];
+        ClipVertex& vertex = polygon.vertices[n];
+        for (uint32_t c = 0; c < 4; ++c) vertex.position[c] = double{vertices_.clip[c][v]};
+        vertex.distances.fill(0);
+        for (uint32_t k = 0; k < clipCount; ++k) vertex.distances[k] = double{vertices_.clipDistances[v * clipCount + k]};
+        vertex.attributes = attributesOf(v);
+    }
+    if (clipPolygon(draw, polygon, chunk)) ++statistics_.clippedPrimitives;
+    std::array<WindowVertex, kMaxPolygonVertices> window;
+    for (uint32_t n = 0; n < polygon.count; ++n) {
+        if (!projectVertex(draw, polygon.vertices[n].position, window[n])) return;
+        window[n].attributes = polygon.vertices[n].attributes;
+    }
+    if (polygon.count == 2 && vertexCount == 2) setup_.addLine(draw, info, window[0], window[1]);
+    if (polygon.count >= 3) setup_.addPolygon(draw, info, {window.data(), polygon.count});
+}
+
+void Assembler::assemble(const PreparedDraw& draw, uint32_t drawIndex, Chunk& chunk) {
+    const uint32_t vertexCount = verticesPerPrimitive(draw.state->topology);
+    for (const LocalPrimitive& primitive : primitives_) {
+        uint32_t all = ~0u, any = 0, culled = vertices_.culled.empty() ? 0 : 0xFF;
+        for (uint32_t n = 0; n < vertexCount; ++n) {
+            const uint32_t v = primitive.vertex[n];
+            all &= vertices_.flags[v];
+            any |= vertices_.flags[v];
+            if (!vertices_.culled.empty()) culled &= vertices_.culled[v];
+        }
+        if ((any & kNotFinite) != 0 || (all & (kOutsideVolume | kOutsideUserAll)) != 0 || culled != 0) continue;
+        const PrimitiveInfo info{drawIndex, primitive.primitiveId, attributesOf(primitive.vertex[primitive.provoking])};
+        if (vertexCount == 1) {
+            addPoint(draw, info, primitive.vertex[0]);
+            continue;
+        }
+        constexpr uint32_t kMustClip = kOutsideGuard | kOutsideNear | kOutsideFar | kOutsideUserAll;
+        if ((any & kMustClip) != 0) {
+            clipAndAdd(draw, info, primitive, vertexCount, chunk);
+        } else if (vertexCount == 2) {
+            setup_.addLine(draw, info, windowVertex(primitive.vertex[0]), windowVertex(primitive.vertex[1]));
+        } else {
+            const std::array<WindowVertex, 3> triangle{windowVertex(primitive.vertex[0]),
+                                                       windowVertex(primitive.vertex[1]),
+                                                       windowVertex(primitive.vertex[2])};
+            setup_.addPolygon(draw, info, triangle);
+        }
+    }
+}
+
+bool Assembler::run(std::span<const PreparedDraw> draws, uint64_t token, std::span<const PrimitiveRange> ranges,
+                    const TileGrid& grid, Chunk& chunk) {
+    bool finished = true;
+    chunk.clear();
+    setup_.begin(chunk, grid);
+    for (const PrimitiveRange& range : ranges) {
+        const PreparedDraw& draw = draws[range.draw];
+        number(draw, range);
+        finished &= shadeVertices(draw, token + range.draw, refs_, contexts_, vertices_, chunk);
+        statistics_.inputPrimitives += range.count;
+        statistics_.vertexInvocations += refs_.size();
+        if (draw.state->rasterizerDiscard) continue;
+        statistics_.clippingInvocations += range.count;
+        assemble(draw, range.draw, chunk);
+    }
+    setup_.finish();
+    statistics_.rasterPrimitives += chunk.primitives.size();
+    return finished;
+}
+
+}  // namespace vernier

@@ -1,0 +1,72 @@
+// Primitive assembly: from runs of draws to a chunk of primitives.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "runtime/geometry/clip.h"
+#include "runtime/geometry/primitive_setup.h"
+#include "runtime/geometry/vertex_stage.h"
+
+namespace vernier {
+
+/// Primitives [first, first + count) of a draw, numbered through its instances.
+struct PrimitiveRange {
+    uint32_t draw = 0;
+    uint64_t first = 0;
+    uint32_t count = 0;
+};
+
+struct GeometryStatistics {
+    uint64_t inputPrimitives = 0, vertexInvocations = 0, clippingInvocations = 0;
+    uint64_t clippedPrimitives = 0, rasterPrimitives = 0;
+};
+
+/// One thread's geometry.
+class Assembler {
+  public:
+    ContextCache& contexts() { return contexts_; }
+    /// Processes the ranges into `chunk`. `draws` are those that PrimitiveRange::draw names; `token` numbers the bindings
+    /// of the first of them, the next has token + 1, and so on. Returns false when a program ran out of its loop budget.
+    bool run(std::span<const PreparedDraw> draws, uint64_t token, std::span<const PrimitiveRange> ranges,
+             const TileGrid& grid, Chunk& chunk);
+    GeometryStatistics& statistics() { return statistics_; }
+
+  private:
+    struct LocalPrimitive {
+        std::array<uint32_t, 3> vertex;  // indices into the shaded vertices
+        uint32_t provoking;              // position
+        uint32_t primitiveId;
+    };
+    void number(const PreparedDraw& draw, const PrimitiveRange& range);
+    uint32_t localVertex(const VertexRef& ref);
+    void assemble(const PreparedDraw& draw, uint32_t drawIndex, Chunk& chunk);
+    void clipAndAdd(const PreparedDraw& draw, const PrimitiveInfo& info, const LocalPrimitive& primitive,
+                    uint32_t vertexCount, Chunk& chunk);
+    void addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, uint32_t vertex);
+    WindowVertex windowVertex(uint32_t vertex) const;
+    uint32_t attributesOf(uint32_t vertex) const {
+        return vertices_.firstAttribute + vertex * vertices_.attributeStride;
+    }
+
+    // Reuse of vertices inside a range: open addressing, twice as many places as a range can have vertices.
+    struct ReuseSlot {
+        VertexRef ref{};
+        uint32_t local = 0;
+        uint32_t epoch = 0;
+    };
+    static constexpr uint32_t kReuseSlots = 8192;
+    static_assert(kReuseSlots >= 2 * 3 * kChunkPrimitives);
+
+    ContextCache contexts_;
+    PrimitiveSetup setup_;
+    ShadedVertices vertices_;
+    std::vector<VertexRef> refs_;
+    std::vector<LocalPrimitive> primitives_;
+    std::vector<ReuseSlot> reuse_ = std::vector<ReuseSlot>(kReuseSlots);
+    uint32_t epoch_ = 0;
+    GeometryStatistics statistics_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,42 @@
+// One draw as it is handed to the backend.
+#pragma once
+
+#include <vulkan/vulkan_core.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "runtime/limits.h"
+#include "runtime/plan/pipeline.h"
+#include "spirv_interp/resources.h"
+
+namespace vernier {
+
+struct VertexStream {
+    const std::byte* data = nullptr;
+    VkDeviceSize size = 0;  // bytes from `data`; fetches outside give 0 (robustBufferAccess)
+};
+
+struct IndexStream {
+    const std::byte* data = nullptr;  // nullptr: a non-indexed draw
+    VkDeviceSize size = 0;
+    VkIndexType type = VK_INDEX_TYPE_UINT16;
+};
+
+/// One draw. What it points to must stay alive until the pass ends.
+struct DrawCall {
+    const GraphicsPipeline* pipeline = nullptr;
+    const DynamicState* dynamic = nullptr;
+    std::array<VertexStream, kMaxVertexBindings> vertexStreams{};
+    IndexStream indices;
+    ResourceBindings vertexResources, fragmentResources;
+    uint32_t count = 0;          // vertices or indices
+    uint32_t instances = 1;
+    uint32_t first = 0;          // first vertex or index
+    int32_t vertexOffset = 0;    // added to each index
+    uint32_t firstInstance = 0;
+    uint32_t drawIndex = 0;      // of an indirect draw
+};
+
+}  // namespace vernier

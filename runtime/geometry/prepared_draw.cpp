@@ -1,0 +1,65 @@
+#include "runtime/geometry/prepared_draw.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vernier {
+namespace {
+
+int32_t clampPixel(double value) {
+    if (!(value > kGuardBandMin)) return kGuardBandMin;  // NaN too
+    return static_cast<int32_t>(std::min(value, double{kGuardBandMax}));
+}
+
+/// The pixels whose centres lie in [low, high): clipping to the view volume leaves exactly those of a shape that covers
+/// them, since its right and bottom edges are no top-left edges.
+void pixelRange(double low, double high, int32_t& first, int32_t& end) {
+    first = clampPixel(std::ceil(low - 0.5));
+    end = clampPixel(std::ceil(high - 0.5));
+}
+
+PixelRect intersect(const PixelRect& a, const PixelRect& b) {
+    return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+}
+
+PixelRect rectOf(const VkRect2D& rect) {
+    const auto end = [](int32_t offset, uint32_t extent) {
+        return static_cast<int32_t>(std::min<int64_t>(int64_t{offset} + extent, kGuardBandMax));
+    };
+    return {rect.offset.x, rect.offset.y, end(rect.offset.x, rect.extent.width),
+            end(rect.offset.y, rect.extent.height)};
+}
+
+}  // namespace
+
+PreparedDraw prepareDraw(const DrawCall& call, const VkRect2D& renderArea) {
+    PreparedDraw draw;
+    draw.call = call;
+    draw.plan = &call.pipeline->plan();
+    draw.state = &call.pipeline->state();
+    draw.subPixelBits = call.pipeline->accuracy().subPixelBits;
+
+    const VkViewport& v = call.dynamic->viewports[0];
+    const double halfWidth = 0.5 * double{v.width}, halfHeight = 0.5 * double{v.height};
+    draw.viewport = {{halfWidth, halfHeight, double{v.maxDepth} - double{v.minDepth}},
+                     {double{v.x} + halfWidth, double{v.y} + halfHeight, double{v.minDepth}}};
+    draw.area = intersect(rectOf(call.dynamic->scissors[0]), rectOf(renderArea));
+    PixelRect viewport;
+    pixelRange(double{v.x}, double{v.x} + double{v.width}, viewport.x0, viewport.x1);
+    const double y0 = double{v.y}, y1 = double{v.y} + double{v.height};
+    pixelRange(std::min(y0, y1), std::max(y0, y1), viewport.y0, viewport.y1);
+    draw.triangleArea = intersect(draw.area, viewport);
+
+    // Depths outside [0, 1] have no place in a fixed-point attachment, and without VK_EXT_depth_range_unrestricted none in
+    // a float one.
+    const auto unit = [](float value) { return value >= 0 ? std::min(value, 1.0f) : 0.0f; };
+    if (draw.plan->depth.clampToViewport) {
+        draw.depthLow = unit(std::min(v.minDepth, v.maxDepth));
+        draw.depthHigh = unit(std::max(v.minDepth, v.maxDepth));
+    }
+    draw.runs = vertexRuns(call, draw.state->topology, draw.state->primitiveRestart);
+    if (!draw.runs.empty()) draw.primitivesPerInstance = draw.runs.back().firstPrimitive + draw.runs.back().primitives;
+    return draw;
+}
+
+}  // namespace vernier

@@ -1,0 +1,43 @@
+// A draw with everything that is the same for all its primitives worked out.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "runtime/geometry/draw_call.h"
+#include "runtime/geometry/topology.h"
+#include "runtime/plan/plan.h"
+
+namespace vernier {
+
+/// window = clip / w * scale + offset, in double: within half a unit of its last place of the exact value, far finer
+/// than any sub-pixel grid, so that the grid point is the one nearest to the exact coordinate.
+struct ViewportTransform {
+    double scale[3], offset[3];
+};
+
+/// Pixels [x0, x1) x [y0, y1).
+struct PixelRect {
+    int32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    bool empty() const { return x0 >= x1 || y0 >= y1; }
+};
+
+struct PreparedDraw {
+    DrawCall call;
+    const Plan* plan = nullptr;
+    const GraphicsState* state = nullptr;
+    ViewportTransform viewport{};
+    PixelRect triangleArea;       // scissor, render area, and the viewport: what clipping to the view volume leaves
+    PixelRect area;               // scissor and render area, for points and lines
+    float depthLow = 0, depthHigh = 1;  // what depths are clamped to
+    uint32_t subPixelBits = 8;
+    std::vector<VertexRun> runs;
+    uint32_t primitivesPerInstance = 0;
+    uint32_t fragmentState = 0;   // draws with the same number may share fragment batches
+
+    uint64_t primitives() const { return uint64_t{primitivesPerInstance} * call.instances; }
+};
+
+PreparedDraw prepareDraw(const DrawCall& call, const VkRect2D& renderArea);
+
+}  // namespace vernier

@@ -1,0 +1,253 @@
+#include "runtime/geometry/primitive_setup.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "runtime/geometry/depth_bias.h"
+
+namespace vernier {
+namespace {
+
+/// The power of two to divide 1/w by so that float can hold it: 0 in all ordinary cases.
+int16_t exponentOf(double largest) {
+    constexpr int kOrdinary = 60;
+    const int exponent = static_cast<int>(std::bit_cast<uint64_t>(largest) >> 52 & 0x7FF) - 1023;
+    return std::abs(exponent) > kOrdinary ? static_cast<int16_t>(exponent) : int16_t{0};
+}
+
+double powerOfTwo(int exponent) { return std::bit_cast<double>(static_cast<uint64_t>(exponent + 1023) << 52); }
+
+/// Pixels whose centres (one sample) or any part (several samples) lie between two coordinates in sub-units.
+void pixelBounds(int32_t low, int32_t high, uint32_t bits, uint32_t samples, int32_t& first, int32_t& last) {
+    const int32_t half = samples > 1 ? 0 : 1 << (bits - 1);
+    first = samples > 1 ? low >> bits : (low - half + (1 << bits) - 1) >> bits;
+    last = (high - half) >> bits;
+}
+
+bool culled(VkCullModeFlags mode, bool front) {
+    return (mode & static_cast<VkCullModeFlags>(front ? VK_CULL_MODE_FRONT_BIT : VK_CULL_MODE_BACK_BIT)) != 0;
+}
+
+int32_t snap(double pixels, uint32_t bits) {
+    const double bounded = std::clamp(pixels, double{kGuardBandMin}, double{kGuardBandMax});
+    return static_cast<int32_t>(std::nearbyint(bounded * static_cast<double>(1u << bits)));
+}
+
+bool before(const WindowVertex& a, const WindowVertex& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; }
+
+}  // namespace
+
+TileGrid tileGridOf(const VkRect2D& area) {
+    const auto tile = [](uint32_t pixel) { return pixel / kTileSize; };
+    const auto x = static_cast<uint32_t>(area.offset.x), y = static_cast<uint32_t>(area.offset.y);
+    TileGrid grid;
+    grid.x0 = static_cast<int32_t>(tile(x) * kTileSize);
+    grid.y0 = static_cast<int32_t>(tile(y) * kTileSize);
+    grid.columns = tile(x + area.extent.width + kTileSize - 1) - tile(x);
+    grid.rows = tile(y + area.extent.height + kTileSize - 1) - tile(y);
+    return grid;
+}
+
+void PrimitiveSetup::begin(Chunk& chunk, const TileGrid& grid) {
+    chunk_ = &chunk;
+    grid_ = grid;
+    entries_.clear();
+    touched_.clear();
+    if (perTile_.size() < grid.count()) perTile_.resize(grid.count(), 0);
+}
+
+void PrimitiveSetup::addPolygon(const PreparedDraw& draw, const PrimitiveInfo& info,
+                                std::span<const WindowVertex> polygon) {
+    // A fan over a clipped polygon has one facing: that of the whole. Snapping can turn a sliver of the fan over; it is
+    // dropped rather than drawn twice.
+    int64_t area = 0;
+    for (size_t n = 2; n < polygon.size(); ++n) area += doubleArea(polygon[0], polygon[n - 1], polygon[n]);
+    if (area == 0) return;
+    Style style;
+    style.front = (area > 0) == (draw.state->frontFace == VK_FRONT_FACE_CLOCKWISE);
+    if (culled(draw.state->cullMode, style.front)) return;
+    style.area = &draw.triangleArea;
+    if (draw.state->depthBiasEnable) {
+        size_t largest = 2;
+        for (size_t n = 3; n < polygon.size(); ++n)
+            if (std::abs(doubleArea(polygon[0], polygon[n - 1], polygon[n])) >
+                std::abs(doubleArea(polygon[0], polygon[largest - 1], polygon[largest])))
+                largest = n;
+        style.depthBias = depthBias(draw, polygon, polygon[0], polygon[largest - 1], polygon[largest]);
+    }
+    switch (draw.state->polygonMode) {
+        case VK_POLYGON_MODE_LINE:
+            style.area = &draw.area;
+            for (size_t n = 0; n < polygon.size(); ++n)
+                addSegment(draw, info, style, polygon[n], polygon[(n + 1) % polygon.size()]);
+            return;
+        case VK_POLYGON_MODE_POINT: {
+            style.area = &draw.area;
+            const double subUnits = static_cast<double>(1u << draw.subPixelBits);
+            for (const WindowVertex& v : polygon) addSquare(draw, info, style, v, v.x / subUnits, v.y / subUnits, 1);
+            return;
+        }
+        default: break;
+    }
+    for (size_t n = 2; n < polygon.size(); ++n) {
+        if ((doubleArea(polygon[0], polygon[n - 1], polygon[n]) > 0) != (area > 0)) continue;
+        addTriangle(draw, info, style, polygon[0], polygon[n - 1], polygon[n]);
+    }
+}
+
+void PrimitiveSetup::addLine(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& a,
+                             const WindowVertex& b) {
+    Style style;
+    style.area = &draw.area;
+    addSegment(draw, info, style, a, b);
+}
+
+void PrimitiveSetup::addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& vertex, double x,
+                              double y, float size) {
+    Style style;
+    style.area = &draw.area;
+    addSquare(draw, info, style, vertex, x, y, size);
+}
+
+void PrimitiveSetup::addSegment(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style,
+                                const WindowVertex& a, const WindowVertex& b) {
+    const double subUnits = static_cast<double>(1u << draw.subPixelBits);
+    const double ax = a.x / subUnits, ay = a.y / subUnits, bx = b.x / subUnits, by = b.y / subUnits;
+    const double length = std::sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay));
+    if (length == 0) return;
+    const double halfWidth = 0.5 * std::clamp(double{draw.call.dynamic->lineWidth}, 0.125, double{kMaxLineWidth});
+    const double nx = -(by - ay) / length * halfWidth, ny = (bx - ax) / length * halfWidth;
+    const auto corner = [&](const WindowVertex& v, double x, double y) {
+        WindowVertex result = v;
+        result.x = snap(x, draw.subPixelBits);
+        result.y = snap(y, draw.subPixelBits);
+        return result;
+    };
+    const WindowVertex a0 = corner(a, ax - nx, ay - ny), a1 = corner(a, ax + nx, ay + ny);
+    const WindowVertex b0 = corner(b, bx - nx, by - ny), b1 = corner(b, bx + nx, by + ny);
+    addTriangle(draw, info, style, a0, b0, b1);
+    addTriangle(draw, info, style, a0, b1, a1);
+}
+
+void PrimitiveSetup::addSquare(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style,
+                               const WindowVertex& vertex, double x, double y, float size) {
+    const double clamped = size >= kMinPointSize ? std::min(size, kMaxPointSize) : kMinPointSize;  // NaN: the least
+    const std::array<float, 3> point{static_cast<float>(x), static_cast<float>(y), static_cast<float>(1 / clamped)};
+    Style square = style;
+    square.point = &point;
+    const auto corner = [&](double sx, double sy) {
+        WindowVertex result = vertex;
+        result.x = snap(x + sx * clamped, draw.subPixelBits);
+        result.y = snap(y + sy * clamped, draw.subPixelBits);
+        return result;
+    };
+    const WindowVertex tl = corner(-0.5, -0.5), tr = corner(0.5, -0.5), br = corner(0.5, 0.5), bl = corner(-0.5, 0.5);
+    addTriangle(draw, info, square, tl, tr, br);
+    addTriangle(draw, info, square, tl, br, bl);
+}
+
+void PrimitiveSetup::addTriangle(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style,
+                                 const WindowVertex& a, const WindowVertex& b, const WindowVertex& c) {
+    const int64_t area = doubleArea(a, b, c);
+    if (area == 0) return;
+    const uint32_t bits = draw.subPixelBits;
+    int32_t x0, x1, y0, y1;
+    pixelBounds(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), bits, draw.plan->samples, x0, x1);
+    pixelBounds(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), bits, draw.plan->samples, y0, y1);
+    x0 = std::max(x0, style.area->x0);
+    y0 = std::max(y0, style.area->y0);
+    x1 = std::min(x1, style.area->x1 - 1);
+    y1 = std::min(y1, style.area->y1 - 1);
+    if (x0 > x1 || y0 > y1) return;
+
+    const WindowVertex* v[3] = {&a, area > 0 ? &b : &c, area > 0 ? &c : &b};
+    const int least = before(*v[1], *v[0]) ? (before(*v[2], *v[1]) ? 2 : 1) : (before(*v[2], *v[0]) ? 2 : 0);
+
+    const auto index = static_cast<uint32_t>(chunk_->primitives.size());
+    Primitive& p = chunk_->primitives.emplace_back();
+    double inverseW[3];
+    for (int n = 0; n < 3; ++n) {
+        const WindowVertex& vertex = *v[(least + n) % 3];
+        p.x[n] = vertex.x;
+        p.y[n] = vertex.y;
+        p.z[n] = vertex.z;
+        p.attributes[n] = vertex.attributes;
+        inverseW[n] = vertex.inverseW;
+    }
+    p.wExponent = exponentOf(std::max({inverseW[0], inverseW[1], inverseW[2]}));
+    const double scale = powerOfTwo(-p.wExponent);
+    for (int n = 0; n < 3; ++n) p.w[n] = static_cast<float>(inverseW[n] * scale);
+    p.affine = p.w[0] == p.w[1] && p.w[1] == p.w[2];
+    p.depthBias = style.depthBias;
+    p.flat = info.flat;
+    p.bounds = {static_cast<int16_t>(x0), static_cast<int16_t>(y0), static_cast<int16_t>(x1), static_cast<int16_t>(y1)};
+    p.draw = info.draw;
+    p.primitiveId = info.primitiveId;
+    p.front = style.front;
+    p.isPoint = style.point != nullptr;
+    p.point = p.isPoint ? *style.point : std::array<float, 3>{};
+    const auto span = [](const std::array<int32_t, 3>& values) {
+        return int64_t{std::max({values[0], values[1], values[2]})} - std::min({values[0], values[1], values[2]});
+    };
+    p.smallEdges = std::max(span(p.x), span(p.y)) <= int64_t{1} << kSmallEdgeBits;
+    bin(p, index, bits);
+}
+
+void PrimitiveSetup::bin(const Primitive& p, uint32_t index, uint32_t subPixelBits) {
+    const auto column = [&](int32_t x) { return static_cast<uint32_t>((x - grid_.x0) / kTileSize); };
+    const auto row = [&](int32_t y) { return static_cast<uint32_t>((y - grid_.y0) / kTileSize); };
+    const uint32_t tx0 = column(p.bounds[0]), tx1 = column(p.bounds[2]);
+    const uint32_t ty0 = row(p.bounds[1]), ty1 = row(p.bounds[3]);
+    const auto add = [&](uint32_t tile, uint32_t flags) {
+        if (perTile_[tile]++ == 0) touched_.push_back(tile);
+        entries_.push_back({tile, index | flags});
+    };
+    if (tx0 == tx1 && ty0 == ty1) {
+        add(ty0 * grid_.columns + tx0, 0);
+        return;
+    }
+    // Edge functions at the corner of the first tile, and how far they change over one tile.
+    int64_t corner[3], stepX[3], stepY[3];
+    const int64_t tileUnits = int64_t{kTileSize} << subPixelBits;
+    const int64_t cx = (grid_.x0 + static_cast<int64_t>(tx0) * kTileSize) * (int64_t{1} << subPixelBits);
+    const int64_t cy = (grid_.y0 + static_cast<int64_t>(ty0) * kTileSize) * (int64_t{1} << subPixelBits);
+    for (int e = 0; e < 3; ++e) {
+        const int next = (e + 1) % 3;
+        const int64_t a = int64_t{p.y[e]} - p.y[next], b = int64_t{p.x[next]} - p.x[e];
+        corner[e] = a * (cx - p.x[e]) + b * (cy - p.y[e]);
+        stepX[e] = a * tileUnits;
+        stepY[e] = b * tileUnits;
+    }
+    for (uint32_t ty = ty0; ty <= ty1; ++ty) {
+        for (uint32_t tx = tx0; tx <= tx1; ++tx) {
+            bool outside = false, inside = true;
+            for (int e = 0; e < 3; ++e) {
+                const int64_t value = corner[e] + stepX[e] * (tx - tx0) + stepY[e] * (ty - ty0);
+                outside |= value + std::max<int64_t>(stepX[e], 0) + std::max<int64_t>(stepY[e], 0) < 0;
+                inside &= value + std::min<int64_t>(stepX[e], 0) + std::min<int64_t>(stepY[e], 0) > 0;
+            }
+            if (outside) continue;
+            const int32_t x = grid_.x0 + static_cast<int32_t>(tx) * kTileSize;
+            const int32_t y = grid_.y0 + static_cast<int32_t>(ty) * kTileSize;
+            inside &= p.bounds[0] <= x && p.bounds[1] <= y && p.bounds[2] >= x + kTileSize - 1 &&
+                      p.bounds[3] >= y + kTileSize - 1;
+            add(ty * grid_.columns + tx, inside ? kCoversTile : 0);
+        }
+    }
+}
+
+void PrimitiveSetup::finish() {
+    uint32_t first = 0;
+    for (const uint32_t tile : touched_) {
+        chunk_->ranges.push_back({tile, first, perTile_[tile]});
+        const uint32_t count = perTile_[tile];
+        perTile_[tile] = first;  // from here on: where the tile's next entry goes
+        first += count;
+    }
+    chunk_->entries.resize(entries_.size());
+    for (const Entry& entry : entries_) chunk_->entries[perTile_[entry.tile]++] = entry.primitive;
+    for (const uint32_t tile : touched_) perTile_[tile] = 0;
+}
+
+}  // namespace vernier

@@ -1,0 +1,87 @@
+// From window vertices to primitives in a chunk, and from primitives to tiles.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "runtime/geometry/chunk.h"
+#include "runtime/geometry/prepared_draw.h"
+
+namespace vernier {
+
+inline constexpr float kMinPointSize = 1.0f, kMaxPointSize = 256.0f;
+inline constexpr float kMaxLineWidth = 64.0f;
+
+/// The tiles of a render area: tile (0, 0) of the grid has its first pixel at (x0, y0), a multiple of kTileSize.
+struct TileGrid {
+    int32_t x0 = 0, y0 = 0;
+    uint32_t columns = 0, rows = 0;
+    uint32_t count() const { return columns * rows; }
+};
+
+/// The least grid of whole tiles around an area that lies at or below coordinate 0.
+TileGrid tileGridOf(const VkRect2D& area);
+
+struct WindowVertex {
+    int32_t x = 0, y = 0;  // sub-units
+    float z = 0;
+    double inverseW = 1;
+    uint32_t attributes = 0;
+};
+
+/// What all triangles of one primitive of a draw have in common.
+struct PrimitiveInfo {
+    uint32_t draw = 0;
+    uint32_t primitiveId = 0;
+    uint32_t flat = 0;  // attributes of the provoking vertex
+};
+
+/// Fills one chunk. One per thread; keeps its scratch memory.
+class PrimitiveSetup {
+  public:
+    void begin(Chunk& chunk, const TileGrid& grid);
+    /// A convex polygon of at least three vertices, in order: culled, then drawn as the polygon mode says.
+    void addPolygon(const PreparedDraw& draw, const PrimitiveInfo& info, std::span<const WindowVertex> polygon);
+    /// A rectangle of the line width around the segment.
+    void addLine(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& a, const WindowVertex& b);
+    /// A square around a centre in pixels, not snapped.
+    void addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& vertex, double x, double y,
+                  float size);
+    /// Sorts what was added by tile.
+    void finish();
+
+  private:
+    struct Entry {
+        uint32_t tile, primitive;
+    };
+    struct Style {  // of the triangles of one primitive
+        bool front = true;
+        float depthBias = 0;
+        const PixelRect* area = nullptr;
+        const std::array<float, 3>* point = nullptr;
+    };
+    void addTriangle(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style, const WindowVertex& a,
+                     const WindowVertex& b, const WindowVertex& c);
+    void addSegment(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style, const WindowVertex& a,
+                    const WindowVertex& b);
+    void addSquare(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style, const WindowVertex& vertex,
+                   double x, double y, float size);
+    void bin(const Primitive& primitive, uint32_t index, uint32_t subPixelBits);
+
+    Chunk* chunk_ = nullptr;
+    TileGrid grid_;
+    std::vector<Entry> entries_;
+    std::vector<uint32_t> perTile_;  // zero between chunks
+    std::vector<uint32_t> touched_;
+};
+
+/// Twice the signed area; positive when clockwise on the screen (y down).
+inline int64_t doubleArea(const WindowVertex& a, const WindowVertex& b, const WindowVertex& c) {
+    const int64_t abx = int64_t{b.x} - a.x, aby = int64_t{b.y} - a.y;
+    const int64_t acx = int64_t{c.x} - a.x, acy = int64_t{c.y} - a.y;
+    return abx * acy - aby * acx;
+}
+
+}  // namespace vernier

@@ -1,0 +1,192 @@
+#include "runtime/geometry/vertex_stage.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "runtime/geometry/project.h"
+
+namespace vernier {
+namespace {
+
+constexpr uint32_t kMaxBatchLanes = 128;
+constexpr size_t kMaxKeptContexts = 64;
+alignas(16) constexpr std::byte kZeroTexel[32]{};
+
+/// Where the texel of a vertex lies, or zeros for one outside its buffer.
+const std::byte* locate(const VertexStream& stream, const AttributeFetch& fetch, uint64_t element) {
+    const uint64_t offset = element * fetch.stride + fetch.offset;
+    return offset + fetch.texelBytes <= stream.size ? stream.data + offset : kZeroTexel;
+}
+
+void fetchAttribute(const PreparedDraw& draw, const AttributeFetch& fetch, const VertexRef* refs, uint32_t count,
+                    BatchContext& context) {
+    const VertexStream& stream = draw.call.vertexStreams[fetch.binding];
+    const std::byte* texels[kMaxBatchLanes];
+    for (uint32_t n = 0; n < count; ++n)
+        texels[n] = locate(stream, fetch,
+                           fetch.perInstance ? uint64_t{draw.call.firstInstance} + refs[n].instance : refs[n].index);
+    void* planes[4];
+    for (uint32_t c = 0; c < 4; ++c) planes[c] = fetch.slots[c] == kNoSlot ? nullptr : context.input(fetch.slots[c]);
+    if (!fetch.words) {
+        fetch.ops.unpackEach(texels, count, planes);
+        return;
+    }
+    for (uint32_t c = 0; c < 4; ++c) {
+        if (planes[c] == nullptr) continue;
+        auto* plane = static_cast<uint32_t*>(planes[c]);
+        if (c < fetch.components) {
+            for (uint32_t n = 0; n < count; ++n) std::memcpy(plane + n, texels[n] + 4 * c, 4);
+        } else {
+            std::fill_n(plane, count, c == 3 ? fetch.alphaBits : 0u);
+        }
+    }
+}
+
+uint32_t builtinValue(const PreparedDraw& draw, ir::Builtin builtin, const VertexRef& ref) {
+    const DrawCall& call = draw.call;
+    switch (builtin) {
+        case ir::Builtin::vertexIndex: return ref.index;
+        case ir::Builtin::instanceIndex: return call.firstInstance + ref.instance;
+        case ir::Builtin::baseVertex:
+            return call.indices.data != nullptr ? static_cast<uint32_t>(call.vertexOffset) : call.first;
+        case ir::Builtin::baseInstance: return call.firstInstance;
+        case ir::Builtin::drawIndex: return call.drawIndex;
+        default: return 0;
+    }
+}
+
+void fetchInputs(const PreparedDraw& draw, const VertexRef* refs, uint32_t count, BatchContext& context) {
+    for (const AttributeFetch& fetch : draw.plan->attributes) fetchAttribute(draw, fetch, refs, count, context);
+    for (const BuiltinSlot& builtin : draw.plan->vertexBuiltins) {
+        float* plane = context.input(builtin.slot);
+        if (plane == nullptr) continue;
+        for (uint32_t n = 0; n < count; ++n) {
+            const uint32_t value = builtinValue(draw, builtin.builtin, refs[n]);
+            std::memcpy(plane + n, &value, 4);
+        }
+    }
+}
+
+void copyPlane(const BatchContext& context, uint32_t slot, uint32_t count, float missing, float* target) {
+    if (slot == kNoSlot) {
+        std::fill_n(target, count, missing);
+    } else {
+        std::memcpy(target, context.output(slot), count * sizeof(float));
+    }
+}
+
+/// Outputs of one batch to the arrays, from vertex `first` on.
+void storeOutputs(const Plan& plan, const BatchContext& context, uint32_t first, uint32_t count,
+                  ShadedVertices& vertices, Chunk& chunk) {
+    for (uint32_t c = 0; c < 4; ++c)
+        copyPlane(context, plan.positionSlots[c], count, c == 3 ? 1.0f : 0.0f, vertices.clip[c].data() + first);
+    if (!vertices.pointSize.empty())
+        copyPlane(context, plan.pointSizeSlot, count, 1.0f, vertices.pointSize.data() + first);
+
+    const auto clipCount = static_cast<uint32_t>(plan.clipDistanceSlots.size());
+    for (uint32_t k = 0; k < clipCount; ++k) {
+        const float* plane = context.output(plan.clipDistanceSlots[k]);
+        for (uint32_t n = 0; n < count; ++n) vertices.clipDistances[(first + n) * clipCount + k] = plane[n];
+    }
+    const uint32_t stride = vertices.attributeStride;
+    float* attributes = chunk.attributes.data() + vertices.firstAttribute + size_t{first} * stride;
+    for (uint32_t k = 0; k < stride; ++k) {
+        const uint32_t slot = plan.varyings[k].vertexSlot;
+        if (slot == kNoSlot) {
+            for (uint32_t n = 0; n < count; ++n) attributes[n * stride + k] = 0;
+            continue;
+        }
+        // Bits, not values: a copy must not touch the payload of a NaN.
+        const float* plane = context.output(slot);
+        for (uint32_t n = 0; n < count; ++n) std::memcpy(attributes + n * stride + k, plane + n, sizeof(float));
+    }
+}
+
+void storeCullDistances(const Plan& plan, const BatchContext& context, uint32_t first, uint32_t count,
+                        ShadedVertices& vertices) {
+    for (uint32_t k = 0; k < plan.cullDistanceSlots.size(); ++k) {
+        const float* plane = context.output(plan.cullDistanceSlots[k]);
+        for (uint32_t n = 0; n < count; ++n)
+            vertices.culled[first + n] |= static_cast<uint8_t>((plane[n] < 0 ? 1u : 0u) << k);
+    }
+}
+
+/// Clip distances: negative is outside. NaN counts as outside of everything it is compared with: as not finite.
+void flagClipDistances(uint32_t count, uint32_t clipCount, ShadedVertices& vertices) {
+    for (uint32_t n = 0; n < count; ++n) {
+        for (uint32_t k = 0; k < clipCount; ++k) {
+            const float distance = vertices.clipDistances[n * clipCount + k];
+            if (distance < 0) vertices.flags[n] |= kOutsideUser << k;
+            if (distance != distance) vertices.flags[n] |= kNotFinite;
+        }
+    }
+}
+
+}  // namespace
+
+ContextCache::Entry& ContextCache::get(const std::shared_ptr<const BatchProgram>& program) {
+    const auto found = entries_.find(program.get());
+    if (found != entries_.end()) return found->second;
+    return entries_.emplace(program.get(), Entry{BatchContext(program), 0}).first->second;
+}
+
+void ContextCache::startPass() {
+    if (entries_.size() > kMaxKeptContexts) entries_.clear();
+    for (auto& [program, entry] : entries_) entry.begun = 0;
+}
+
+void ShadedVertices::resize(uint32_t count, const Plan& plan) {
+    const uint32_t padded = (count + 15) / 16 * 16;
+    for (auto& plane : clip) plane.resize(padded);
+    x.resize(padded);
+    y.resize(padded);
+    z.resize(padded);
+    inverseW.resize(padded);
+    flags.resize(padded);
+    culled.assign(plan.cullDistanceSlots.empty() ? 0 : count, 0);
+    clipDistances.resize(count * plan.clipDistanceSlots.size());
+    pointSize.resize(plan.pointSizeSlot == kNoSlot ? 0 : count);
+}
+
+bool shadeVertices(const PreparedDraw& draw, uint64_t token, const std::vector<VertexRef>& refs, ContextCache& cache,
+                   ShadedVertices& vertices, Chunk& chunk) {
+    const Plan& plan = *draw.plan;
+    const auto count = static_cast<uint32_t>(refs.size());
+    vertices.resize(count, plan);
+    vertices.attributeStride = static_cast<uint32_t>(plan.varyings.size());
+    vertices.firstAttribute = static_cast<uint32_t>(chunk.attributes.size());
+    chunk.attributes.resize(chunk.attributes.size() + size_t{count} * vertices.attributeStride);
+
+    const std::shared_ptr<const BatchProgram>& program = draw.call.pipeline->vertexProgram();
+    ContextCache::Entry& entry = cache.get(program);
+    if (entry.begun != token) {
+        entry.context.beginDraw(draw.call.vertexResources);
+        entry.begun = token;
+    }
+    const uint32_t lanes = std::min(program->lanes(), kMaxBatchLanes);
+    alignas(64) uint32_t mask[kMaxBatchLanes];
+    bool finished = true;
+    for (uint32_t first = 0; first < count; first += lanes) {
+        const uint32_t n = std::min(lanes, count - first), padded = (n + 3) / 4 * 4;
+        fetchInputs(draw, refs.data() + first, n, entry.context);
+        std::fill_n(mask, n, ~0u);
+        std::fill_n(mask + n, lanes - n, 0u);
+        finished &= entry.context.run(padded, mask, mask);
+        storeOutputs(plan, entry.context, first, n, vertices, chunk);
+        storeCullDistances(plan, entry.context, first, n, vertices);
+    }
+    const ProjectionInput in{{vertices.clip[0].data(), vertices.clip[1].data(), vertices.clip[2].data(),
+                              vertices.clip[3].data()},
+                             count,
+                             draw.viewport,
+                             draw.subPixelBits,
+                             draw.state->depthClipEnable};
+    const ProjectionOutput out{vertices.x.data(), vertices.y.data(), vertices.z.data(), vertices.inverseW.data(),
+                               vertices.flags.data()};
+    projectFunction(draw.call.pipeline->isa())(in, out);
+    flagClipDistances(count, static_cast<uint32_t>(plan.clipDistanceSlots.size()), vertices);
+    return finished;
+}
+
+}  // namespace vernier

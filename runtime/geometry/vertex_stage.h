@@ -1,0 +1,57 @@
+// Vertex fetch, the vertex program, and projection, for the vertices of a run of primitives.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "runtime/geometry/chunk.h"
+#include "runtime/geometry/prepared_draw.h"
+#include "spirv_interp/program.h"
+
+namespace vernier {
+
+/// One thread's registers, by program. Kept from pass to pass.
+class ContextCache {
+  public:
+    struct Entry {
+        BatchContext context;
+        uint64_t begun = 0;  // what beginDraw was last called for; 0 = nothing
+    };
+    Entry& get(const std::shared_ptr<const BatchProgram>& program);
+    /// Forgets what was begun: bindings of an earlier pass may be gone. Drops contexts when there are many.
+    void startPass();
+
+  private:
+    std::unordered_map<const BatchProgram*, Entry> entries_;
+};
+
+struct VertexRef {
+    uint32_t index;     // gl_VertexIndex
+    uint32_t instance;  // counted from 0
+};
+
+/// Vertices after the vertex program: structure of arrays. Attributes go straight into the chunk.
+struct ShadedVertices {
+    std::vector<float> clip[4];
+    std::vector<int32_t> x, y;
+    std::vector<float> z;
+    std::vector<double> inverseW;
+    std::vector<uint32_t> flags;
+    std::vector<uint8_t> culled;       // bit per cull distance: negative
+    std::vector<float> clipDistances;  // vertex-major
+    std::vector<float> pointSize;
+    uint32_t firstAttribute = 0;       // of vertex 0 in Chunk::attributes
+    uint32_t attributeStride = 0;
+
+    void resize(uint32_t count, const Plan& plan);
+};
+
+/// Runs `draw`'s vertex program for `refs`. `token` identifies the draw's bindings for ContextCache. Returns false when the
+/// program ran out of its loop budget.
+bool shadeVertices(const PreparedDraw& draw, uint64_t token, const std::vector<VertexRef>& refs, ContextCache& cache,
+                   ShadedVertices& vertices, Chunk& chunk);
+
+}  // namespace vernier

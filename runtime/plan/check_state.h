@@ -1,0 +1,15 @@
+// What a pipeline is refused for.
+#pragma once
+
+#include "base/result.h"
+#include "runtime/plan/pipeline.h"
+
+namespace vernier {
+
+/// Checks the state alone: values in range, formats known and usable, nothing that is not implemented.
+Status checkGraphicsState(const GraphicsState& state, const Accuracy& accuracy);
+
+/// Checks the shaders against the state and each other.
+Status checkInterfaces(const GraphicsState& state, const ir::Program& vertex, const ir::Program* fragment);
+
+}  // namespace vernier

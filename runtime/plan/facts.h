@@ -1,0 +1,11 @@
+// The plan in words.
+#pragma once
+
+#include "runtime/plan/plan.h"
+
+namespace vernier {
+
+/// Fills plan.facts from the decisions in `plan`.
+void collectFacts(const GraphicsState& state, const ShaderProgram& program, Plan& plan);
+
+}  // namespace vernier

@@ -1,0 +1,234 @@
+#include "runtime/plan/plan.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "runtime/plan/facts.h"
+
+namespace vernier {
+namespace {
+
+bool isFloat(const FormatInfo& info) { return info.color.type == ValueType::floating; }
+
+/// All components are whole 32-bit words that need no conversion.
+bool isWords(const TexelLayout& layout, uint32_t components) {
+    for (uint32_t c = 0; c < components; ++c) {
+        const Component& component = layout.rgba[c];
+        const bool plain = component.kind == ComponentKind::sfloat || component.kind == ComponentKind::uint ||
+                           component.kind == ComponentKind::sint;
+        if (component.bits != 32 || component.offset != 32 * c || !plain) return false;
+    }
+    return true;
+}
+
+void planAttributes(const GraphicsState& state, const ir::Program& vertex, Isa isa, Plan& plan) {
+    for (const VkVertexInputAttributeDescription& description : state.vertexAttributes) {
+        AttributeFetch fetch;
+        bool used = false;
+        for (uint32_t slot = 0; slot < vertex.inputs.size(); ++slot) {
+            const ir::InterfaceSlot& input = vertex.inputs[slot];
+            if (input.builtin != ir::Builtin::user || input.location != description.location || input.component > 3)
+                continue;
+            fetch.slots[input.component] = slot;
+            used = true;
+        }
+        if (!used) continue;
+        const FormatInfo& info = *findFormat(description.format);
+        fetch.ops = formatOps(description.format, isa);
+        fetch.components = info.componentCount;
+        fetch.words = isWords(info.color, info.componentCount);
+        fetch.texelBytes = info.bytesPerTexel;
+        fetch.alphaBits = isFloat(info) ? std::bit_cast<uint32_t>(1.0f) : 1u;
+        fetch.binding = description.binding;
+        fetch.offset = description.offset;
+        for (const auto& binding : state.vertexBindings) {
+            if (binding.binding != description.binding) continue;
+            fetch.stride = binding.stride;
+            fetch.perInstance = binding.inputRate == VK_VERTEX_INPUT_RATE_INSTANCE;
+        }
+        plan.attributes.push_back(fetch);
+    }
+    for (uint32_t slot = 0; slot < vertex.inputs.size(); ++slot)
+        if (vertex.inputs[slot].builtin != ir::Builtin::user)
+            plan.vertexBuiltins.push_back({vertex.inputs[slot].builtin, vertex.inputs[slot].component, slot});
+}
+
+void planVertexOutputs(const ir::Program& vertex, Plan& plan) {
+    const auto distanceSlot = [](std::vector<uint32_t>& slots, uint32_t component, uint32_t slot) {
+        if (slots.size() <= component) slots.resize(component + 1, slot);
+        slots[component] = slot;
+    };
+    for (uint32_t slot = 0; slot < vertex.outputs.size(); ++slot) {
+        const ir::InterfaceSlot& output = vertex.outputs[slot];
+        switch (output.builtin) {
+            case ir::Builtin::position: plan.positionSlots[output.component & 3] = slot; break;
+            case ir::Builtin::pointSize: plan.pointSizeSlot = slot; break;
+            case ir::Builtin::clipDistance: distanceSlot(plan.clipDistanceSlots, output.component, slot); break;
+            case ir::Builtin::cullDistance: distanceSlot(plan.cullDistanceSlots, output.component, slot); break;
+            default: break;
+        }
+    }
+}
+
+void planVaryings(const ir::Program& vertex, const ir::Program& fragment, Plan& plan) {
+    for (uint32_t slot = 0; slot < fragment.inputs.size(); ++slot) {
+        const ir::InterfaceSlot& input = fragment.inputs[slot];
+        if (input.builtin != ir::Builtin::user) {
+            plan.fragmentBuiltins.push_back({input.builtin, input.component, slot});
+            continue;
+        }
+        Varying varying{kNoSlot, slot, input.interpolation, input.sampling};
+        for (uint32_t out = 0; out < vertex.outputs.size(); ++out) {
+            const ir::InterfaceSlot& output = vertex.outputs[out];
+            if (output.builtin == ir::Builtin::user && output.location == input.location &&
+                output.component == input.component)
+                varying.vertexSlot = out;
+        }
+        plan.varyings.push_back(varying);
+    }
+    std::stable_sort(plan.varyings.begin(), plan.varyings.end(), [](const Varying& a, const Varying& b) {
+        return static_cast<int>(a.interpolation) < static_cast<int>(b.interpolation);
+    });
+    for (const Varying& varying : plan.varyings) {
+        plan.smoothCount += varying.interpolation == ir::Interpolation::smooth;
+        plan.linearCount += varying.interpolation == ir::Interpolation::noPerspective;
+        if (varying.interpolation != ir::Interpolation::flat) {
+            plan.needsBarycentrics = true;
+            plan.needsCentroid |= varying.sampling == ir::Sampling::centroid && plan.samples > 1;
+        }
+    }
+}
+
+DepthStorage storageOf(VkFormat format) {
+    switch (format) {
+        case VK_FORMAT_D16_UNORM: return DepthStorage::d16;
+        case VK_FORMAT_X8_D24_UNORM_PACK32:
+        case VK_FORMAT_D24_UNORM_S8_UINT: return DepthStorage::d24;
+        case VK_FORMAT_D32_SFLOAT: return DepthStorage::d32f;
+        case VK_FORMAT_D32_SFLOAT_S8_UINT: return DepthStorage::d32fs8;
+        default: return DepthStorage::none;
+    }
+}
+
+bool changesStencil(const VkStencilOpState& face) {
+    return face.failOp != VK_STENCIL_OP_KEEP || face.passOp != VK_STENCIL_OP_KEEP ||
+           face.depthFailOp != VK_STENCIL_OP_KEEP;
+}
+
+void planDepth(const GraphicsState& state, const ir::Program* fragment, Plan& plan) {
+    DepthPlan& depth = plan.depth;
+    const FormatInfo* info = findFormat(state.depthStencilFormat);
+    depth.storage = storageOf(state.depthStencilFormat);
+    depth.hasStencil = info != nullptr && (info->aspects & VK_IMAGE_ASPECT_STENCIL_BIT) != 0;
+    depth.clampToViewport = state.depthClampEnable;
+    const bool hasDepth = depth.storage != DepthStorage::none;
+    depth.test = hasDepth && state.depthTest;
+    depth.write = depth.test && state.depthWrite;
+    depth.bounds = hasDepth && state.depthBoundsTest;
+    depth.stencil = depth.hasStencil && state.stencilTest;
+    depth.compare = static_cast<uint8_t>(state.depthCompare & 7);
+    if (depth.test && state.depthCompare == VK_COMPARE_OP_ALWAYS && !depth.write) depth.test = false;
+    if (fragment == nullptr || fragment->earlyFragmentTests) return;
+    // Testing early must not be visible: not through writes for fragments that the program then drops, nor through side
+    // effects of fragments that should have run.
+    const bool writes = depth.write || (depth.stencil && (changesStencil(state.stencilFront) || changesStencil(state.stencilBack)));
+    const bool dropsFragments = fragment->canDiscard || fragment->writesSampleMask || state.alphaToCoverage;
+    depth.early = !fragment->writesDepth && !fragment->hasSideEffects && !(writes && dropsFragments);
+}
+
+/// src * 1 + dst * 0: the source itself.
+bool isReplace(const VkPipelineColorBlendAttachmentState& blend) {
+    return blend.colorBlendOp == VK_BLEND_OP_ADD && blend.alphaBlendOp == VK_BLEND_OP_ADD &&
+           blend.srcColorBlendFactor == VK_BLEND_FACTOR_ONE && blend.dstColorBlendFactor == VK_BLEND_FACTOR_ZERO &&
+           blend.srcAlphaBlendFactor == VK_BLEND_FACTOR_ONE && blend.dstAlphaBlendFactor == VK_BLEND_FACTOR_ZERO;
+}
+
+void planColor(const GraphicsState& state, const ir::Program& fragment, uint32_t attachment, Isa isa, Plan& plan) {
+    const VkFormat format = state.colorFormats[attachment];
+    const VkPipelineColorBlendAttachmentState& blend = state.blend[attachment];
+    if (format == VK_FORMAT_UNDEFINED || blend.colorWriteMask == 0) return;
+    ColorPlan color;
+    bool written = false;
+    for (uint32_t slot = 0; slot < fragment.outputs.size(); ++slot) {
+        const ir::InterfaceSlot& output = fragment.outputs[slot];
+        if (output.builtin != ir::Builtin::user || output.component > 3) continue;
+        if (output.location == attachment && output.index == 0) {
+            color.slots[output.component] = slot;
+            written = true;
+        }
+        if (output.location == attachment && output.index == 1) color.dualSlots[output.component] = slot;
+    }
+    if (!written) return;  // undefined by the specification: left as it is
+    const FormatInfo& info = *findFormat(format);
+    color.attachment = attachment;
+    color.format = format;
+    color.ops = formatOps(format, isa);
+    color.texelBytes = info.bytesPerTexel;
+    color.blend = blend;
+    const bool isSrgb = info.color.rgba[0].kind == ComponentKind::srgb;
+    if (state.logicOpEnable && (!isFloat(info) || (!isSrgb && info.color.rgba[0].kind == ComponentKind::unorm) ||
+                                info.color.rgba[0].kind == ComponentKind::snorm)) {
+        if (state.logicOp == VK_LOGIC_OP_NO_OP) return;
+        color.logicOp = state.logicOp;
+        if (state.logicOp != VK_LOGIC_OP_COPY) color.path = ColorPath::logic;
+    } else if (blend.blendEnable && !state.logicOpEnable && isFloat(info) && !isReplace(blend)) {
+        color.path = ColorPath::blend;
+    }
+    const ComponentKind kind = info.color.rgba[0].kind;
+    color.clampInputs = kind == ComponentKind::unorm || kind == ComponentKind::srgb || kind == ComponentKind::snorm;
+    color.clampLow = kind == ComponentKind::snorm ? -1.0f : 0.0f;
+    std::array<std::byte, 16> all{};
+    componentBits(info, blend.colorWriteMask, color.writeBits.data());
+    componentBits(info, 0xF, all.data());
+    color.partialMask = std::memcmp(all.data(), color.writeBits.data(), info.bytesPerTexel) != 0;
+    color.readsDestination = color.partialMask || color.path != ColorPath::store;
+    plan.colors.push_back(color);
+}
+
+void planFragments(const GraphicsState& state, const ir::Program& fragment, Isa isa, Plan& plan) {
+    for (uint32_t n = 0; n < state.colorCount; ++n) planColor(state, fragment, n, isa, plan);
+    for (uint32_t slot = 0; slot < fragment.outputs.size(); ++slot) {
+        if (fragment.outputs[slot].builtin == ir::Builtin::fragDepth) plan.fragDepthSlot = slot;
+        if (fragment.outputs[slot].builtin == ir::Builtin::sampleMask && fragment.outputs[slot].component == 0)
+            plan.sampleMaskSlot = slot;
+        if (fragment.outputs[slot].builtin == ir::Builtin::user && fragment.outputs[slot].location == 0 &&
+            fragment.outputs[slot].component == 3 && fragment.outputs[slot].index == 0)
+            plan.alphaSlot = slot;
+    }
+    const bool decidesTests = (plan.depth.any() || plan.depth.write) && !plan.depth.early;
+    plan.runsFragments = !plan.colors.empty() || fragment.hasSideEffects || decidesTests || fragment.canDiscard;
+    plan.usesQuads = fragment.usesQuads;
+    plan.ordered = decidesTests ||
+                   std::any_of(plan.colors.begin(), plan.colors.end(), [](const ColorPlan& c) { return c.readsDestination; });
+}
+
+}  // namespace
+
+Plan makePlan(const GraphicsState& state, const ShaderProgram& program) {
+    const ir::Program& vertex = program.vertexIr();
+    // Nothing behind a rasteriser that discards everything: the fragment program cannot run.
+    const ir::Program* fragment = state.rasterizerDiscard ? nullptr : program.fragmentIr();
+    const Accuracy& accuracy = program.accuracy();
+    Plan plan;
+    plan.samples = state.samples;
+    plan.sampleMask = state.sampleMask;
+    plan.alphaToCoverage = state.alphaToCoverage && fragment != nullptr;
+    plan.alphaToOne = state.alphaToOne;
+    plan.preciseInterpolation = accuracy.interpolation == InterpolationArithmetic::doubleFloat;
+    plan.perSample = state.samples > 1 && fragment != nullptr &&
+                     (fragment->perSample || (state.sampleShading && state.minSampleShading * static_cast<float>(state.samples) > 1));
+    planAttributes(state, vertex, program.isa(), plan);
+    planVertexOutputs(vertex, plan);
+    if (!state.rasterizerDiscard) {
+        planDepth(state, fragment, plan);
+        if (fragment != nullptr) {
+            planVaryings(vertex, *fragment, plan);
+            planFragments(state, *fragment, program.isa(), plan);
+        }
+    }
+    collectFacts(state, program, plan);
+    return plan;
+}
+
+}  // namespace vernier

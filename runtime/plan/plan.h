@@ -1,0 +1,125 @@
+// The plan of a graphics pipeline: which stages run, at what rate and accuracy. Plain data, made once when the pipeline is
+// created; the renderer does what it says and explain() prints it, so that the two cannot differ.
+#pragma once
+
+#include <vulkan/vulkan_core.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "runtime/format/format.h"
+#include "runtime/limits.h"
+#include "runtime/plan/graphics_state.h"
+#include "runtime/plan/shader_program.h"
+#include "spirv_interp/ir/ir.h"
+
+namespace vernier {
+
+inline constexpr uint32_t kNoSlot = ~0u;
+
+/// One fact about a draw, for people.
+struct PlanFact {
+    enum class Kind : uint8_t { runs, leftOut };
+    Kind kind = Kind::runs;
+    std::string what, why;
+};
+
+/// How one vertex attribute reaches the inputs of the vertex program.
+struct AttributeFetch {
+    FormatOps ops;
+    bool words = false;          // components are whole 32-bit words: copied, not converted
+    uint32_t components = 0;     // that the format has
+    uint32_t texelBytes = 0;
+    uint32_t binding = 0, offset = 0, stride = 0;
+    bool perInstance = false;
+    uint32_t alphaBits = 0;      // what A is when the format has none: 1 as float or integer
+    std::array<uint32_t, 4> slots{kNoSlot, kNoSlot, kNoSlot, kNoSlot};
+};
+
+struct BuiltinSlot {
+    ir::Builtin builtin = ir::Builtin::user;
+    uint32_t component = 0;
+    uint32_t slot = 0;
+};
+
+/// One scalar that travels from the vertex to the fragment program.
+struct Varying {
+    uint32_t vertexSlot = kNoSlot;  // kNoSlot: nobody writes it, it reads as 0
+    uint32_t fragmentSlot = 0;
+    ir::Interpolation interpolation = ir::Interpolation::smooth;
+    ir::Sampling sampling = ir::Sampling::center;
+};
+
+enum class DepthStorage : uint8_t { none, d16, d24, d32f, d32fs8 };
+
+struct DepthPlan {
+    DepthStorage storage = DepthStorage::none;
+    bool hasStencil = false;      // the attachment has a stencil aspect
+    bool test = false, write = false;
+    bool bounds = false, stencil = false;
+    bool early = true;            // before the fragment program
+    bool clampToViewport = false; // depth clamping
+    uint8_t compare = 7;          // bit 0: passes when less, bit 1: equal, bit 2: greater (as VkCompareOp is numbered)
+    bool any() const { return test || bounds || stencil; }
+};
+
+/// How colours get into an attachment.
+enum class ColorPath : uint8_t {
+    store,  // converted and stored
+    blend,  // a blend equation
+    logic,  // a logic operation on the stored bits
+};
+
+struct ColorPlan {
+    uint32_t attachment = 0;
+    ColorPath path = ColorPath::store;
+    VkFormat format = VK_FORMAT_UNDEFINED;
+    FormatOps ops;
+    uint32_t texelBytes = 0;
+    bool readsDestination = false;
+    bool partialMask = false;                     // some stored components keep their bits
+    bool clampInputs = false;                     // fixed-point: sources and factors are clamped before blending
+    float clampLow = 0;
+    std::array<std::byte, 16> writeBits{};        // of a texel: the bits that may change
+    std::array<uint32_t, 4> slots{kNoSlot, kNoSlot, kNoSlot, kNoSlot};      // of the fragment program's outputs
+    std::array<uint32_t, 4> dualSlots{kNoSlot, kNoSlot, kNoSlot, kNoSlot};  // second source
+    VkPipelineColorBlendAttachmentState blend{};
+    VkLogicOp logicOp = VK_LOGIC_OP_COPY;
+};
+
+struct Plan {
+    // Geometry.
+    std::vector<AttributeFetch> attributes;
+    std::vector<BuiltinSlot> vertexBuiltins;
+    std::array<uint32_t, 4> positionSlots{kNoSlot, kNoSlot, kNoSlot, kNoSlot};
+    uint32_t pointSizeSlot = kNoSlot;
+    std::vector<uint32_t> clipDistanceSlots, cullDistanceSlots;
+    std::vector<Varying> varyings;  // smooth first, then noPerspective, then flat
+    uint32_t smoothCount = 0, linearCount = 0;
+
+    // Fragments.
+    bool runsFragments = false;   // the fragment program has an effect
+    bool usesQuads = false;       // derivatives: whole 2x2 quads run, helper lanes included
+    bool perSample = false;       // one run per sample
+    bool needsBarycentrics = false;
+    bool needsCentroid = false;   // some input is evaluated inside the covered part of the pixel
+    bool ordered = false;         // a batch holds each pixel once: blending or a late depth test
+    bool preciseInterpolation = false;  // double
+    uint32_t samples = 1;
+    uint32_t sampleMask = ~0u;
+    bool alphaToCoverage = false, alphaToOne = false;
+    std::vector<BuiltinSlot> fragmentBuiltins;
+    uint32_t fragDepthSlot = kNoSlot, sampleMaskSlot = kNoSlot, alphaSlot = kNoSlot;
+    DepthPlan depth;
+    std::vector<ColorPlan> colors;  // the attachments that change
+
+    std::vector<PlanFact> facts;
+};
+
+/// The state and the program have passed check_state.h.
+Plan makePlan(const GraphicsState& state, const ShaderProgram& program);
+
+}  // namespace vernier

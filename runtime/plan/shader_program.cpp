@@ -1,0 +1,34 @@
+#include "runtime/plan/shader_program.h"
+
+#include "spirv_interp/ir/link.h"
+
+namespace vernier {
+
+Result<std::shared_ptr<const ShaderProgram>> ShaderProgram::create(const ShaderProgramDesc& desc) {
+    const std::shared_ptr<ShaderProgram> program(new ShaderProgram);
+    program->accuracy_ = desc.accuracy;
+    program->isa_ = desc.isa;
+    program->vertexIr_ = *desc.vertex;
+    const bool hasFragment = desc.fragment != nullptr;
+    if (hasFragment) program->fragmentIr_ = *desc.fragment;
+    // Without a fragment stage nobody reads the varyings: an empty one links them all away.
+    ir::Program none;
+    none.stage = ir::Stage::fragment;
+    const size_t outputs = program->vertexIr_.outputs.size();
+    if (Status status = ir::linkStages(program->vertexIr_, hasFragment ? program->fragmentIr_ : none); !status)
+        return status.error();
+    program->removedVaryings_ = static_cast<uint32_t>(outputs - program->vertexIr_.outputs.size());
+
+    const BatchOptions options{desc.isa, desc.accuracy.math, 0};
+    auto compiled = BatchProgram::compile(program->vertexIr_, options);
+    if (!compiled) return Error{compiled.error().code, "vertex shader: " + compiled.error().message};
+    program->vertex_ = std::move(compiled).value();
+    if (hasFragment) {
+        auto fragment = BatchProgram::compile(program->fragmentIr_, options);
+        if (!fragment) return Error{fragment.error().code, "fragment shader: " + fragment.error().message};
+        program->fragment_ = std::move(fragment).value();
+    }
+    return std::shared_ptr<const ShaderProgram>(program);
+}
+
+}  // namespace vernier

@@ -1,0 +1,46 @@
+// The shaders of a pipeline: linked and compiled once, shared by every pipeline that draws with them whatever its
+// other state.
+#pragma once
+
+#include <memory>
+
+#include "base/result.h"
+#include "base/simd.h"
+#include "runtime/accuracy.h"
+#include "spirv_interp/program.h"
+
+namespace vernier {
+
+struct ShaderProgramDesc {
+    const ir::Program* vertex = nullptr;    // as loadShader gives it
+    const ir::Program* fragment = nullptr;  // nullptr: no fragment stage (depth only, or rasterizer discard)
+    Accuracy accuracy;
+    Isa isa = Isa::sse4;
+};
+
+/// Immutable; shared between threads.
+class ShaderProgram {
+  public:
+    /// Links (what the fragment stage does not read is not computed) and compiles. Thread-safe.
+    static Result<std::shared_ptr<const ShaderProgram>> create(const ShaderProgramDesc& desc);
+
+    const Accuracy& accuracy() const { return accuracy_; }
+    Isa isa() const { return isa_; }
+    const ir::Program& vertexIr() const { return vertexIr_; }
+    /// nullptr without a fragment stage.
+    const ir::Program* fragmentIr() const { return fragment_ ? &fragmentIr_ : nullptr; }
+    const std::shared_ptr<const BatchProgram>& vertex() const { return vertex_; }
+    const std::shared_ptr<const BatchProgram>& fragment() const { return fragment_; }
+    /// Vertex outputs that linking removed because nobody reads them, for explain().
+    uint32_t removedVaryings() const { return removedVaryings_; }
+
+  private:
+    ShaderProgram() = default;
+    Accuracy accuracy_;
+    Isa isa_ = Isa::sse4;
+    ir::Program vertexIr_, fragmentIr_;
+    std::shared_ptr<const BatchProgram> vertex_, fragment_;
+    uint32_t removedVaryings_ = 0;
+};
+
+}  // namespace vernier

@@ -1,0 +1,88 @@
+#include "runtime/raster/attachment_ops.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "runtime/format/format.h"
+#include "runtime/geometry/chunk.h"
+
+namespace vernier {
+namespace {
+
+constexpr uint32_t kRow = static_cast<uint32_t>(kTileSize);
+
+std::byte* pixel(const RenderTarget& target, int32_t x, int32_t y, uint32_t sample, uint32_t layer, uint32_t bytes) {
+    return target.data + layer * target.layerPitch + sample * target.samplePitch +
+           static_cast<size_t>(y) * target.rowPitch + static_cast<size_t>(x) * bytes;
+}
+
+/// Calls function(x, y, n) for runs of up to kRow pixels.
+template <class Function>
+void eachRun(const PixelRect& rect, const Function& function) {
+    for (int32_t y = rect.y0; y < rect.y1; ++y)
+        for (int32_t x = rect.x0; x < rect.x1; x += kTileSize)
+            function(x, y, static_cast<uint32_t>(std::min(rect.x1 - x, kTileSize)));
+}
+
+}  // namespace
+
+void clearPixels(const RenderTarget& target, VkImageAspectFlags aspects, const VkClearValue& value, const PixelRect& rect,
+                 uint32_t firstLayer, uint32_t layers) {
+    const FormatInfo* info = findFormat(target.format);
+    if (info == nullptr || target.data == nullptr) return;
+    aspects &= info->aspects;
+    if (aspects == 0) return;
+    const uint32_t bytes = info->bytesPerTexel;
+    std::array<std::byte, 16> texel{};
+    packClear(*info, aspects, value, texel.data());
+    // One aspect of two: the other one's bits stay.
+    const bool partial = aspects != info->aspects;
+    std::array<std::byte, 16 * kRow> row;
+    for (uint32_t n = 0; n < kRow; ++n) std::memcpy(row.data() + n * bytes, texel.data(), bytes);
+    for (uint32_t layer = firstLayer; layer < firstLayer + layers; ++layer) {
+        for (uint32_t s = 0; s < target.samples; ++s) {
+            eachRun(rect, [&](int32_t x, int32_t y, uint32_t n) {
+                std::byte* place = pixel(target, x, y, s, layer, bytes);
+                if (!partial) {
+                    std::memcpy(place, row.data(), n * bytes);
+                } else {
+                    for (uint32_t k = 0; k < n; ++k) packClear(*info, aspects, value, place + k * bytes);
+                }
+            });
+        }
+    }
+}
+
+void resolvePixels(const RenderTarget& source, const RenderTarget& destination, const PixelRect& rect, uint32_t layers,
+                   Isa isa) {
+    const FormatInfo* info = findFormat(source.format);
+    if (info == nullptr || source.data == nullptr || destination.data == nullptr) return;
+    const uint32_t bytes = info->bytesPerTexel;
+    const FormatOps ops = formatOps(source.format, isa);
+    const bool average = info->color.type == ValueType::floating;
+    // A power of two: scaling first is exact and cannot overflow.
+    const float scale = 1.0f / static_cast<float>(source.samples);
+    alignas(64) float sum[4][kRow];
+    alignas(64) float sample[4][kRow];
+    void* planes[4] = {sample[0], sample[1], sample[2], sample[3]};
+    const void* sums[4] = {sum[0], sum[1], sum[2], sum[3]};
+    for (uint32_t layer = 0; layer < layers; ++layer) {
+        eachRun(rect, [&](int32_t x, int32_t y, uint32_t n) {
+            std::byte* out = pixel(destination, x, y, 0, layer, bytes);
+            if (!average) {
+                std::memcpy(out, pixel(source, x, y, 0, layer, bytes), n * bytes);
+                return;
+            }
+            std::memset(sum, 0, sizeof(sum));
+            for (uint32_t s = 0; s < source.samples; ++s) {
+                ops.unpack(pixel(source, x, y, s, layer, bytes), n, planes);
+                for (int c = 0; c < 4; ++c)
+                    for (uint32_t k = 0; k < n; ++k) sum[c][k] += sample[c][k] * scale;
+            }
+            ops.pack(sums, n, out);
+        });
+    }
+}
+
+}  // namespace vernier

@@ -1,0 +1,98 @@
+#include "runtime/raster/color_output.h"
+
+#include <cstring>
+
+namespace vernier {
+namespace {
+
+std::byte* texelAddress(const ColorOutputInput& in, uint32_t lane) {
+    return in.target->data + static_cast<size_t>(in.batch->y[lane]) * in.target->rowPitch +
+           static_cast<size_t>(in.batch->x[lane]) * in.plan->texelBytes + in.sample * in.target->samplePitch;
+}
+
+/// One texel size known at compile time makes each copy a single move.
+template <uint32_t kBytes>
+void gather(const ColorOutputInput& in, std::byte* texels) {
+    for (uint32_t n = 0; n < in.batch->count; ++n) std::memcpy(texels + n * kBytes, texelAddress(in, n), kBytes);
+}
+
+template <uint32_t kBytes>
+void scatter(const ColorOutputInput& in, const std::byte* texels) {
+    for (uint32_t n = 0; n < in.batch->count; ++n)
+        if (in.mask[n] != 0) std::memcpy(texelAddress(in, n), texels + n * kBytes, kBytes);
+}
+
+template <class Function>
+void withTexelSize(uint32_t bytes, const Function& function) {
+    switch (bytes) {
+        case 1: return function(std::integral_constant<uint32_t, 1>());
+        case 2: return function(std::integral_constant<uint32_t, 2>());
+        case 4: return function(std::integral_constant<uint32_t, 4>());
+        case 8: return function(std::integral_constant<uint32_t, 8>());
+        default: return function(std::integral_constant<uint32_t, 16>());
+    }
+}
+
+uint8_t logicOp(VkLogicOp op, uint8_t s, uint8_t d) {
+    // The operations are numbered by their truth table: bit 0 is the result for s = d = 1, bit 1 for s = 1, d = 0,
+    // bit 2 for s = 0, d = 1, bit 3 for s = d = 0 (specification, "Logical Operations").
+    const auto table = static_cast<uint32_t>(op);
+    uint32_t result = 0;
+    if ((table & 1) != 0) result |= s & d;
+    if ((table & 2) != 0) result |= s & ~d;
+    if ((table & 4) != 0) result |= ~s & d;
+    if ((table & 8) != 0) result |= ~s & ~d;
+    return static_cast<uint8_t>(result);
+}
+
+void applyLogicOp(VkLogicOp op, const std::byte* before, std::byte* after, uint32_t bytes) {
+    for (uint32_t n = 0; n < bytes; ++n)
+        after[n] = static_cast<std::byte>(logicOp(op, static_cast<uint8_t>(after[n]), static_cast<uint8_t>(before[n])));
+}
+
+/// Bits outside the write mask keep what they had.
+void keepMasked(const ColorPlan& plan, const std::byte* before, std::byte* after, uint32_t count) {
+    for (uint32_t n = 0; n < count; ++n) {
+        for (uint32_t b = 0; b < plan.texelBytes; ++b) {
+            const size_t at = n * plan.texelBytes + b;
+            after[at] = (after[at] & plan.writeBits[b]) | (before[at] & ~plan.writeBits[b]);
+        }
+    }
+}
+
+}  // namespace
+
+uint32_t outputColors(const ColorOutputInput& in, ColorScratch& scratch) {
+    const ColorPlan& plan = *in.plan;
+    const uint32_t count = in.batch->count;
+    const void* planes[4] = {in.source[0], in.source[1], in.source[2], in.source[3]};
+    uint32_t reads = 0;
+    if (plan.readsDestination) {
+        withTexelSize(plan.texelBytes, [&](auto bytes) { gather<bytes()>(in, scratch.before.data()); });
+        for (uint32_t n = 0; n < count; ++n) reads += in.mask[n] & 1;
+    }
+    if (plan.path == ColorPath::blend) {
+        BlendInput blend{};
+        blend.plan = &plan;
+        blend.constants = in.constants;
+        blend.count = count;
+        void* destination[4];
+        for (uint32_t c = 0; c < 4; ++c) {
+            blend.source[c] = in.source[c];
+            blend.secondSource[c] = in.second[c];
+            blend.destination[c] = blend.result[c] = scratch.destination[c].data();
+            destination[c] = scratch.destination[c].data();
+            planes[c] = destination[c];
+        }
+        plan.ops.unpack(scratch.before.data(), count, destination);
+        in.blend(blend);
+    }
+    plan.ops.pack(planes, count, scratch.after.data());
+    if (plan.path == ColorPath::logic)
+        applyLogicOp(plan.logicOp, scratch.before.data(), scratch.after.data(), count * plan.texelBytes);
+    if (plan.partialMask) keepMasked(plan, scratch.before.data(), scratch.after.data(), count);
+    withTexelSize(plan.texelBytes, [&](auto bytes) { scatter<bytes()>(in, scratch.after.data()); });
+    return reads;
+}
+
+}  // namespace vernier

@@ -1,0 +1,37 @@
+// Colours of a batch into an attachment: blending, logic operations, write masks, conversion.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "runtime/plan/plan.h"
+#include "runtime/raster/blend.h"
+#include "runtime/raster/fragment_batch.h"
+#include "runtime/raster/pass_targets.h"
+
+namespace vernier {
+
+/// Scratch memory of one thread.
+struct ColorScratch {
+    static constexpr uint32_t kMaxTexelBytes = 16;
+    alignas(64) std::array<float, kLaneRoom> destination[4];
+    alignas(64) std::array<std::byte, kLaneRoom * kMaxTexelBytes> before, after;
+};
+
+struct ColorOutputInput {
+    const ColorPlan* plan;
+    const RenderTarget* target;
+    const FragmentBatch* batch;
+    BlendFn blend;
+    const float* constants;     // of blending
+    const float* source[4];     // planes of kLaneRoom lanes
+    const float* second[4];     // nullptr: no second source
+    const uint32_t* mask;       // per lane: written
+    uint32_t sample;
+};
+
+/// Lanes are written in order, so that of two lanes on one pixel the later one stays. With a destination read, no pixel
+/// may be there twice. Returns how many pixels were read back.
+uint32_t outputColors(const ColorOutputInput& input, ColorScratch& scratch);
+
+}  // namespace vernier

@@ -1,0 +1,146 @@
+#include "runtime/raster/coverage.h"
+
+#include <algorithm>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "runtime/raster/coverage.cpp"
+#include "base/simd_targets.h"
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace vernier {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// The edges that still matter over a rectangle of pixels, in one integer width.
+template <class T>
+struct Edges {
+    T a[3], b[3];
+    T c[3][kMaxSamples];
+};
+
+/// Drops edges that have all of the rectangle inside; returns false when one has all of it outside.
+template <class T>
+bool selectEdges(const TileEdges& in, Edges<T>& out) {
+    for (int e = 0; e < 3; ++e) {
+        int64_t low = in.c[e][0], high = low;
+        for (uint32_t s = 1; s < in.samples; ++s) {
+            low = std::min(low, in.c[e][s]);
+            high = std::max(high, in.c[e][s]);
+        }
+        const int64_t ax0 = in.a[e] * in.x0, ax1 = in.a[e] * in.x1, by0 = in.b[e] * in.y0, by1 = in.b[e] * in.y1;
+        if (high + std::max(ax0, ax1) + std::max(by0, by1) < 0) return false;
+        const bool inside = low + std::min(ax0, ax1) + std::min(by0, by1) >= 0;
+        out.a[e] = inside ? T{0} : static_cast<T>(in.a[e]);
+        out.b[e] = inside ? T{0} : static_cast<T>(in.b[e]);
+        for (uint32_t s = 0; s < in.samples; ++s) out.c[e][s] = inside ? T{0} : static_cast<T>(in.c[e][s]);
+    }
+    return true;
+}
+
+uint64_t rectangleMask(int32_t x0, int32_t y0, int32_t x1, int32_t y1) {
+    const uint64_t row = (0xFFu >> (7 - x1)) & (0xFFu << x0);
+    const uint64_t rows = (~uint64_t{0} >> (8 * (7 - y1))) & (~uint64_t{0} << (8 * y0));
+    return rows & (row * 0x0101010101010101u);
+}
+
+/// Pixels [.., y0..y1] of a block whose first pixel has the edge values `c`.
+template <class T>
+uint64_t blockMask(const T c[3], const T a[3], const T b[3], int32_t y0, int32_t y1) {
+    const hn::CappedTag<T, 8> d;
+    using V = hn::Vec<decltype(d)>;
+    constexpr uint32_t kLanes = hn::MaxLanes(hn::CappedTag<T, 8>());
+    uint64_t mask = 0;
+    for (uint32_t x = 0; x < 8; x += kLanes) {
+        V edge[3], step[3];
+        for (int e = 0; e < 3; ++e) {
+            alignas(64) T row[8];
+            for (uint32_t n = 0; n < kLanes; ++n) row[n] = static_cast<T>(c[e] + b[e] * y0 + a[e] * static_cast<T>(x + n));
+            edge[e] = hn::Load(d, row);
+            step[e] = hn::Set(d, b[e]);
+        }
+        for (int32_t y = y0; y <= y1; ++y) {
+            const V sign = hn::Or(hn::Or(edge[0], edge[1]), edge[2]);
+            uint8_t bits[8] = {};
+            hn::StoreMaskBits(d, hn::Ge(sign, hn::Zero(d)), bits);
+            mask |= static_cast<uint64_t>(bits[0]) << (8 * y + x);
+            for (int e = 0; e < 3; ++e) edge[e] = hn::Add(edge[e], step[e]);
+        }
+    }
+    return mask;
+}
+
+template <class T>
+uint32_t cover(const TileEdges& in, BlockCoverage* blocks) {
+    Edges<T> edges;
+    if (!selectEdges(in, edges)) return 0;
+    const int32_t bx0 = in.x0 & ~7, bx1 = in.x1 & ~7, by0 = in.y0 & ~7, by1 = in.y1 & ~7;
+    // Whole-block tests pay when there are many blocks.
+    const bool classify = (bx1 - bx0) + (by1 - by0) > 2 * kBlockSize;
+    uint32_t count = 0;
+    for (int32_t by = by0; by <= by1; by += kBlockSize) {
+        for (int32_t bx = bx0; bx <= bx1; bx += kBlockSize) {
+            const int32_t x0 = std::max(in.x0 - bx, 0), x1 = std::min(in.x1 - bx, 7);
+            const int32_t y0 = std::max(in.y0 - by, 0), y1 = std::min(in.y1 - by, 7);
+            const uint64_t rectangle = rectangleMask(x0, y0, x1, y1);
+            BlockCoverage& block = blocks[count];
+            uint64_t any = 0;
+            for (uint32_t s = 0; s < in.samples; ++s) {
+                T c[3];
+                bool outside = false, inside = true;
+                for (int e = 0; e < 3; ++e) {
+                    c[e] = static_cast<T>(edges.c[e][s] + edges.a[e] * bx + edges.b[e] * by);
+                    if (!classify) continue;
+                    const T a7 = edges.a[e] * 7, b7 = edges.b[e] * 7;
+                    outside |= c[e] + std::max<T>(a7, 0) + std::max<T>(b7, 0) < 0;
+                    inside &= c[e] + std::min<T>(a7, 0) + std::min<T>(b7, 0) >= 0;
+                }
+                uint64_t mask = 0;
+                if (classify && inside) {
+                    mask = rectangle;
+                } else if (!outside) {
+                    mask = blockMask(c, edges.a, edges.b, y0, y1) & rectangle;
+                }
+                block.masks[s] = mask;
+                any |= mask;
+            }
+            if (any == 0) continue;
+            block.x = bx;
+            block.y = by;
+            ++count;
+        }
+    }
+    return count;
+}
+
+uint32_t coverTile(const TileEdges& edges, BlockCoverage* blocks) {
+    return edges.smallEdges ? cover<int32_t>(edges, blocks) : cover<int64_t>(edges, blocks);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace vernier
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vernier {
+
+CoverTileFn coverTileFunction(Isa isa) { VERNIER_SELECT_ISA(isa, coverTile) }
+
+uint32_t coverWholeTile(uint32_t samples, BlockCoverage* blocks) {
+    uint32_t count = 0;
+    for (int32_t y = 0; y < kTileSize; y += kBlockSize) {
+        for (int32_t x = 0; x < kTileSize; x += kBlockSize) {
+            BlockCoverage& block = blocks[count++];
+            block.x = x;
+            block.y = y;
+            for (uint32_t s = 0; s < samples; ++s) block.masks[s] = ~uint64_t{0};
+        }
+    }
+    return count;
+}
+
+}  // namespace vernier
+#endif

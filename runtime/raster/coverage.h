@@ -1,0 +1,27 @@
+// Exact coverage of a tile by a primitive, in blocks of 8x8 pixels.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "base/simd.h"
+#include "runtime/raster/triangle_planes.h"
+
+namespace vernier {
+
+inline constexpr uint32_t kBlocksPerTile = (kTileSize / kBlockSize) * (kTileSize / kBlockSize);
+
+/// Bit y * 8 + x of masks[s]: pixel (x, y) of the block at sample s.
+struct BlockCoverage {
+    int32_t x, y;  // first pixel of the block, relative to the tile
+    std::array<uint64_t, kMaxSamples> masks;
+};
+
+/// Writes the blocks that have something covered, row by row; returns how many.
+using CoverTileFn = uint32_t (*)(const TileEdges& edges, BlockCoverage* blocks);
+CoverTileFn coverTileFunction(Isa isa);
+
+/// All blocks of a tile, completely covered.
+uint32_t coverWholeTile(uint32_t samples, BlockCoverage* blocks);
+
+}  // namespace vernier

@@ -1,0 +1,25 @@
+// The early depth test: blocks of 8x8 pixels at once, when there is neither stencil nor a bounds test.
+#pragma once
+
+#include <cstdint>
+
+#include "base/simd.h"
+#include "runtime/raster/coverage.h"
+#include "runtime/raster/depth_stencil.h"
+
+namespace vernier {
+
+struct DepthTestInput {
+    const DepthPlan* plan;
+    DepthTarget target;
+    const TrianglePlanes* planes;
+    int32_t tileX, tileY;
+    uint32_t samples;
+};
+
+/// Tests the samples of the blocks and writes the depth of those that pass. Clears the bits of those that fail; returns how
+/// many blocks have bits left, moved to the front in order.
+using DepthTestFn = uint32_t (*)(const DepthTestInput& input, BlockCoverage* blocks, uint32_t count);
+DepthTestFn depthTestFunction(Isa isa);
+
+}  // namespace vernier

@@ -1,0 +1,85 @@
+// Fragments of a tile: collected into batches, shaded, tested, and written. One per thread.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "runtime/geometry/vertex_stage.h"
+#include "runtime/raster/color_output.h"
+#include "runtime/raster/coverage.h"
+#include "runtime/raster/depth_stencil.h"
+#include "runtime/raster/fragment_batch.h"
+#include "runtime/raster/interpolate.h"
+
+namespace vernier {
+
+class FragmentStage {
+  public:
+    FragmentStage();
+
+    void startPass(const PassTargets& targets);
+    void startTile(int32_t tileX, int32_t tileY);
+    /// The state of the fragments to come. Flushes when it differs from the current one. `token` identifies the bindings.
+    void bind(const PreparedDraw& draw, uint64_t token);
+    /// The planes of the primitive whose blocks come next: to be filled by the caller.
+    TrianglePlanes& startPrimitive();
+    /// Pixels of the current primitive that passed the early tests.
+    void add(const BlockCoverage& block);
+    /// Shades and writes what is collected.
+    void flush();
+    /// The draw must be bound anew: its memory may be gone.
+    void unbind() { draw_ = nullptr; }
+
+    const DepthStencilState& depthState() const { return depthState_; }
+    PassStatistics& statistics() { return statistics_; }
+    bool outOfBudget() const { return outOfBudget_; }
+    ContextCache& contexts() { return contexts_; }
+
+  private:
+    uint32_t appendLane(int32_t x, int32_t y);
+    FragmentSegment& segment();
+    void reserve(uint32_t lanes);
+    void addPixels(const BlockCoverage& block, uint64_t any);
+    void addQuads(const BlockCoverage& block, uint64_t any, uint32_t samples, uint32_t sample);
+    void addSamples(const BlockCoverage& block, uint32_t sample);
+
+    void run();
+    void fillInputs();
+    void fillBuiltins();
+    void fillBuiltin(const BuiltinSlot& builtin, float* plane);
+    void fillVaryings();
+    void evaluateVarying(uint32_t index, const LaneWeights& weights, float* plane);
+    void centroidOffsets();
+    void reduceCoverage();
+    void testLate();
+    void writeColors();
+    const float* outputPlane(uint32_t slot, uint32_t component) const;
+    static void interpolateAt(void* self, uint32_t slot, uint32_t where, uint32_t lanes, const float* a, const float* b,
+                              float* result);
+
+    const PassTargets* targets_ = nullptr;
+    int32_t tileX_ = 0, tileY_ = 0;
+    const PreparedDraw* draw_ = nullptr;
+    const Plan* plan_ = nullptr;
+    uint64_t token_ = 0;
+    BatchContext* context_ = nullptr;
+    uint32_t capacity_ = 0;
+    uint32_t samples_ = 1;
+    Interpolation interpolation_{};
+    BlendFn blend_ = nullptr;
+    DepthStencilState depthState_;
+
+    FragmentBatch batch_;
+    LaneWeights weights_, centroidWeights_;
+    ColorScratch colors_;
+    alignas(64) std::array<float, kLaneRoom> fragZ_, fragInverseW_;
+    alignas(64) std::array<float, kLaneRoom> centroidX_, centroidY_;
+    alignas(64) std::array<uint32_t, kLaneRoom> mask_;
+    alignas(64) std::array<float, kLaneRoom> zeros_, ones_;
+    std::array<uint64_t, kBlocksPerTile> inBatch_{};  // pixels of the tile that the batch holds, when order matters
+    bool outOfBudget_ = false;
+    PassStatistics statistics_;
+    ContextCache contexts_;
+};
+
+}  // namespace vernier

@@ -1,0 +1,59 @@
+// What a render pass draws to.
+#pragma once
+
+#include <vulkan/vulkan_core.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "runtime/limits.h"
+
+namespace vernier {
+
+/// One subresource that is drawn to. Rows and columns are padded to kAttachmentBlock texels in memory.
+struct RenderTarget {
+    VkFormat format = VK_FORMAT_UNDEFINED;  // VK_FORMAT_UNDEFINED: no attachment
+    std::byte* data = nullptr;              // texel (0, 0) of sample 0 of layer 0
+    uint32_t rowPitch = 0;                  // bytes
+    VkDeviceSize samplePitch = 0;           // bytes
+    VkDeviceSize layerPitch = 0;            // bytes
+    VkExtent2D extent{};                    // of the mip level
+    uint32_t samples = 1;
+    VkAttachmentLoadOp loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
+    VkAttachmentStoreOp storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    VkAttachmentLoadOp stencilLoadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
+    VkAttachmentStoreOp stencilStoreOp = VK_ATTACHMENT_STORE_OP_STORE;
+    VkClearValue clear{};
+};
+
+struct PassTargets {
+    uint32_t colorCount = 0;
+    std::array<RenderTarget, kMaxColorAttachments> colors{};
+    std::array<RenderTarget, kMaxColorAttachments> resolves{};  // average resolve into these at the end
+    RenderTarget depthStencil{};
+    VkRect2D renderArea{};  // inside every target
+    uint32_t layers = 1;
+    uint32_t samples = 1;   // of the pass; also when it has no attachments
+};
+
+/// What was run. Counted on all threads and summed; independent of the number of threads except where said.
+struct PassStatistics {
+    uint64_t inputVertices = 0;
+    uint64_t inputPrimitives = 0;
+    uint64_t vertexInvocations = 0;       // depends on the chunking, which does not depend on threads
+    uint64_t clippingInvocations = 0;
+    uint64_t clippedPrimitives = 0;       // primitives that really were cut
+    uint64_t rasterPrimitives = 0;        // primitives that reached the rasteriser
+    uint64_t fragmentInvocations = 0;     // helper lanes not counted
+    uint64_t helperInvocations = 0;
+    uint64_t batches = 0;                 // fragment batches run
+    uint64_t samplesPassed = 0;           // samples that passed all tests
+    uint64_t perspectiveDivides = 0;      // pixels for which 1/w was divided
+    uint64_t destinationReads = 0;        // pixels whose colour was read back for blending or masks
+    uint64_t depthReads = 0;              // samples whose depth or stencil was read
+    uint64_t coarseDepthRejects = 0;      // blocks
+    uint64_t vertexCycles = 0, rasterCycles = 0;  // time-stamp counter, all threads; for people, not for tests
+};
+
+}  // namespace vernier

@@ -1,0 +1,137 @@
+#include "runtime/raster/tile_renderer.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "runtime/raster/attachment_ops.h"
+#include "runtime/raster/depth_test.h"
+#include "runtime/raster/sample_positions.h"
+
+namespace vernier {
+namespace {
+
+/// Early tests one sample at a time, where stencil or depth bounds take part.
+uint32_t testSamples(const DepthStencilState& state, const TrianglePlanes& planes, int32_t tileX, int32_t tileY,
+                     uint32_t samples, BlockCoverage* blocks, uint32_t count) {
+    const SamplePosition* positions = samplePositions(samples);
+    uint32_t kept = 0;
+    for (uint32_t b = 0; b < count; ++b) {
+        BlockCoverage& block = blocks[b];
+        uint64_t any = 0;
+        for (uint32_t s = 0; s < samples; ++s) {
+            uint64_t passed = 0;
+            for (uint64_t rest = block.masks[s]; rest != 0; rest &= rest - 1) {
+                const int bit = std::countr_zero(rest);
+                const int32_t x = tileX + block.x + (bit & 7), y = tileY + block.y + (bit >> 3);
+                const float z = depthAt(planes, x, y, positions[s].x(), positions[s].y());
+                if (testSample(state, state.target.texel(x, y, s), z, planes.primitive->front))
+                    passed |= uint64_t{1} << bit;
+            }
+            block.masks[s] = passed;
+            any |= passed;
+        }
+        if (any != 0) blocks[kept++] = block;
+    }
+    return kept;
+}
+
+/// The sample mask of the pipeline; drops blocks that have nothing left.
+uint32_t maskSamples(uint32_t mask, uint32_t samples, BlockCoverage* blocks, uint32_t count) {
+    uint32_t kept = 0;
+    for (uint32_t b = 0; b < count; ++b) {
+        uint64_t any = 0;
+        for (uint32_t s = 0; s < samples; ++s) {
+            if ((mask >> s & 1) == 0) blocks[b].masks[s] = 0;
+            any |= blocks[b].masks[s];
+        }
+        if (any != 0) blocks[kept++] = blocks[b];
+    }
+    return kept;
+}
+
+uint64_t countSamples(const BlockCoverage* blocks, uint32_t count, uint32_t samples) {
+    uint64_t total = 0;
+    for (uint32_t b = 0; b < count; ++b)
+        for (uint32_t s = 0; s < samples; ++s) total += static_cast<uint64_t>(std::popcount(blocks[b].masks[s]));
+    return total;
+}
+
+}  // namespace
+
+void applyClear(const PassTargets& targets, const ClearCommand& clear, const PixelRect& area) {
+    const PixelRect rect{std::max(clear.rect.x0, area.x0), std::max(clear.rect.y0, area.y0),
+                         std::min(clear.rect.x1, area.x1), std::min(clear.rect.y1, area.y1)};
+    if (rect.empty()) return;
+    if ((clear.aspects & VK_IMAGE_ASPECT_COLOR_BIT) != 0) {
+        if (clear.color < targets.colorCount)
+            clearPixels(targets.colors[clear.color], VK_IMAGE_ASPECT_COLOR_BIT, clear.value, rect, clear.firstLayer,
+                        clear.layers);
+    } else {
+        clearPixels(targets.depthStencil, clear.aspects, clear.value, rect, clear.firstLayer, clear.layers);
+    }
+}
+
+void TileRenderer::startPass(const PassTargets& targets) {
+    targets_ = &targets;
+    fragments_.startPass(targets);
+}
+
+uint32_t TileRenderer::testEarly(const PreparedDraw& draw, const TrianglePlanes& planes, uint32_t count) {
+    const Plan& plan = *draw.plan;
+    const DepthStencilState& state = fragments_.depthState();
+    PassStatistics& statistics = fragments_.statistics();
+    statistics.depthReads += countSamples(blocks_.data(), count, plan.samples);
+    if (plan.depth.stencil || plan.depth.bounds)
+        return testSamples(state, planes, tileX_, tileY_, plan.samples, blocks_.data(), count);
+    const DepthTestInput input{&plan.depth, state.target, &planes, tileX_, tileY_, plan.samples};
+    return depthTestFunction(draw.call.pipeline->isa())(input, blocks_.data(), count);
+}
+
+void TileRenderer::draw(const Primitive& primitive, const Chunk& chunk, const PreparedDraw& draw, bool coversTile) {
+    const Plan& plan = *draw.plan;
+    uint32_t count = 0;
+    if (coversTile) {
+        count = coverWholeTile(plan.samples, blocks_.data());
+    } else {
+        const TileEdges edges = tileEdges(primitive, tileX_, tileY_, draw.subPixelBits, plan.samples);
+        count = coverTileFunction(draw.call.pipeline->isa())(edges, blocks_.data());
+    }
+    const uint32_t allSamples = (1u << plan.samples) - 1;
+    if ((plan.sampleMask & allSamples) != allSamples)
+        count = maskSamples(plan.sampleMask, plan.samples, blocks_.data(), count);
+    if (count == 0) return;
+
+    TrianglePlanes& planes = fragments_.startPrimitive();
+    makePlanes(primitive, chunk.attributes.data(), draw.subPixelBits, plan.preciseInterpolation, draw.depthLow,
+               draw.depthHigh, planes);
+    if (plan.depth.any() && plan.depth.early) count = testEarly(draw, planes, count);
+    if (!plan.runsFragments) {
+        fragments_.statistics().samplesPassed += countSamples(blocks_.data(), count, plan.samples);
+        return;
+    }
+    for (uint32_t b = 0; b < count; ++b) fragments_.add(blocks_[b]);
+}
+
+void TileRenderer::render(const PixelRect& rect, int32_t tileX, int32_t tileY, std::span<const PreparedDraw> draws,
+                          uint64_t token, std::span<const TileWork> work) {
+    tileX_ = tileX;
+    tileY_ = tileY;
+    fragments_.startTile(tileX, tileY);
+    for (const TileWork& item : work) {
+        if (item.clear != nullptr) {
+            fragments_.flush();
+            applyClear(*targets_, *item.clear, rect);
+            continue;
+        }
+        for (uint32_t n = item.first; n < item.first + item.count; ++n) {
+            const uint32_t entry = item.chunk->entries[n];
+            const Primitive& primitive = item.chunk->primitives[entry & ~kCoversTile];
+            const PreparedDraw& prepared = draws[primitive.draw];
+            fragments_.bind(prepared, token + prepared.fragmentState);
+            draw(primitive, *item.chunk, prepared, (entry & kCoversTile) != 0);
+        }
+    }
+    fragments_.flush();
+}
+
+}  // namespace vernier

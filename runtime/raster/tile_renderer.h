@@ -1,0 +1,51 @@
+// Renders the primitives of one tile, in order. One per thread.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "runtime/geometry/chunk.h"
+#include "runtime/geometry/primitive_setup.h"
+#include "runtime/raster/fragment_stage.h"
+
+namespace vernier {
+
+/// vkCmdClearAttachments.
+struct ClearCommand {
+    VkImageAspectFlags aspects = 0;
+    uint32_t color = 0;
+    VkClearValue value{};
+    PixelRect rect;
+    uint32_t firstLayer = 0, layers = 1;
+};
+
+/// What a tile has to do, in order: a run of a chunk's entries, or a clear.
+struct TileWork {
+    const Chunk* chunk = nullptr;
+    const ClearCommand* clear = nullptr;
+    uint32_t first = 0, count = 0;
+};
+
+class TileRenderer {
+  public:
+    FragmentStage& fragments() { return fragments_; }
+    void startPass(const PassTargets& targets);
+    /// `rect`: the pixels of the tile inside the render area. `token`: see Assembler::run.
+    void render(const PixelRect& rect, int32_t tileX, int32_t tileY, std::span<const PreparedDraw> draws, uint64_t token,
+                std::span<const TileWork> work);
+
+  private:
+    void draw(const Primitive& primitive, const Chunk& chunk, const PreparedDraw& draw, bool coversTile);
+    uint32_t testEarly(const PreparedDraw& draw, const TrianglePlanes& planes, uint32_t count);
+
+    const PassTargets* targets_ = nullptr;
+    int32_t tileX_ = 0, tileY_ = 0;
+    FragmentStage fragments_;
+    std::array<BlockCoverage, kBlocksPerTile> blocks_;
+};
+
+/// Applies a clear to the part of it inside `area`.
+void applyClear(const PassTargets& targets, const ClearCommand& clear, const PixelRect& area);
+
+}  // namespace vernier

@@ -1,0 +1,83 @@
+#include "runtime/resource/image.h"
+
+#include <algorithm>
+#include <bit>
+#include <string>
+
+#include "runtime/limits.h"
+
+namespace vernier {
+namespace {
+
+constexpr VkImageUsageFlags kAttachmentUsage =
+    VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+constexpr uint32_t kRowAlignment = 16;  // bytes
+constexpr VkDeviceSize kLevelAlignment = 64;
+
+uint64_t alignUp(uint64_t value, uint64_t alignment) { return (value + alignment - 1) / alignment * alignment; }
+
+Error wrong(const std::string& field, uint64_t value, const std::string& rule) {
+    return invalidArgument("image: " + field + " is " + std::to_string(value) + ", " + rule);
+}
+
+uint32_t fullMipCount(const VkExtent3D& extent) {
+    return static_cast<uint32_t>(std::bit_width(std::max({extent.width, extent.height, extent.depth})));
+}
+
+Status checkInfo(const ImageInfo& info) {
+    const uint32_t limit = info.type == VK_IMAGE_TYPE_3D ? kMaxImageDimension3D : kMaxImageDimension2D;
+    const struct {
+        const char* name;
+        uint32_t value, limit;
+    } sizes[] = {{"width", info.extent.width, limit},
+                 {"height", info.extent.height, info.type == VK_IMAGE_TYPE_1D ? 1 : limit},
+                 {"depth", info.extent.depth, info.type == VK_IMAGE_TYPE_3D ? limit : 1},
+                 {"the number of layers", info.arrayLayers, info.type == VK_IMAGE_TYPE_3D ? 1 : kMaxArrayLayers}};
+    for (const auto& size : sizes)
+        if (size.value == 0 || size.value > size.limit)
+            return wrong(size.name, size.value, "but must be 1 to " + std::to_string(size.limit));
+    const uint32_t mips = fullMipCount(info.extent);
+    if (info.mipLevels == 0 || info.mipLevels > mips)
+        return wrong("the number of mip levels", info.mipLevels, "but must be 1 to " + std::to_string(mips));
+    if (info.samples != 1 && info.samples != kMaxSamples)
+        return wrong("the sample count", info.samples, "but must be 1 or " + std::to_string(kMaxSamples));
+    if (info.samples > 1 && (info.mipLevels > 1 || info.type != VK_IMAGE_TYPE_2D))
+        return wrong("the sample count", info.samples, "but only 2D images of one mip level can be multisampled");
+    return {};
+}
+
+}  // namespace
+
+Result<Image> Image::create(const ImageInfo& info) {
+    Image image;
+    image.info_ = info;
+    image.format_ = findFormat(info.format);
+    if (!image.format_) return unsupported("image: format " + std::to_string(info.format) + " is not supported");
+    if (Status status = checkInfo(info); !status) return status.error();
+
+    const uint32_t texel = image.format_->bytesPerTexel;
+    const bool padded = (info.usage & kAttachmentUsage) != 0;
+    VkDeviceSize offset = 0;
+    for (uint32_t mip = 0; mip < info.mipLevels; ++mip) {
+        LevelLayout level;
+        level.extent = {std::max(1u, info.extent.width >> mip), std::max(1u, info.extent.height >> mip),
+                        std::max(1u, info.extent.depth >> mip)};
+        const uint64_t columns = padded ? alignUp(level.extent.width, kAttachmentBlock) : level.extent.width;
+        const uint64_t rows = padded ? alignUp(level.extent.height, kAttachmentBlock) : level.extent.height;
+        level.offset = offset;
+        level.rowPitch = static_cast<uint32_t>(alignUp(columns * texel, kRowAlignment));
+        level.samplePitch = level.rowPitch * rows;
+        level.slicePitch = level.samplePitch * info.samples;
+        offset = alignUp(offset + level.slicePitch * level.extent.depth, kLevelAlignment);
+        image.levels_.push_back(level);
+    }
+    image.layerPitch_ = offset;
+    return image;
+}
+
+std::byte* Image::address(uint32_t mip, uint32_t layer, uint32_t z, uint32_t sample) const {
+    const LevelLayout& layout = levels_[mip];
+    return data_ + layer * layerPitch_ + layout.offset + z * layout.slicePitch + sample * layout.samplePitch;
+}
+
+}  // namespace vernier

@@ -1,0 +1,82 @@
+#include <string>
+
+#include "runtime/resource/image.h"
+
+namespace vernier {
+namespace {
+
+Error wrong(const std::string& what) { return invalidArgument("image view: " + what); }
+
+bool typeFits(VkImageViewType view, VkImageType image) {
+    switch (view) {
+        case VK_IMAGE_VIEW_TYPE_1D:
+        case VK_IMAGE_VIEW_TYPE_1D_ARRAY: return image == VK_IMAGE_TYPE_1D;
+        case VK_IMAGE_VIEW_TYPE_3D: return image == VK_IMAGE_TYPE_3D;
+        default: return image == VK_IMAGE_TYPE_2D;
+    }
+}
+
+Status checkRange(const Image& image, const ImageViewInfo& info) {
+    const VkImageSubresourceRange& range = info.range;
+    const auto check = [](const char* name, uint64_t base, uint64_t count, uint64_t limit) -> Status {
+        if (count > 0 && base + count <= limit) return {};
+        return wrong(std::string(name) + " " + std::to_string(base) + " + " + std::to_string(count) +
+                     " are not inside the image's " + std::to_string(limit));
+    };
+    if (Status s = check("mip levels", range.baseMipLevel, range.levelCount, image.info().mipLevels); !s) return s;
+    if (Status s = check("layers", range.baseArrayLayer, range.layerCount, image.info().arrayLayers); !s) return s;
+    if (range.aspectMask == 0 || (range.aspectMask & ~image.format().aspects) != 0)
+        return wrong("aspect mask " + std::to_string(range.aspectMask) + " is not of format " + image.format().name);
+    const bool cube = info.type == VK_IMAGE_VIEW_TYPE_CUBE || info.type == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY;
+    if (cube && (range.layerCount % 6 != 0 || image.info().extent.width != image.info().extent.height))
+        return wrong("a cube needs square images and layers in sixes, not " + std::to_string(range.layerCount));
+    return {};
+}
+
+}  // namespace
+
+Result<ImageView> ImageView::create(const Image& image, const ImageViewInfo& info, Isa isa) {
+    const FormatInfo* format = findFormat(info.format);
+    if (!format) return unsupported("image view: format " + std::to_string(info.format) + " is not supported");
+    if (format->bytesPerTexel != image.format().bytesPerTexel || format->aspects != image.format().aspects)
+        return wrong(std::string("format ") + format->name + " does not fit the image's " + image.format().name);
+    if (!typeFits(info.type, image.info().type))
+        return wrong("view type " + std::to_string(info.type) + " does not fit the image's type");
+    if (Status status = checkRange(image, info); !status) return status.error();
+    if (!image.bound()) return wrong("the image has no memory bound");
+
+    ImageView view;
+    view.image_ = &image;
+    view.info_ = info;
+    TextureView& texture = view.texture_;
+    texture.type = info.type;
+    texture.format = info.format;
+    const VkImageAspectFlags depthStencil = VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT;
+    texture.aspect = (info.range.aspectMask & depthStencil) == depthStencil
+                         ? static_cast<VkImageAspectFlags>(VK_IMAGE_ASPECT_DEPTH_BIT)
+                         : info.range.aspectMask;
+    texture.swizzle = info.components;
+    texture.levelCount = info.range.levelCount;
+    texture.layerCount = info.range.layerCount;
+    texture.samples = image.info().samples;
+    texture.texelPitch = format->bytesPerTexel;
+    texture.samplePitch = image.level(info.range.baseMipLevel).samplePitch;
+    texture.ops = formatOps(info.format, texture.aspect, isa);
+    for (uint32_t i = 0; i < info.range.levelCount; ++i) {
+        const LevelLayout& level = image.level(info.range.baseMipLevel + i);
+        texture.levels[i] = {.data = image.address(info.range.baseMipLevel + i, info.range.baseArrayLayer),
+                             .width = level.extent.width,
+                             .height = level.extent.height,
+                             .depth = level.extent.depth,
+                             .rowPitch = level.rowPitch,
+                             .slicePitch = image.info().type == VK_IMAGE_TYPE_3D ? level.slicePitch : image.layerPitch()};
+    }
+    return view;
+}
+
+VkExtent2D ImageView::extent() const {
+    const VkExtent3D& extent = image_->level(info_.range.baseMipLevel).extent;
+    return {extent.width, extent.height};
+}
+
+}  // namespace vernier

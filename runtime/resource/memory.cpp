@@ -1,0 +1,37 @@
+#include "runtime/resource/memory.h"
+
+#include <cstring>
+#include <new>
+#include <string>
+
+namespace vernier {
+namespace {
+
+constexpr size_t kAlignment = 64;
+
+}  // namespace
+
+void* HostAllocator::get(size_t bytes, size_t alignment) const {
+    if (allocate) return allocate(user, bytes, alignment);
+    return ::operator new(bytes, std::align_val_t{kAlignment}, std::nothrow);
+}
+
+void HostAllocator::put(void* memory, size_t bytes) const {
+    if (!memory) return;
+    if (release) return release(user, memory, bytes);
+    ::operator delete(memory, std::align_val_t{kAlignment});
+}
+
+Result<std::unique_ptr<Memory>> Memory::create(const HostAllocator& allocator, VkDeviceSize size) {
+    if (size > SIZE_MAX - kSlack)
+        return Error{ErrorCode::outOfDeviceMemory, "memory of " + std::to_string(size) + " bytes does not fit"};
+    auto* data = static_cast<std::byte*>(allocator.get(size + kSlack, kAlignment));
+    if (!data)
+        return Error{ErrorCode::outOfDeviceMemory, "no memory for an allocation of " + std::to_string(size) + " bytes"};
+    std::memset(data, 0, size + kSlack);
+    return std::unique_ptr<Memory>(new Memory(allocator, data, size));
+}
+
+Memory::~Memory() { allocator_.put(data_, size_ + kSlack); }
+
+}  // namespace vernier

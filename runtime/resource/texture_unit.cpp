@@ -1,0 +1,237 @@
+#include "runtime/resource/texture_unit.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstring>
+
+namespace vernier {
+namespace {
+
+constexpr std::array<float, kMaxSampleLanes> kZeroLanes{};
+
+const float* asFloat(const uint32_t* lanes) { return reinterpret_cast<const float*>(lanes); }
+const int32_t* asInt(const uint32_t* lanes) { return reinterpret_cast<const int32_t*>(lanes); }
+float* asFloat(uint32_t* lanes) { return reinterpret_cast<float*>(lanes); }
+
+void fill(uint32_t* lanes, uint32_t count, uint32_t value) {
+    if (lanes) std::fill_n(lanes, count, value);
+}
+
+/// Puts the array layer, which SPIR-V passes last, into the fourth place. spatial = coordinates without the layer.
+template <class Target, class Convert>
+void placeCoordinates(const ImageCall& call, Target (&coord)[4], Convert convert) {
+    const uint32_t spatial = call.op->coords - (call.op->arrayed ? 1u : 0u);
+    for (uint32_t i = 0; i < std::min(spatial, 3u); ++i) coord[i] = convert(call.coord[i]);
+    if (call.op->arrayed) coord[3] = convert(call.coord[spatial]);
+}
+
+/// Calls run(mask, offset) once for every texel offset that occurs among the active lanes. Without offsets: once.
+template <class Run>
+void forEachOffset(const ImageCall& call, Run run) {
+    std::array<int32_t, 3> offset{};
+    if (!call.offset[0]) return run(call.mask, offset);
+    std::array<uint32_t, kMaxSampleLanes> pending{}, group{};
+    for (uint32_t lane = 0; lane < call.lanes; ++lane) pending[lane] = call.mask ? call.mask[lane] : ~0u;
+    const auto offsetOf = [&](uint32_t lane) {
+        std::array<int32_t, 3> result{};
+        for (size_t i = 0; i < 3; ++i)
+            if (call.offset[i]) result[i] = asInt(call.offset[i])[lane];
+        return result;
+    };
+    for (uint32_t first = 0; first < call.lanes; ++first) {
+        if (!pending[first]) continue;
+        offset = offsetOf(first);
+        for (uint32_t lane = 0; lane < call.lanes; ++lane) {
+            group[lane] = pending[lane] && offsetOf(lane) == offset ? ~0u : 0u;
+            if (group[lane]) pending[lane] = 0;
+        }
+        run(group.data(), offset);
+    }
+}
+
+/// Results of a group of lanes go to a scratch copy first when there are several groups: a routine may write lanes
+/// outside its mask.
+void runSample(const TextureUnit& unit, SampleFn routine, const ImageCall& call, LodMode mode, bool gather) {
+    forEachOffset(call, [&](const uint32_t* mask, const std::array<int32_t, 3>& offset) {
+        SampleRequest request;
+        request.lanes = call.lanes;
+        request.mask = mask;
+        placeCoordinates(call, request.coord, [](const uint32_t* lanes) { return asFloat(lanes); });
+        request.dref = call.dref ? asFloat(call.dref) : kZeroLanes.data();
+        request.lodMode = mode;
+        request.lod = call.lodOrBias ? asFloat(call.lodOrBias) : nullptr;
+        for (size_t i = 0; i < 3; ++i) {
+            request.gradX[i] = call.ddx[i] ? asFloat(call.ddx[i]) : nullptr;
+            request.gradY[i] = call.ddy[i] ? asFloat(call.ddy[i]) : nullptr;
+            request.offset[i] = offset[i];
+        }
+        request.component = gather ? call.op->component : 0;
+        const bool direct = mask == call.mask;
+        std::array<std::array<float, kMaxSampleLanes>, 4> scratch;
+        for (size_t i = 0; i < 4; ++i)
+            request.out[i] = !call.result[i] ? nullptr : direct ? asFloat(call.result[i]) : scratch[i].data();
+        routine(*unit.view, *unit.sampler, request);
+        if (direct) return;
+        for (size_t i = 0; i < 4; ++i)
+            for (uint32_t lane = 0; call.result[i] && lane < call.lanes; ++lane)
+                if (mask[lane]) call.result[i][lane] = std::bit_cast<uint32_t>(scratch[i][lane]);
+    });
+}
+
+void runFetch(const TextureUnit& unit, const ImageCall& call) {
+    forEachOffset(call, [&](const uint32_t* mask, const std::array<int32_t, 3>& offset) {
+        FetchRequest request;
+        request.lanes = call.lanes;
+        request.mask = mask;
+        placeCoordinates(call, request.coord, [](const uint32_t* lanes) { return asInt(lanes); });
+        request.lod = call.lodOrBias ? asInt(call.lodOrBias) : nullptr;
+        request.sample = call.sample ? asInt(call.sample) : nullptr;
+        std::copy(offset.begin(), offset.end(), request.offset);
+        for (size_t i = 0; i < 4; ++i) request.out[i] = call.result[i] ? asFloat(call.result[i]) : nullptr;
+        unit.fetch(*unit.view, request);
+    });
+}
+
+/// Components in the order of the coordinates of the instruction: sizes of the dimensions, then layers (or cubes).
+void runQuerySize(const TextureUnit& unit, const ImageCall& call) {
+    for (uint32_t lane = 0; lane < call.lanes; ++lane) {
+        const uint32_t level = call.lodOrBias ? call.lodOrBias[lane] : 0;
+        const std::array<uint32_t, 4> size = querySize(*unit.view, level);
+        for (size_t i = 0; i < 4; ++i)
+            if (call.result[i]) call.result[i][lane] = size[i];
+    }
+}
+
+/// The address of the texel a lane of a storage-image instruction names; nullptr outside the image.
+std::byte* storageTexel(const TextureView& view, const ImageCall& call, uint32_t lane) {
+    const int32_t* coord[4] = {};
+    placeCoordinates(call, coord, [](const uint32_t* lanes) { return asInt(lanes); });
+    const auto at = [&](size_t i) { return coord[i] ? static_cast<uint32_t>(coord[i][lane]) : 0u; };
+    const TextureLevel& level = view.levels[0];
+    const bool volume = view.type == VK_IMAGE_VIEW_TYPE_3D || call.op->dim == ir::ImageDim::cube;
+    const uint32_t slice = volume ? at(2) : at(3);
+    const uint32_t slices = view.type == VK_IMAGE_VIEW_TYPE_3D ? level.depth : view.layerCount;
+    if (at(0) >= level.width || at(1) >= level.height || slice >= slices) return nullptr;
+    // Storage images are writable memory of the device; views keep read-only pointers for all the others.
+    return const_cast<std::byte*>(level.data) + slice * level.slicePitch + uint64_t{at(1)} * level.rowPitch +
+           uint64_t{at(0)} * view.texelPitch;
+}
+
+void runStore(const TextureUnit& unit, const ImageCall& call) {
+    for (uint32_t lane = 0; lane < call.lanes; ++lane) {
+        if (call.mask && !call.mask[lane]) continue;
+        std::byte* texel = storageTexel(*unit.view, call, lane);
+        if (!texel) continue;
+        VkClearColorValue value{};
+        for (size_t i = 0; i < 4; ++i) value.uint32[i] = call.texel[i] ? call.texel[i][lane] : 0;
+        packTexel(unit.view->ops.layout, value, texel);
+    }
+}
+
+uint32_t applyAtomic(ir::AtomicOp op, std::atomic_ref<uint32_t> memory, uint32_t value, uint32_t comparator) {
+    const auto update = [&](auto combine) {
+        uint32_t old = memory.load();
+        while (!memory.compare_exchange_weak(old, combine(old))) {}
+        return old;
+    };
+    const auto asSigned = [](uint32_t bits) { return static_cast<int32_t>(bits); };
+    switch (op) {
+        case ir::AtomicOp::add: return memory.fetch_add(value);
+        case ir::AtomicOp::sub: return memory.fetch_sub(value);
+        case ir::AtomicOp::iand: return memory.fetch_and(value);
+        case ir::AtomicOp::ior: return memory.fetch_or(value);
+        case ir::AtomicOp::ixor: return memory.fetch_xor(value);
+        case ir::AtomicOp::exchange: return memory.exchange(value);
+        case ir::AtomicOp::store: memory.store(value); return value;
+        case ir::AtomicOp::load: return memory.load();
+        case ir::AtomicOp::umin: return update([&](uint32_t old) { return std::min(old, value); });
+        case ir::AtomicOp::umax: return update([&](uint32_t old) { return std::max(old, value); });
+        case ir::AtomicOp::smin:
+            return update([&](uint32_t old) { return asSigned(old) < asSigned(value) ? old : value; });
+        case ir::AtomicOp::smax:
+            return update([&](uint32_t old) { return asSigned(old) > asSigned(value) ? old : value; });
+        case ir::AtomicOp::compareExchange: {
+            uint32_t expected = comparator;
+            memory.compare_exchange_strong(expected, value);
+            return expected;
+        }
+    }
+    return 0;
+}
+
+void runAtomic(const TextureUnit& unit, const ImageCall& call) {
+    for (uint32_t lane = 0; lane < call.lanes; ++lane) {
+        if (call.mask && !call.mask[lane]) continue;
+        std::byte* texel = unit.view->texelPitch == 4 ? storageTexel(*unit.view, call, lane) : nullptr;
+        uint32_t old = 0;
+        if (texel) {
+            const std::atomic_ref<uint32_t> memory(*reinterpret_cast<uint32_t*>(texel));
+            old = applyAtomic(call.op->atomicOp, memory, call.texel[0] ? call.texel[0][lane] : 0,
+                              call.texel[1] ? call.texel[1][lane] : 0);
+        }
+        if (call.result[0]) call.result[0][lane] = old;
+    }
+}
+
+void runUnit(const TextureUnit& unit, const ImageCall& call) {
+    using Kind = ir::ImageKind;
+    const bool needsSampler = call.op->kind == Kind::sampleImplicit || call.op->kind == Kind::sampleLod ||
+                              call.op->kind == Kind::sampleGrad || call.op->kind == Kind::gather ||
+                              call.op->kind == Kind::queryLod;
+    if (!unit.view || (needsSampler && !unit.sampler)) {
+        for (uint32_t* result : call.result) fill(result, call.lanes, 0);
+        return;
+    }
+    switch (call.op->kind) {
+        case Kind::sampleImplicit: return runSample(unit, unit.sample, call, LodMode::implicitLod, false);
+        case Kind::sampleLod: return runSample(unit, unit.sample, call, LodMode::explicitLod, false);
+        case Kind::sampleGrad: return runSample(unit, unit.sample, call, LodMode::gradients, false);
+        case Kind::gather: return runSample(unit, unit.gather, call, LodMode::base, true);
+        case Kind::queryLod: return runSample(unit, unit.queryLod, call, LodMode::implicitLod, false);
+        case Kind::fetch:
+        case Kind::read: return runFetch(unit, call);
+        case Kind::store: return runStore(unit, call);
+        case Kind::atomic: return runAtomic(unit, call);
+        case Kind::querySize: return runQuerySize(unit, call);
+        case Kind::queryLevels: return fill(call.result[0], call.lanes, unit.view->levelCount);
+        case Kind::querySamples: return fill(call.result[0], call.lanes, unit.view->samples);
+    }
+}
+
+void callUnit(const ImageBinding& binding, const ImageCall& call) {
+    runUnit(*static_cast<const TextureUnit*>(binding.image), call);
+}
+
+/// The image of one descriptor with the sampler of another: the routines are looked up once per batch.
+void callCombined(const ImageBinding& binding, const ImageCall& call) {
+    const auto* image = static_cast<const TextureUnit*>(binding.image);
+    const auto* sampler = static_cast<const SamplerState*>(binding.sampler);
+    const Result<TextureUnit> unit = makeTextureUnit(image->view, sampler, image->isa);
+    runUnit(unit ? *unit : TextureUnit{}, call);
+}
+
+}  // namespace
+
+Result<TextureUnit> makeTextureUnit(const TextureView* view, const SamplerState* sampler, Isa isa) {
+    TextureUnit unit{.view = view, .sampler = sampler, .isa = isa};
+    if (!view) return unit;
+    if (Status status = checkView(*view); !status) return status.error();
+    unit.fetch = selectFetch(*view, isa);
+    if (!sampler) return unit;
+    if (Status status = checkSampling(*view, *sampler); !status) return status.error();
+    unit.sample = selectSampler(*view, *sampler, isa);
+    unit.gather = selectGather(*view, *sampler, isa);
+    unit.queryLod = selectQueryLod(*view, *sampler, isa);
+    return unit;
+}
+
+ImageBinding bindingOf(const TextureUnit& unit) { return {&unit, unit.sampler, callUnit}; }
+
+ImageBinding combineBinding(const ImageBinding& image, const void* sampler) {
+    if (!image.image) return {};
+    return {image.image, sampler, callCombined};
+}
+
+}  // namespace vernier

@@ -1,0 +1,168 @@
+// Reading the texels of a footprint into vectors: one source per kind of format, fast for four bytes per texel, general for
+// all others. Included once per target (see base/simd.h).
+#if defined(VERNIER_TEXTURE_TEXELS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef VERNIER_TEXTURE_TEXELS_INL_H
+#undef VERNIER_TEXTURE_TEXELS_INL_H
+#else
+#define VERNIER_TEXTURE_TEXELS_INL_H
+#endif
+
+#include <algorithm>
+#include <cstring>
+
+#include "runtime/texture/lod-inl.h"
+#include "runtime/texture/routing.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vernier {
+namespace HWY_NAMESPACE {
+
+constexpr uint32_t kVectorLanes = hn::MaxLanes(F32());
+
+/// Where one texel of the footprint is, in all lanes; indices are in range. slice: array layer, cube face or z.
+struct TexelPosition {
+    VI x, y, slice;
+};
+
+/// Four planes of one texel per lane: floats, or the bits of integers. Which component a plane holds is the source's affair.
+using Texel = VU[4];
+
+// A source has
+//   kFinite               its planes hold finite floats, so that a plain interpolation is safe
+//   planeOf[4]            the plane of each component
+//   borderPlanes()        the border colour as the planes of a texel
+//   load<kTaps>()         the texels of kTaps positions
+//   finish()              from a filtered plane to the value of its component
+
+/// Four 8-bit components in any order. unorm stays in codes until finish(); sRGB is decoded at once.
+template <bool kSrgb, bool kWide>
+struct Rgba8Source {
+    static constexpr bool kFinite = true;
+    uint8_t planeOf[4];
+
+    explicit Rgba8Source(const TextureView& view) {
+        for (int c = 0; c < 4; ++c) planeOf[c] = view.ops.layout.rgba[c].offset / 8;
+    }
+
+    void borderPlanes(const VkClearColorValue& color, uint32_t (&planes)[4]) const {
+        for (int c = 0; c < 4; ++c) {
+            planes[planeOf[c]] = std::bit_cast<uint32_t>(kSrgb ? color.float32[c] : 255.0f * color.float32[c]);
+        }
+    }
+
+    template <int kTaps>
+    HWY_INLINE void load(const TextureView&, const TextureLevel& level, const TexelPosition (&at)[kTaps], uint32_t,
+                         Texel (&texels)[kTaps]) const {
+        for (int t = 0; t < kTaps; ++t) unpack(word(level, at[t]), texels[t]);
+    }
+
+    HWY_INLINE VU finish(VU plane, uint32_t) const {
+        return kSrgb ? plane : bitsOf(hn::Div(floatOf(plane), splatFloat(255.0f)));
+    }
+
+  private:
+    static HWY_INLINE VU word(const TextureLevel& level, const TexelPosition& at) {
+        if constexpr (kWide) {  // offsets beyond int32
+            alignas(64) int32_t x[kVectorLanes], y[kVectorLanes], slice[kVectorLanes];
+            alignas(64) uint32_t words[kVectorLanes];
+            hn::Store(at.x, I32(), x);
+            hn::Store(at.y, I32(), y);
+            hn::Store(at.slice, I32(), slice);
+            for (uint32_t i = 0; i < kVectorLanes; ++i) {
+                std::memcpy(&words[i],
+                            level.data + static_cast<uint64_t>(slice[i]) * level.slicePitch +
+                                static_cast<uint64_t>(y[i]) * level.rowPitch + static_cast<uint64_t>(x[i]) * 4,
+                            4);
+            }
+            return hn::Load(U32(), words);
+        } else {
+            const VI row = hn::Mul(at.y, splatInt(static_cast<int32_t>(level.rowPitch)));
+            const VI slice = hn::Mul(at.slice, splatInt(static_cast<int32_t>(level.slicePitch)));
+            const VI offset = hn::Add(hn::Add(row, slice), hn::ShiftLeft<2>(at.x));
+            return hn::GatherOffset(U32(), reinterpret_cast<const uint32_t*>(level.data), offset);
+        }
+    }
+
+    static HWY_INLINE void unpack(VU word, Texel& texel) {
+        const VU mask = splatBits(0xff);
+        const VU codes[4] = {hn::And(word, mask), hn::And(hn::ShiftRight<8>(word), mask),
+                             hn::And(hn::ShiftRight<16>(word), mask), hn::ShiftRight<24>(word)};
+        for (int p = 0; p < 3; ++p) texel[p] = bitsOf(kSrgb ? decodeSrgbV(codes[p]) : toFloatV(codes[p]));
+        texel[3] = bitsOf(kSrgb ? decodeUnormV(codes[3], 8) : toFloatV(codes[3]));
+    }
+};
+
+/// Any format, through its conversion of rows.
+struct AnySource {
+    static constexpr bool kFinite = false;
+    static constexpr uint8_t planeOf[4] = {0, 1, 2, 3};
+    TexelLayout layout;
+
+    explicit AnySource(const TextureView& view) : layout(view.ops.layout) {}
+
+    void borderPlanes(const VkClearColorValue& color, uint32_t (&planes)[4]) const {
+        // "Texel Replacement" covers the components that the format has; the others are substituted as ever.
+        for (int c = 0; c < 4; ++c) {
+            planes[c] = layout.rgba[c].bits != 0 ? color.uint32[c] : constantBits(layout, c == 3);
+        }
+    }
+
+    /// `needed`: bit c set = component c is wanted.
+    template <int kTaps>
+    HWY_NOINLINE void load(const TextureView& view, const TextureLevel& level, const TexelPosition (&at)[kTaps],
+                             uint32_t needed, Texel (&texels)[kTaps]) const {
+        const std::byte* pointers[kTaps * kVectorLanes];
+        for (int t = 0; t < kTaps; ++t) {
+            alignas(64) int32_t x[kVectorLanes], y[kVectorLanes], slice[kVectorLanes];
+            hn::Store(at[t].x, I32(), x);
+            hn::Store(at[t].y, I32(), y);
+            hn::Store(at[t].slice, I32(), slice);
+            for (uint32_t i = 0; i < kVectorLanes; ++i) {
+                pointers[static_cast<uint32_t>(t) * kVectorLanes + i] =
+                    level.data + static_cast<uint64_t>(slice[i]) * level.slicePitch +
+                    static_cast<uint64_t>(y[i]) * level.rowPitch + static_cast<uint64_t>(x[i]) * view.texelPitch;
+            }
+        }
+        alignas(64) uint32_t values[4][kTaps * kVectorLanes];
+        void* planes[4];
+        for (int c = 0; c < 4; ++c) planes[c] = (needed >> c & 1) != 0 ? values[c] : nullptr;
+        view.ops.unpackEach(pointers, kTaps * kVectorLanes, planes);
+        for (int t = 0; t < kTaps; ++t) {
+            for (int c = 0; c < 4; ++c) {
+                texels[t][c] = planes[c] == nullptr
+                                   ? hn::Zero(U32())
+                                   : hn::Load(U32(), values[c] + static_cast<uint32_t>(t) * kVectorLanes);
+            }
+        }
+    }
+
+    HWY_INLINE VU finish(VU plane, uint32_t) const { return plane; }
+};
+
+/// a where t = 0, towards b: a + t (b - a), the same bits as a where a = b.
+HWY_INLINE VF lerpFinite(VF a, VF b, VF t) { return hn::Add(a, hn::Mul(t, hn::Sub(b, a))); }
+
+/// The same for any floats: a texel of weight 0 has no say even if it is infinite or NaN, equal infinities stay, and a
+/// difference that overflows is avoided.
+HWY_INLINE VF lerpAny(VF a, VF b, VF t) {
+    const F32 df;
+    const VF difference = hn::Sub(b, a);
+    const auto overflows = hn::Not(hn::Le(hn::Abs(difference), splatFloat(0x1.fffffep127f)));
+    VF result = hn::Add(a, hn::Mul(t, difference));
+    if (!hn::AllFalse(df, overflows)) {
+        const VF weighted = hn::Add(hn::Mul(a, hn::Sub(splatFloat(1.0f), t)), hn::Mul(b, t));
+        result = hn::IfThenElse(overflows, weighted, result);
+    }
+    return hn::IfThenElse(hn::Or(hn::Eq(t, hn::Zero(df)), hn::Eq(a, b)), a, result);
+}
+
+template <class Source>
+HWY_INLINE VU lerpPlane(VU a, VU b, VF t) {
+    return bitsOf(Source::kFinite ? lerpFinite(floatOf(a), floatOf(b), t) : lerpAny(floatOf(a), floatOf(b), t));
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace vernier
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard

@@ -1,0 +1,78 @@
+#include "runtime/transfer/region.h"
+
+#include <string>
+
+namespace vernier {
+namespace {
+
+/// Below this many texels the hand-over to other threads costs more than the work.
+constexpr uint64_t kParallelTexels = 64 * 1024;
+constexpr uint32_t kRowsPerStep = 16;
+
+uint32_t clipSpan(uint32_t begin, uint32_t count, uint32_t limit) {
+    return begin >= limit ? 0 : std::min(count, limit - begin);
+}
+
+}  // namespace
+
+TexelBox clipBox(const Image& image, const VkImageSubresourceLayers& subresource, const VkOffset3D& offset,
+                 const VkExtent3D& extent) {
+    if (subresource.mipLevel >= image.info().mipLevels || offset.x < 0 || offset.y < 0 || offset.z < 0) return {};
+    const VkExtent3D& size = image.level(subresource.mipLevel).extent;
+    const bool volume = image.info().type == VK_IMAGE_TYPE_3D;
+    TexelBox box;
+    box.x = static_cast<uint32_t>(offset.x);
+    box.y = static_cast<uint32_t>(offset.y);
+    box.z = volume ? static_cast<uint32_t>(offset.z) : subresource.baseArrayLayer;
+    box.width = clipSpan(box.x, extent.width, size.width);
+    box.height = clipSpan(box.y, extent.height, size.height);
+    const uint32_t slices = volume ? std::max(extent.depth, subresource.layerCount)
+                                   : std::max(subresource.layerCount, extent.depth);
+    box.depth = clipSpan(box.z, slices, volume ? size.depth : image.info().arrayLayers);
+    return box;
+}
+
+std::byte* rowAddress(const Image& image, uint32_t mip, uint32_t y, uint32_t z, uint32_t sample) {
+    const bool volume = image.info().type == VK_IMAGE_TYPE_3D;
+    return image.address(mip, volume ? 0 : z, volume ? z : 0, sample) + uint64_t{y} * image.level(mip).rowPitch;
+}
+
+void forEachRow(const TransferContext& context, const TexelBox& box,
+                const std::function<void(uint32_t y, uint32_t z)>& row) {
+    if (box.empty()) return;
+    const uint64_t rows = uint64_t{box.height} * box.depth;
+    const auto run = [&](uint64_t begin, uint64_t end) {
+        for (uint64_t i = begin; i < end; ++i)
+            row(static_cast<uint32_t>(i % box.height), static_cast<uint32_t>(i / box.height));
+    };
+    if (rows * box.width < kParallelTexels) return run(0, rows);
+    const auto steps = static_cast<uint32_t>((rows + kRowsPerStep - 1) / kRowsPerStep);
+    context.pool.parallelFor(steps, [&](uint32_t step, uint32_t) {
+        const uint64_t begin = uint64_t{step} * kRowsPerStep;
+        run(begin, std::min(rows, begin + kRowsPerStep));
+    });
+}
+
+Status checkBufferImageCopy(const Image& image, VkDeviceSize bufferSize, const VkBufferImageCopy& region) {
+    const auto wrong = [](const std::string& text) -> Status { return invalidArgument("buffer-image copy: " + text); };
+    const VkImageSubresourceLayers& sub = region.imageSubresource;
+    if (sub.mipLevel >= image.info().mipLevels)
+        return wrong("mip level " + std::to_string(sub.mipLevel) + " of " + std::to_string(image.info().mipLevels));
+    const TexelBox box = clipBox(image, sub, region.imageOffset, region.imageExtent);
+    if (box.width != region.imageExtent.width || box.height != region.imageExtent.height || box.empty() ||
+        box.depth < std::max(sub.layerCount, region.imageExtent.depth))
+        return wrong("the region reaches outside the image");
+    const bool oneAspect = sub.aspectMask != 0 && (sub.aspectMask & (sub.aspectMask - 1)) == 0;
+    if (!oneAspect || (sub.aspectMask & image.format().aspects) == 0)
+        return wrong("aspect mask " + std::to_string(sub.aspectMask) + " is not one aspect of the image");
+    const uint64_t texel = bufferTexelBytes(image.format(), sub.aspectMask);
+    const uint64_t rowTexels = region.bufferRowLength ? region.bufferRowLength : box.width;
+    const uint64_t sliceRows = region.bufferImageHeight ? region.bufferImageHeight : box.height;
+    const uint64_t last = ((uint64_t{box.depth} - 1) * sliceRows + box.height - 1) * rowTexels + box.width;
+    if (region.bufferOffset > bufferSize || last * texel > bufferSize - region.bufferOffset)
+        return wrong("needs " + std::to_string(last * texel) + " bytes at offset " +
+                     std::to_string(region.bufferOffset) + " of a buffer of " + std::to_string(bufferSize));
+    return {};
+}
+
+}  // namespace vernier

@@ -1,0 +1,20 @@
+// Register allocation: rows for virtual registers, by linear scan over live intervals that cover whole loops where a value
+// must survive them.
+#pragma once
+
+#include <vector>
+
+#include "spirv_interp/batch/machine.h"
+
+namespace vernier::batch {
+
+struct Allocation {
+    std::vector<uint32_t> row;  // by virtual register: index of its (first) row; kNone if it is never alive
+    uint32_t rows = 0;
+};
+
+/// Joins registers at both ends of moves where that makes the move needless (marking it dead), and gives every register
+/// its rows.
+Allocation allocate(MachineCode& code);
+
+}  // namespace vernier::batch

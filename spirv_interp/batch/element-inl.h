@@ -1,0 +1,178 @@
+// Runs elementwise operations over the lanes of a batch; included once per SIMD target (see base/simd.h).
+#if defined(VERNIER_BATCH_ELEMENT_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef VERNIER_BATCH_ELEMENT_INL_H
+#undef VERNIER_BATCH_ELEMENT_INL_H
+#else
+#define VERNIER_BATCH_ELEMENT_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+#include <bit>
+#include <cstdint>
+#include <type_traits>
+
+#include "base/simd-inl.h"
+#include "spirv_interp/batch/bytecode.h"
+
+/// Declares a vector operation: `In` is the element type its operands are read as, `Out` the type of its result.
+#define VERNIER_ELEMENT(name, In, Out, parameters, ...)                                                       \
+    struct name {                                                                                             \
+        using InType = In;                                                                                    \
+        using V = hn::Vec<hn::ScalableTag<In>>;                                                               \
+        static HWY_INLINE hn::Vec<hn::ScalableTag<Out>> apply parameters { __VA_ARGS__ }                      \
+    };
+
+HWY_BEFORE_NAMESPACE();
+namespace vernier::batch::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using F32 = hn::ScalableTag<float>;
+using I32 = hn::ScalableTag<int32_t>;
+using U32 = hn::ScalableTag<uint32_t>;
+inline constexpr F32 kF32{};
+inline constexpr I32 kI32{};
+inline constexpr U32 kU32{};
+using VF = hn::Vec<F32>;
+using VI = hn::Vec<I32>;
+using VU = hn::Vec<U32>;
+
+/// A comparison's result as a b1 row: all ones or all zeros.
+template <class M>
+HWY_INLINE VU boolRow(M mask) {
+    return hn::VecFromMask(kU32, hn::RebindMask(kU32, mask));
+}
+
+/// An operand: a row that is read vector by vector, or a scalar that is in a register for the whole loop.
+template <class T, bool kScalar>
+class Source;
+
+template <class T>
+class Source<T, false> {
+  public:
+    HWY_INLINE Source(const Frame& frame, uint32_t offset) : row_(frame.row<T>(offset)) {}
+    HWY_INLINE hn::Vec<hn::ScalableTag<T>> at(size_t lane) const {
+        return hn::Load(hn::ScalableTag<T>(), row_ + lane);
+    }
+
+  private:
+    const T* row_;
+};
+
+template <class T>
+class Source<T, true> {
+  public:
+    HWY_INLINE Source(const Frame& frame, uint32_t index)
+        : value_(hn::BitCast(hn::ScalableTag<T>(), hn::Set(kU32, frame.scalars[index]))) {}
+    HWY_INLINE hn::Vec<hn::ScalableTag<T>> at(size_t) const { return value_; }
+
+  private:
+    hn::Vec<hn::ScalableTag<T>> value_;
+};
+
+template <class V>
+HWY_INLINE void storeRow(const Frame& frame, uint32_t offset, size_t lane, V value) {
+    hn::Store(hn::BitCast(kU32, value), kU32, frame.row<uint32_t>(offset) + lane);
+}
+
+template <class E, size_t kForm>
+const Inst* runUnary(Frame& frame, const Inst* inst) {
+    const Source<typename E::InType, kForm & 1> a(frame, inst->operand[1]);
+    for (size_t lane = 0; lane < frame.lanes; lane += hn::Lanes(kU32)) {
+        storeRow(frame, inst->operand[0], lane, E::apply(a.at(lane)));
+    }
+    return inst + 1;
+}
+
+template <class E, size_t kForm>
+const Inst* runBinary(Frame& frame, const Inst* inst) {
+    const Source<typename E::InType, kForm & 1> a(frame, inst->operand[1]);
+    const Source<typename E::InType, (kForm >> 1 & 1)> b(frame, inst->operand[2]);
+    for (size_t lane = 0; lane < frame.lanes; lane += hn::Lanes(kU32)) {
+        storeRow(frame, inst->operand[0], lane, E::apply(a.at(lane), b.at(lane)));
+    }
+    return inst + 1;
+}
+
+template <class E, size_t kForm>
+const Inst* runTernary(Frame& frame, const Inst* inst) {
+    const Source<typename E::InType, kForm & 1> a(frame, inst->operand[1]);
+    const Source<typename E::InType, (kForm >> 1 & 1)> b(frame, inst->operand[2]);
+    const Source<typename E::InType, (kForm >> 2 & 1)> c(frame, inst->operand[3]);
+    for (size_t lane = 0; lane < frame.lanes; lane += hn::Lanes(kU32)) {
+        storeRow(frame, inst->operand[0], lane, E::apply(a.at(lane), b.at(lane), c.at(lane)));
+    }
+    return inst + 1;
+}
+
+/// Enters the handlers of every form of a vector operation that has at least one row among its operands.
+template <class E, size_t kOperands, bool kScalars = true, size_t kForm = 0>
+void addElement(HandlerTable& table, Op op) {
+    auto& forms = table[static_cast<size_t>(op)];
+    if constexpr (kOperands == 1) {
+        forms[kForm] = runUnary<E, kForm>;
+    } else if constexpr (kOperands == 2) {
+        forms[kForm] = runBinary<E, kForm>;
+    } else {
+        forms[kForm] = runTernary<E, kForm>;
+    }
+    if constexpr (kScalars && kForm + 2 < (size_t{1} << kOperands)) {
+        addElement<E, kOperands, kScalars, kForm + 1>(table, op);
+    }
+}
+
+template <class T>
+HWY_INLINE T readLane(const Frame& frame, uint32_t offset, uint32_t lane) {
+    const uint32_t low = frame.row<uint32_t>(offset)[lane];
+    if constexpr (sizeof(T) == 8) {
+        const uint64_t high = frame.row<uint32_t>(offset + frame.rowBytes)[lane];
+        return std::bit_cast<T>(high << 32 | low);
+    } else {
+        return std::bit_cast<T>(low);
+    }
+}
+
+template <class T>
+HWY_INLINE void writeLane(const Frame& frame, uint32_t offset, uint32_t lane, T value) {
+    if constexpr (std::is_same_v<T, bool>) {
+        frame.row<uint32_t>(offset)[lane] = value ? ~0u : 0u;
+    } else if constexpr (sizeof(T) == 8) {
+        const auto bits = std::bit_cast<uint64_t>(value);
+        frame.row<uint32_t>(offset)[lane] = static_cast<uint32_t>(bits);
+        frame.row<uint32_t>(offset + frame.rowBytes)[lane] = static_cast<uint32_t>(bits >> 32);
+    } else {
+        frame.row<uint32_t>(offset)[lane] = std::bit_cast<uint32_t>(value);
+    }
+}
+
+/// An operation given as a function of one lane; 4-byte types are rows, 8-byte types pairs of rows, bool is a b1 row.
+template <auto kFunction>
+struct LaneRunner;
+
+template <class R, class... A, R (*kFunction)(A...)>
+struct LaneRunner<kFunction> {
+    static const Inst* run(Frame& frame, const Inst* inst) {
+        call(frame, inst, std::index_sequence_for<A...>());
+        return inst + instsFor(sizeof...(A) + 1);
+    }
+
+  private:
+    template <size_t... kIndex>
+    static HWY_INLINE void call(Frame& frame, const Inst* inst, std::index_sequence<kIndex...>) {
+        for (uint32_t lane = 0; lane < frame.lanes; ++lane) {
+            writeLane<R>(frame, (*inst)[0], lane,
+                         kFunction(readLane<A>(frame, (*inst)[kIndex + 1], lane)...));
+        }
+    }
+};
+
+template <auto kFunction>
+void addLanes(HandlerTable& table, Op op) {
+    table[static_cast<size_t>(op)][0] = LaneRunner<kFunction>::run;
+}
+
+}  // namespace vernier::batch::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard

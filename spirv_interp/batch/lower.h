@@ -1,0 +1,56 @@
+// From the IR to machine code. A program becomes two pieces: draw-rate code, straight-line, run once per draw on a batch of
+// one lane group, which leaves its results in the scalar file; and the code of a batch, with lane masks for its control
+// flow.
+#pragma once
+
+#include <vector>
+
+#include "spirv_interp/batch/machine.h"
+#include "spirv_interp/ir/ir.h"
+
+namespace vernier::batch {
+
+/// By value: whether it is the same for all lanes of a draw and can be computed before the first batch.
+std::vector<bool> scalarValues(const ir::Program& program);
+
+struct LoweredProgram {
+    MachineCode batch, draw;
+    ScalarFile scalars;
+};
+
+/// `program` must verify.
+LoweredProgram lower(const ir::Program& program);
+
+/// Moves that happen at once, put in an order in which none destroys the source of another. `fresh` makes a register for
+/// a cycle.
+struct Move {
+    Operand to;    // written row
+    Operand from;  // row or scalar
+};
+template <class Emit, class Fresh>
+void sequentialise(std::vector<Move> moves, Emit&& emit, Fresh&& fresh) {
+    const auto same = [](const Operand& a, const Operand& b) {
+        return a.isRow() && b.isRow() && a.id == b.id && a.word == b.word;
+    };
+    std::erase_if(moves, [&](const Move& m) { return same(m.to, m.from); });
+    while (!moves.empty()) {
+        bool progress = false;
+        for (size_t k = 0; k < moves.size(); ++k) {
+            bool needed = false;
+            for (size_t j = 0; j < moves.size(); ++j) needed |= j != k && same(moves[j].from, moves[k].to);
+            if (needed) continue;
+            emit(moves[k]);
+            moves.erase(moves.begin() + static_cast<ptrdiff_t>(k));
+            progress = true;
+            break;
+        }
+        if (progress) continue;
+        // Only cycles are left: the first destination is saved, and whoever wanted it reads the copy.
+        const Operand saved = fresh(moves.front().to);
+        for (Move& move : moves) {
+            if (same(move.from, moves.front().to)) move.from = saved;
+        }
+    }
+}
+
+}  // namespace vernier::batch

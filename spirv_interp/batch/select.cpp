@@ -1,0 +1,76 @@
+#include "spirv_interp/batch/select.h"
+
+#include <array>
+
+#include "spirv_interp/ir/ops.h"
+
+namespace vernier::batch {
+namespace {
+
+enum class Family : uint8_t { vector, lanes, math, wide, other };
+
+struct OpFacts {
+    std::string_view name;
+    uint8_t operands;
+    Family family;
+};
+
+constexpr std::array<OpFacts, kOpCount> kFacts{{
+#define VERNIER_BATCH_VECTOR(name, operands) {#name, operands + 1, Family::vector},
+#define VERNIER_BATCH_LANES(name, operands) {#name, operands + 1, Family::lanes},
+#define VERNIER_BATCH_MATH(name, operands) {#name, operands + 1, Family::math},
+#define VERNIER_BATCH_WIDE(name, operands) {#name, operands + 1, Family::wide},
+#define VERNIER_BATCH_OTHER(name, operands) {#name, operands, Family::other},
+#include "spirv_interp/batch/ops.def"
+}};
+
+const OpFacts& factsOf(Op op) { return kFacts[static_cast<size_t>(op)]; }
+
+/// The elementwise operation with this name.
+std::optional<Op> elementNamed(std::string_view name, std::string_view suffix) {
+    for (size_t k = 0; k < kOpCount; ++k) {
+        const OpFacts& facts = kFacts[k];
+        if (facts.family == Family::other || facts.name.size() != name.size() + suffix.size()) continue;
+        if (facts.name.starts_with(name) && facts.name.ends_with(suffix)) return static_cast<Op>(k);
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::string_view opName(Op op) { return factsOf(op).name; }
+size_t operandCount(Op op) { return factsOf(op).operands; }
+bool isVectorOp(Op op) { return factsOf(op).family == Family::vector; }
+bool isWideOp(Op op) { return factsOf(op).family == Family::wide; }
+
+std::optional<Op> elementOp(const ir::Program& program, const ir::Inst& inst) {
+    const auto operands = program.operandsOf(inst);
+    const auto operandType = operands.empty() ? ir::Type::none : program.valueTypes[operands[0]];
+    const bool wideFrom = ir::isWide(operandType), wideTo = ir::isWide(inst.type);
+    switch (inst.op) {
+        // A b1 is a word of zeros or ones: logic on it is logic on integers.
+        case ir::Op::band: return Op::iand;
+        case ir::Op::bor: return Op::ior;
+        case ir::Op::bxor: return Op::ixor;
+        case ir::Op::bnot: return Op::inot;
+        case ir::Op::ieq:
+        case ir::Op::ine:
+            if (operandType == ir::Type::b1) return inst.op == ir::Op::ieq ? Op::ieq : Op::ine;
+            break;
+        case ir::Op::zext:
+            if (operandType == ir::Type::b1) return wideTo ? Op::boolTo64 : Op::boolToInt;
+            return Op::zextTo64;
+        case ir::Op::sext: return Op::sextTo64;
+        case ir::Op::ftos:
+        case ir::Op::ftou:
+        case ir::Op::stof:
+        case ir::Op::utof:
+        case ir::Op::ftof:
+            return elementNamed(ir::opInfo(inst.op).name,
+                                wideFrom && wideTo ? "64" : wideFrom ? "From64" : wideTo ? "To64" : "");
+        default: break;
+    }
+    return elementNamed(ir::opInfo(inst.op).name, wideFrom ? "64" : "");
+}
+
+}  // namespace vernier::batch

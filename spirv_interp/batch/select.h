@@ -1,0 +1,23 @@
+// Which operation of the interpreter does the work of an IR instruction, and what is known about operations.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "spirv_interp/batch/bytecode.h"
+#include "spirv_interp/ir/ir.h"
+
+namespace vernier::batch {
+
+std::string_view opName(Op op);
+/// Operands, the destination included.
+size_t operandCount(Op op);
+/// Takes scalars as operands.
+bool isVectorOp(Op op);
+/// Has 64-bit operands or a 64-bit result.
+bool isWideOp(Op op);
+
+/// The elementwise operation for an instruction; nothing for instructions that are lowered in another way.
+std::optional<Op> elementOp(const ir::Program& program, const ir::Inst& inst);
+
+}  // namespace vernier::batch

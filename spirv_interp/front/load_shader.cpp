@@ -1,0 +1,69 @@
+// loadShader and checkModule of program.h: validation by SPIRV-Tools, then the lowering.
+#include <memory>
+#include <type_traits>
+
+#include <spirv-tools/libspirv.h>
+
+#include "spirv_interp/front/lower_module.h"
+#include "spirv_interp/front/lowering.h"
+#include "spirv_interp/ir/optimise.h"
+#include "spirv_interp/ir/verify.h"
+
+namespace vernier {
+namespace {
+
+/// Vulkan 1.1 takes SPIR-V up to 1.3, and later versions by extension and with later core versions.
+spv_target_env environmentOf(uint32_t version) {
+    if (version > 0x00010500) return SPV_ENV_VULKAN_1_3;
+    if (version > 0x00010400) return SPV_ENV_VULKAN_1_2;
+    return version > 0x00010300 ? SPV_ENV_VULKAN_1_1_SPIRV_1_4 : SPV_ENV_VULKAN_1_1;
+}
+
+struct DestroyContext {
+    void operator()(spv_context context) const { spvContextDestroy(context); }
+};
+
+}  // namespace
+
+Status checkModule(std::span<const uint32_t> words) {
+    if (words.size() < Module::kFirstInstruction) return invalidArgument("SPIR-V: the module is shorter than its header");
+    const std::unique_ptr<std::remove_pointer_t<spv_context>, DestroyContext> context(
+        spvContextCreate(environmentOf(words[1])));
+    spv_diagnostic diagnostic = nullptr;
+    const spv_const_binary_t binary{words.data(), words.size()};
+    if (spvValidate(context.get(), &binary, &diagnostic) == SPV_SUCCESS) {
+        spvDiagnosticDestroy(diagnostic);
+        return {};
+    }
+    std::string message = "SPIR-V: the module is not valid";
+    if (diagnostic != nullptr) {
+        message += ": ";
+        message += diagnostic->error;
+        message += " (at word " + std::to_string(diagnostic->position.index) + ")";
+    }
+    spvDiagnosticDestroy(diagnostic);
+    return invalidArgument(std::move(message));
+}
+
+Result<ir::Program> lowerModule(const ShaderSource& source) {
+    Result<Module> module = Module::read(source.words);
+    if (!module) return module.error();
+    ir::Program program;
+    try {
+        Lowering(*module, source, program).run();
+    } catch (const LoweringError& error) {
+        return error.error;
+    }
+    return program;
+}
+
+Result<ir::Program> loadShader(const ShaderSource& source) {
+    if (const Status valid = checkModule(source.words); !valid) return valid.error();
+    Result<ir::Program> program = lowerModule(source);
+    if (!program) return program;
+    ir::optimise(*program, {.contract = source.contract});
+    if (const Status verified = ir::verify(*program); !verified) return verified.error();
+    return program;
+}
+
+}  // namespace vernier

@@ -1,0 +1,245 @@
+// Variables, and the inputs and outputs of the stage.
+#include <algorithm>
+
+#include "spirv_interp/front/lowering.h"
+#include "spirv_interp/ir/ops.h"
+
+namespace vernier {
+namespace {
+
+struct BuiltinEntry {
+    spv::BuiltIn spirv;
+    ir::Builtin builtin;
+    ir::Stage stage;
+    bool input;
+};
+
+constexpr auto kVertex = ir::Stage::vertex;
+constexpr auto kFragment = ir::Stage::fragment;
+
+constexpr BuiltinEntry kBuiltins[] = {
+    {spv::BuiltIn::VertexIndex, ir::Builtin::vertexIndex, kVertex, true},
+    {spv::BuiltIn::InstanceIndex, ir::Builtin::instanceIndex, kVertex, true},
+    {spv::BuiltIn::BaseVertex, ir::Builtin::baseVertex, kVertex, true},
+    {spv::BuiltIn::BaseInstance, ir::Builtin::baseInstance, kVertex, true},
+    {spv::BuiltIn::DrawIndex, ir::Builtin::drawIndex, kVertex, true},
+    {spv::BuiltIn::ViewIndex, ir::Builtin::viewIndex, kVertex, true},
+    {spv::BuiltIn::ViewIndex, ir::Builtin::viewIndex, kFragment, true},
+    {spv::BuiltIn::Position, ir::Builtin::position, kVertex, false},
+    {spv::BuiltIn::PointSize, ir::Builtin::pointSize, kVertex, false},
+    {spv::BuiltIn::ClipDistance, ir::Builtin::clipDistance, kVertex, false},
+    {spv::BuiltIn::CullDistance, ir::Builtin::cullDistance, kVertex, false},
+    {spv::BuiltIn::ClipDistance, ir::Builtin::clipDistance, kFragment, true},
+    {spv::BuiltIn::CullDistance, ir::Builtin::cullDistance, kFragment, true},
+    {spv::BuiltIn::Layer, ir::Builtin::layer, kVertex, false},
+    {spv::BuiltIn::Layer, ir::Builtin::layer, kFragment, true},
+    {spv::BuiltIn::ViewportIndex, ir::Builtin::viewportIndex, kVertex, false},
+    {spv::BuiltIn::ViewportIndex, ir::Builtin::viewportIndex, kFragment, true},
+    {spv::BuiltIn::FragCoord, ir::Builtin::fragCoord, kFragment, true},
+    {spv::BuiltIn::FrontFacing, ir::Builtin::frontFacing, kFragment, true},
+    {spv::BuiltIn::PointCoord, ir::Builtin::pointCoord, kFragment, true},
+    {spv::BuiltIn::SampleId, ir::Builtin::sampleId, kFragment, true},
+    {spv::BuiltIn::SamplePosition, ir::Builtin::samplePosition, kFragment, true},
+    {spv::BuiltIn::SampleMask, ir::Builtin::sampleMaskIn, kFragment, true},
+    {spv::BuiltIn::PrimitiveId, ir::Builtin::primitiveId, kFragment, true},
+    {spv::BuiltIn::HelperInvocation, ir::Builtin::helperInvocation, kFragment, true},
+    {spv::BuiltIn::FragDepth, ir::Builtin::fragDepth, kFragment, false},
+    {spv::BuiltIn::SampleMask, ir::Builtin::sampleMask, kFragment, false},
+    {spv::BuiltIn::FragStencilRefEXT, ir::Builtin::fragStencilRef, kFragment, false},
+};
+
+constexpr uint32_t kMaxLocalWords = 1u << 16;
+
+}  // namespace
+
+void Lowering::lowerVariable(const Instruction& inst) {
+    const uint32_t id = inst[2];
+    const SpirvType& pointerType = typeInfo(inst[1]);
+    const SpirvType& type = typeInfo(pointerType.element);
+    Pointer pointer;
+    pointer.type = pointerType.element;
+    switch (pointerType.storage) {
+        case spv::StorageClass::Input:
+        case spv::StorageClass::Output:
+            if (std::find(interface_.begin(), interface_.end(), id) == interface_.end()) return;
+            lowerStageVariable(inst, pointerType.storage == spv::StorageClass::Input);
+            return;
+        case spv::StorageClass::Function:
+        case spv::StorageClass::Private:
+            if (type.kind == SpirvType::Kind::pointer) refuse(inst, "variables that hold pointers are not supported");
+            if (type.isOpaque()) refuse(inst, "variables that hold images or samplers are not supported");
+            if (dynamicRoot_[id]) {
+                pointer.base = Pointer::Base::local;
+                pointer.extent = type.words;
+                if (localOfId_[id] == ir::kNoIndex) {
+                    if (type.words > kMaxLocalWords - program_.localWords) {
+                        refuse(inst, "variables indexed at run time take more than " +
+                                         std::to_string(kMaxLocalWords * 4) + " bytes");
+                    }
+                    localOfId_[id] = program_.localWords;
+                    program_.localWords += type.words;
+                }
+                pointer.root = localOfId_[id];
+            } else {
+                pointer.root = emitter_.newVariables(static_cast<uint32_t>(leafTypes(pointer.type).size()));
+            }
+            initialise(inst, pointer);
+            break;
+        case spv::StorageClass::Uniform:
+        case spv::StorageClass::StorageBuffer:
+        case spv::StorageClass::PushConstant:
+            pointer.base = Pointer::Base::buffer;
+            pointer.root = id;
+            pointer.descriptorArray =
+                type.kind == SpirvType::Kind::array || type.kind == SpirvType::Kind::runtimeArray;
+            break;
+        case spv::StorageClass::UniformConstant:
+            pointer.base = Pointer::Base::handle;
+            pointer.root = id;
+            pointer.descriptorArray =
+                type.kind == SpirvType::Kind::array || type.kind == SpirvType::Kind::runtimeArray;
+            break;
+        default: refuse(inst, "storage class " + std::to_string(inst[3]) + " is not supported");
+    }
+    setPointer(id, pointer);
+}
+
+/// The value a variable begins with. SSA variables without one are undefined from here on: a second pass through an inlined
+/// function does not see the first one's values.
+void Lowering::initialise(const Instruction& inst, const Pointer& pointer) {
+    if (inst.count > 4) {
+        store(pointer, leavesOf(inst[4]));
+    } else if (pointer.base == Pointer::Base::ssa) {
+        store(pointer, undefOf(pointer.type));
+    }
+}
+
+void Lowering::lowerStageVariable(const Instruction& inst, bool input) {
+    const uint32_t id = inst[2];
+    Pointer pointer;
+    pointer.type = typeInfo(inst[1]).element;
+    std::vector<ir::InterfaceSlot>& slots = input ? program_.inputs : program_.outputs;
+    const auto first = static_cast<uint32_t>(slots.size());
+    ir::InterfaceSlot slot;
+    SlotCursor at;
+    const SlotPlace place{id, 0, Decoration::kNoMember, input};
+    decorateSlot(place, slot, at);
+    leafTypes(pointer.type);  // refuses what is too large
+    appendSlots(pointer.type, place, slot, at, slots);
+    if (input) {
+        pointer.base = slot.builtin == ir::Builtin::helperInvocation ? Pointer::Base::helper : Pointer::Base::input;
+        pointer.root = first;
+        pointer.extent = static_cast<uint32_t>(slots.size()) - first;
+    } else if (dynamicRoot_[id]) {
+        pointer.base = Pointer::Base::local;
+        pointer.extent = static_cast<uint32_t>(slots.size()) - first;
+        pointer.root = program_.localWords;
+        program_.localWords += pointer.extent;
+        initialise(inst, pointer);
+        outputs_.push_back({pointer, first});
+    } else {
+        pointer.root = emitter_.newVariables(static_cast<uint32_t>(leafTypes(pointer.type).size()));
+        initialise(inst, pointer);
+        outputs_.push_back({pointer, first});
+    }
+    setPointer(id, pointer);
+}
+
+ir::Builtin Lowering::builtinOf(const SlotPlace& place, uint32_t builtin) const {
+    for (const BuiltinEntry& entry : kBuiltins) {
+        if (static_cast<uint32_t>(entry.spirv) == builtin && entry.stage == program_.stage && entry.input == place.input) {
+            return entry.builtin;
+        }
+    }
+    refuseId(place.variable, "is built-in variable " + std::to_string(builtin) + ", which is not supported in this stage");
+}
+
+void Lowering::decorateSlot(const SlotPlace& place, ir::InterfaceSlot& slot, SlotCursor& at) const {
+    const uint32_t id = place.member == Decoration::kNoMember ? place.variable : place.structure;
+    const auto find = [&](spv::Decoration kind) { return module_.findDecoration(id, kind, place.member); };
+    if (const Decoration* d = find(spv::Decoration::BuiltIn)) {
+        slot.builtin = builtinOf(place, d->value);
+        at = {};
+    }
+    if (const Decoration* d = find(spv::Decoration::Location)) {
+        at.location = d->value;
+        at.component = 0;
+        slot.component = 0;
+    }
+    if (const Decoration* d = find(spv::Decoration::Component)) slot.component = static_cast<uint8_t>(d->value & 3);
+    if (const Decoration* d = find(spv::Decoration::Index)) slot.index = static_cast<uint8_t>(d->value);
+    if (find(spv::Decoration::Flat) != nullptr) slot.interpolation = ir::Interpolation::flat;
+    if (find(spv::Decoration::NoPerspective) != nullptr) slot.interpolation = ir::Interpolation::noPerspective;
+    if (find(spv::Decoration::Centroid) != nullptr) slot.sampling = ir::Sampling::centroid;
+    if (find(spv::Decoration::Sample) != nullptr) slot.sampling = ir::Sampling::sample;
+    if (find(spv::Decoration::PerPrimitiveNV) != nullptr || find(spv::Decoration::PerVertexKHR) != nullptr) {
+        refuseId(place.variable, "has a decoration that is not supported (PerPrimitive or PerVertex)");
+    }
+}
+
+// Locations: "Location Assignment" in the chapter "Shader Interfaces" of the Vulkan specification. A scalar or vector takes
+// one location (a 64-bit vector of three or four components two), matrices one per column, arrays one per element.
+void Lowering::appendSlots(uint32_t typeId, const SlotPlace& place, ir::InterfaceSlot slot, SlotCursor& at,
+                           std::vector<ir::InterfaceSlot>& slots) const {
+    const SpirvType& type = typeInfo(typeId);
+    switch (type.kind) {
+        case SpirvType::Kind::matrix:
+        case SpirvType::Kind::array:
+            for (uint32_t i = 0; i < type.count; ++i) appendSlots(type.element, place, slot, at, slots);
+            return;
+        case SpirvType::Kind::structure:
+            for (uint32_t member = 0; member < type.members.size(); ++member) {
+                const SlotPlace inner{place.variable, typeId, member, place.input};
+                ir::InterfaceSlot memberSlot = slot;
+                SlotCursor memberAt = at;
+                decorateSlot(inner, memberSlot, memberAt);
+                appendSlots(type.members[member], inner, memberSlot, memberAt, slots);
+                if (memberSlot.builtin == ir::Builtin::user) at = memberAt;
+            }
+            return;
+        case SpirvType::Kind::vector:
+        case SpirvType::Kind::boolean:
+        case SpirvType::Kind::integer:
+        case SpirvType::Kind::floating: break;
+        default: refuseId(place.variable, "has a type that cannot be an input or output");
+    }
+    const bool wide = ir::isWide(type.scalar);
+    const uint32_t firstComponent = slot.component;
+    if (slot.builtin == ir::Builtin::user) at.component = firstComponent;
+    slot.type = wide ? ir::Type::i32 : type.scalar;
+    if (slot.type == ir::Type::i32 && place.input && program_.stage == ir::Stage::fragment) {
+        slot.interpolation = ir::Interpolation::flat;
+    }
+    for (uint32_t word = 0; word < type.words; ++word) {
+        if (slot.builtin == ir::Builtin::user && at.component == 4) {
+            ++at.location;
+            at.component = 0;
+        }
+        if (at.location > 0xFFFF || at.component > 0xFF) refuseId(place.variable, "has a location that is too large");
+        slot.location = static_cast<uint16_t>(at.location);
+        slot.component = static_cast<uint8_t>(at.component++);
+        slots.push_back(slot);
+    }
+    if (slot.builtin == ir::Builtin::user) {
+        ++at.location;
+        at.component = 0;
+    }
+}
+
+void Lowering::storeOutputs() {
+    for (const Output& output : outputs_) {
+        uint32_t slot = output.firstSlot;
+        for (ir::ValueId leaf : load(output.pointer)) {
+            const bool wide = ir::isWide(emitter_.typeOf(leaf));
+            const bool written = !emitter_.isUndef(leaf);
+            for (uint32_t word = 0; word < (wide ? 2u : 1u); ++word, ++slot) {
+                if (!written) continue;
+                const ir::ValueId value =
+                    wide ? emitter_.emit(word == 0 ? ir::Op::lowWord : ir::Op::highWord, ir::Type::i32, {leaf}) : leaf;
+                emitter_.emit(ir::Op::storeOutput, ir::Type::none, {value}, slot);
+            }
+        }
+    }
+}
+
+}  // namespace vernier

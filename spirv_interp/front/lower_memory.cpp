@@ -1,0 +1,382 @@
+// Pointers, loads and stores.
+#include <algorithm>
+
+#include "spirv_interp/front/lowering.h"
+#include "spirv_interp/ir/ops.h"
+
+namespace vernier {
+
+using Base = Pointer::Base;
+
+// --- access chains ------------------------------------------------------------------------------------------------------
+
+void Lowering::lowerAccessChain(const Instruction& inst) {
+    Pointer pointer = pointerOf(inst[3]);
+    for (uint32_t word = 4; word < inst.count; ++word) pointer = stepInto(pointer, inst[word], inst);
+    setPointer(inst[2], pointer);
+}
+
+/// Moves by `index` steps of `stride` units; an index that is constant is kept inside `count` (0: no bound).
+void Lowering::advance(Pointer& pointer, uint32_t indexId, uint32_t count, uint32_t stride) {
+    if (const std::optional<uint32_t> index = constantOf(indexId)) {
+        pointer.offset += (count != 0 ? std::min(*index, count - 1) : *index) * stride;
+        return;
+    }
+    const ir::ValueId index = toI32(scalarOf(indexId));
+    const ir::ValueId distance = emitter_.emit(ir::Op::imul, ir::Type::i32, {index, emitter_.constantI32(stride)});
+    pointer.dynamic = pointer.dynamic == ir::kNoValue
+                          ? distance
+                          : emitter_.emit(ir::Op::iadd, ir::Type::i32, {pointer.dynamic, distance});
+}
+
+void Lowering::stepDescriptor(Pointer& pointer, const SpirvType& type, uint32_t indexId) {
+    const ir::ValueId index = toI32(scalarOf(indexId));
+    if (pointer.descriptor == ir::kNoValue) {
+        pointer.descriptor = index;
+    } else {
+        const ir::ValueId row =
+            emitter_.emit(ir::Op::imul, ir::Type::i32, {pointer.descriptor, emitter_.constantI32(type.count)});
+        pointer.descriptor = emitter_.emit(ir::Op::iadd, ir::Type::i32, {row, index});
+    }
+    pointer.type = type.element;
+    const SpirvType::Kind next = typeInfo(type.element).kind;
+    pointer.descriptorArray = next == SpirvType::Kind::array || next == SpirvType::Kind::runtimeArray;
+}
+
+Pointer Lowering::stepInto(const Pointer& from, uint32_t indexId, const Instruction& inst) {
+    Pointer pointer = from;
+    const uint32_t typeId = from.type;
+    const SpirvType& type = typeInfo(typeId);
+    if (pointer.descriptorArray) {
+        stepDescriptor(pointer, type, indexId);
+        return pointer;
+    }
+    const bool buffer = pointer.base == Base::buffer;
+    const auto unitsOf = [&](const SpirvType& part) { return pointer.base == Base::ssa ? part.leaves : part.words; };
+    switch (type.kind) {
+        case SpirvType::Kind::structure: {
+            const std::optional<uint32_t> index = constantOf(indexId);
+            if (!index || *index >= type.members.size()) refuse(inst, "a member index that is not a constant in range");
+            pointer.type = type.members[*index];
+            if (!buffer) {
+                pointer.offset += pointer.base == Base::ssa ? type.memberLeaf[*index] : type.memberWord[*index];
+                return pointer;
+            }
+            pointer.offset += module_.decorationOr(typeId, spv::Decoration::Offset, *index, 0);
+            if (const Decoration* d = module_.findDecoration(typeId, spv::Decoration::MatrixStride, *index)) {
+                pointer.matrixStride = d->value;
+                pointer.rowMajor = module_.hasDecoration(typeId, spv::Decoration::RowMajor, *index);
+            }
+            return pointer;
+        }
+        case SpirvType::Kind::array:
+        case SpirvType::Kind::runtimeArray: {
+            const uint32_t stride =
+                buffer ? module_.decorationOr(typeId, spv::Decoration::ArrayStride, Decoration::kNoMember, 0)
+                       : unitsOf(typeInfo(type.element));
+            advance(pointer, indexId, buffer ? 0 : type.count, stride);
+            break;
+        }
+        case SpirvType::Kind::matrix: {
+            const SpirvType& column = typeInfo(type.element);
+            const uint32_t scalarBytes = column.words * 4 / column.count;
+            const uint32_t stride = !buffer ? unitsOf(column) : pointer.rowMajor ? scalarBytes : pointer.matrixStride;
+            pointer.elementStride = buffer && pointer.rowMajor ? pointer.matrixStride : 0;
+            advance(pointer, indexId, type.count, stride);
+            break;
+        }
+        case SpirvType::Kind::vector: {
+            const SpirvType& scalar = typeInfo(type.element);
+            uint32_t stride = buffer ? scalar.words * 4 : unitsOf(scalar);
+            if (pointer.elementStride != 0) stride = pointer.elementStride;
+            pointer.elementStride = 0;
+            advance(pointer, indexId, type.count, stride);
+            break;
+        }
+        default: refuse(inst, "an index into something that has no parts");
+    }
+    pointer.type = type.element;
+    if (pointer.base == Base::ssa && pointer.dynamic != ir::kNoValue) {
+        refuse(inst, "an index that is not constant");
+    }
+    return pointer;
+}
+
+// --- scalars in memory --------------------------------------------------------------------------------------------------
+
+/// The place in the pointer's unit, `more` further on, as a value.
+ir::ValueId Lowering::place(const Pointer& pointer, uint32_t more) {
+    const ir::ValueId fixed = emitter_.constantI32(pointer.offset + more);
+    return pointer.dynamic == ir::kNoValue ? fixed
+                                           : emitter_.emit(ir::Op::iadd, ir::Type::i32, {pointer.dynamic, fixed});
+}
+
+ir::ValueId Lowering::descriptorOf(const Pointer& pointer) {
+    return pointer.descriptor == ir::kNoValue ? emitter_.constantI32(0) : pointer.descriptor;
+}
+
+/// One 32-bit word at `at` units from the pointer, which is local, input or buffer.
+ir::ValueId Lowering::loadWord(const Pointer& pointer, uint32_t at, ir::Type type) {
+    switch (pointer.base) {
+        case Base::local:
+            return emitter_.emit(ir::Op::loadLocal, type, {place(pointer, at)}, ir::immPair(pointer.root, pointer.extent));
+        case Base::buffer:
+            return emitter_.emit(ir::Op::loadBuffer, type, {descriptorOf(pointer), place(pointer, at)},
+                                 resourceOf(pointer.root));
+        default: break;
+    }
+    if (pointer.dynamic != ir::kNoValue) {
+        return emitter_.emit(ir::Op::inputIndexed, type, {place(pointer, at)}, ir::immPair(pointer.root, pointer.extent));
+    }
+    const uint32_t slot = pointer.root + pointer.offset + at;
+    return emitter_.emit(ir::Op::input, program_.inputs[slot].type, {}, slot);
+}
+
+ir::ValueId Lowering::loadScalar(const Pointer& pointer, uint32_t at, ir::Type type) {
+    if (ir::isWide(type)) {
+        const uint32_t word = pointer.base == Base::buffer ? 4 : 1;
+        const ir::ValueId low = loadWord(pointer, at, ir::Type::i32);
+        return emitter_.emit(ir::Op::makeWide, type, {low, loadWord(pointer, at + word, ir::Type::i32)});
+    }
+    if (type == ir::Type::b1 && pointer.base != Base::input) {
+        return compare(ir::Op::ine, loadWord(pointer, at, ir::Type::i32), emitter_.constantI32(0));
+    }
+    return loadWord(pointer, at, type);
+}
+
+void Lowering::storeScalar(const Pointer& pointer, uint32_t at, ir::ValueId value) {
+    const ir::Type type = emitter_.typeOf(value);
+    if (ir::isWide(type)) {
+        const uint32_t word = pointer.base == Base::buffer ? 4 : 1;
+        storeScalar(pointer, at, emitter_.emit(ir::Op::lowWord, ir::Type::i32, {value}));
+        storeScalar(pointer, at + word, emitter_.emit(ir::Op::highWord, ir::Type::i32, {value}));
+        return;
+    }
+    if (type == ir::Type::b1) value = convert(ir::Op::zext, ir::Type::i32, value);
+    if (pointer.base == Base::local) {
+        emitter_.emit(ir::Op::storeLocal, ir::Type::none, {place(pointer, at), value},
+                      ir::immPair(pointer.root, pointer.extent));
+    } else {
+        emitter_.emit(ir::Op::storeBuffer, ir::Type::none, {descriptorOf(pointer), place(pointer, at), value},
+                      resourceOf(pointer.root));
+    }
+}
+
+/// Calls visit(byte offset, scalar type) for every scalar of what a buffer pointer points to, by the offsets and strides of
+/// its layout decorations.
+template <class Visit>
+void Lowering::visitBuffer(const Pointer& pointer, uint32_t at, const Visit& visit) {
+    const uint32_t typeId = pointer.type;
+    const SpirvType& type = typeInfo(typeId);
+    Pointer part = pointer;
+    switch (type.kind) {
+        case SpirvType::Kind::structure:
+            for (uint32_t m = 0; m < type.members.size(); ++m) {
+                part = pointer;
+                part.type = type.members[m];
+                if (const Decoration* d = module_.findDecoration(typeId, spv::Decoration::MatrixStride, m)) {
+                    part.matrixStride = d->value;
+                    part.rowMajor = module_.hasDecoration(typeId, spv::Decoration::RowMajor, m);
+                }
+                visitBuffer(part, at + module_.decorationOr(typeId, spv::Decoration::Offset, m, 0), visit);
+            }
+            break;
+        case SpirvType::Kind::array: {
+            const uint32_t stride = module_.decorationOr(typeId, spv::Decoration::ArrayStride, Decoration::kNoMember, 0);
+            part.type = type.element;
+            for (uint32_t i = 0; i < type.count; ++i) visitBuffer(part, at + i * stride, visit);
+            break;
+        }
+        case SpirvType::Kind::matrix: {
+            const SpirvType& column = typeInfo(type.element);
+            part.type = type.element;
+            part.elementStride = pointer.rowMajor ? pointer.matrixStride : 0;
+            const uint32_t stride = pointer.rowMajor ? column.words * 4 / column.count : pointer.matrixStride;
+            for (uint32_t i = 0; i < type.count; ++i) visitBuffer(part, at + i * stride, visit);
+            break;
+        }
+        case SpirvType::Kind::vector: {
+            const uint32_t tight = type.words * 4 / type.count;
+            const uint32_t stride = pointer.elementStride != 0 ? pointer.elementStride : tight;
+            for (uint32_t i = 0; i < type.count; ++i) visit(at + i * stride, type.scalar);
+            break;
+        }
+        default:
+            if (type.scalar == ir::Type::none) refuseId(pointer.root, "is read or written as a whole where that is not possible");
+            visit(at, type.scalar);
+            break;
+    }
+}
+
+// --- loads and stores ---------------------------------------------------------------------------------------------------
+
+Lowering::Leaves Lowering::load(const Pointer& pointer) {
+    const std::vector<ir::Type>& types = leafTypes(pointer.type);
+    const std::span<ir::ValueId> leaves = newLeaves(types.size());
+    if (pointer.base == Base::buffer) {
+        size_t next = 0;
+        visitBuffer(pointer, 0, [&](uint32_t at, ir::Type type) { leaves[next++] = loadScalar(pointer, at, type); });
+        return leaves;
+    }
+    uint32_t at = 0;
+    for (size_t i = 0; i < types.size(); ++i) {
+        switch (pointer.base) {
+            case Base::ssa:
+                leaves[i] = emitter_.read(pointer.root + pointer.offset + static_cast<uint32_t>(i), types[i]);
+                break;
+            case Base::helper: leaves[i] = emitter_.emit(ir::Op::isHelper, ir::Type::b1, {}); break;
+            case Base::local:
+            case Base::input: leaves[i] = loadScalar(pointer, at, types[i]); break;
+            default: refuseId(pointer.root, "is not memory that can be loaded from");
+        }
+        at += ir::isWide(types[i]) ? 2 : 1;
+    }
+    return leaves;
+}
+
+void Lowering::store(const Pointer& pointer, Leaves leaves) {
+    if (leaves.size() != leafTypes(pointer.type).size()) refuseId(pointer.root, "is stored to with another type");
+    switch (pointer.base) {
+        case Base::ssa:
+            for (uint32_t i = 0; i < leaves.size(); ++i) emitter_.write(pointer.root + pointer.offset + i, leaves[i]);
+            break;
+        case Base::local: {
+            uint32_t at = 0;
+            for (const ir::ValueId leaf : leaves) {
+                storeScalar(pointer, at, leaf);
+                at += ir::isWide(emitter_.typeOf(leaf)) ? 2 : 1;
+            }
+            break;
+        }
+        case Base::buffer: {
+            if (program_.resources[resourceOf(pointer.root)].kind != ir::ResourceKind::storageBuffer) {
+                refuseId(pointer.root, "is stored to, but it is only read");
+            }
+            size_t next = 0;
+            visitBuffer(pointer, 0, [&](uint32_t at, ir::Type) { storeScalar(pointer, at, leaves[next++]); });
+            break;
+        }
+        default: refuseId(pointer.root, "is stored to, but it is only read");
+    }
+}
+
+bool Lowering::lowerMemory(const Instruction& inst) {
+    switch (inst.op) {
+        case spv::Op::OpAccessChain:
+        case spv::Op::OpInBoundsAccessChain: lowerAccessChain(inst); return true;
+        case spv::Op::OpLoad: {
+            const Pointer& pointer = pointerOf(inst[3]);
+            if (pointer.base != Base::handle) {
+                setValue(inst[2], inst[1], load(pointer));
+                return true;
+            }
+            const SpirvType& type = typeInfo(pointer.type);
+            if (!type.isOpaque()) refuse(inst, "arrays of images cannot be loaded as a whole");
+            Handle handle;
+            const uint32_t resource = resourceOf(pointer.root);
+            if (type.kind != SpirvType::Kind::sampler) {
+                handle.imageType = type.kind == SpirvType::Kind::image ? pointer.type : type.element;
+                handle.imageResource = resource;
+                handle.imageIndex = descriptorOf(pointer);
+            }
+            if (type.kind != SpirvType::Kind::image) {
+                handle.samplerResource = resource;
+                handle.samplerIndex = descriptorOf(pointer);
+            }
+            setHandle(inst[2], handle);
+            return true;
+        }
+        case spv::Op::OpStore: store(pointerOf(inst[1]), leavesOf(inst[2])); return true;
+        case spv::Op::OpCopyMemory: store(pointerOf(inst[1]), load(pointerOf(inst[2]))); return true;
+        case spv::Op::OpArrayLength: lowerArrayLength(inst); return true;
+        case spv::Op::OpImageTexelPointer: lowerTexelPointer(inst); return true;
+        default: return lowerAtomic(inst);
+    }
+}
+
+/// The elements of a runtime array: what of the buffer lies behind the array's offset, in whole strides.
+void Lowering::lowerArrayLength(const Instruction& inst) {
+    const Pointer& pointer = pointerOf(inst[3]);
+    const SpirvType& type = typeInfo(pointer.type);
+    if (pointer.base != Base::buffer || inst[4] >= type.members.size()) refuse(inst, "is not of a member of a buffer");
+    const uint32_t offset = module_.decorationOr(pointer.type, spv::Decoration::Offset, inst[4], 0);
+    const uint32_t stride =
+        module_.decorationOr(type.members[inst[4]], spv::Decoration::ArrayStride, Decoration::kNoMember, 4);
+    const ir::ValueId size =
+        emitter_.emit(ir::Op::bufferSize, ir::Type::i32, {descriptorOf(pointer)}, resourceOf(pointer.root));
+    const ir::ValueId first = emitter_.constantI32(offset);
+    // max(size, offset) - offset: an array that begins behind the end has no elements.
+    const ir::ValueId bytes = binary(ir::Op::isub, binary(ir::Op::umax, size, first), first);
+    setScalar(inst[2], inst[1], binary(ir::Op::udiv, bytes, emitter_.constantI32(std::max(stride, 1u))));
+}
+
+// --- atomics ------------------------------------------------------------------------------------------------------------
+
+ir::ValueId Lowering::atomic(const Pointer& pointer, ir::AtomicOp op, ir::Type type, Leaves values) {
+    std::vector<ir::ValueId> operands;
+    if (pointer.base == Base::texel) {
+        ir::ImageOp image = imageOpOf(pointer.texel->image, ir::ImageKind::atomic);
+        image.atomicOp = op;
+        image.hasSample = pointer.texel->sample != ir::kNoValue;
+        operands = imageOperandsOf(pointer.texel->image);
+        operands.insert(operands.end(), pointer.texel->coords.begin(), pointer.texel->coords.end());
+        if (image.hasSample) operands.push_back(pointer.texel->sample);
+        operands.insert(operands.end(), values.begin(), values.end());
+        return emitImage(image, type, operands);
+    }
+    if (pointer.base != Base::buffer) refuseId(pointer.root, "is not memory that atomics work on");
+    operands = {descriptorOf(pointer), place(pointer, 0)};
+    operands.insert(operands.end(), values.begin(), values.end());
+    return emitter_.emit(ir::Op::atomicBuffer, type, operands,
+                         ir::immPair(resourceOf(pointer.root), static_cast<uint32_t>(op)));
+}
+
+bool Lowering::lowerAtomic(const Instruction& inst) {
+    struct Entry {
+        spv::Op spirv;
+        ir::AtomicOp op;
+    };
+    static constexpr Entry kBinary[] = {
+        {spv::Op::OpAtomicExchange, ir::AtomicOp::exchange}, {spv::Op::OpAtomicIAdd, ir::AtomicOp::add},
+        {spv::Op::OpAtomicISub, ir::AtomicOp::sub},          {spv::Op::OpAtomicSMin, ir::AtomicOp::smin},
+        {spv::Op::OpAtomicUMin, ir::AtomicOp::umin},         {spv::Op::OpAtomicSMax, ir::AtomicOp::smax},
+        {spv::Op::OpAtomicUMax, ir::AtomicOp::umax},         {spv::Op::OpAtomicAnd, ir::AtomicOp::iand},
+        {spv::Op::OpAtomicOr, ir::AtomicOp::ior},            {spv::Op::OpAtomicXor, ir::AtomicOp::ixor},
+    };
+    const auto run = [&](uint32_t pointerId, ir::AtomicOp op, std::initializer_list<ir::ValueId> values) {
+        const Pointer& pointer = pointerOf(pointerId);
+        if (typeInfo(pointer.type).kind != SpirvType::Kind::integer || typeInfo(pointer.type).words != 1) {
+            // Exchanges, loads and stores of floats move bits; the interpreter moves i32.
+            const bool moves = op == ir::AtomicOp::exchange || op == ir::AtomicOp::load || op == ir::AtomicOp::store;
+            if (!moves || scalarType(pointer.type) != ir::Type::f32) refuse(inst, "only 32-bit atomics are supported");
+        }
+        std::vector<ir::ValueId> words;
+        for (const ir::ValueId value : values) {
+            words.push_back(emitter_.typeOf(value) == ir::Type::f32 ? convert(ir::Op::bitcast, ir::Type::i32, value) : value);
+        }
+        const ir::ValueId result = atomic(pointer, op, ir::Type::i32, words);
+        return scalarType(pointer.type) == ir::Type::f32 ? convert(ir::Op::bitcast, ir::Type::f32, result) : result;
+    };
+    for (const Entry& entry : kBinary) {
+        if (entry.spirv != inst.op) continue;
+        setScalar(inst[2], inst[1], run(inst[3], entry.op, {scalarOf(inst[6])}));
+        return true;
+    }
+    switch (inst.op) {
+        case spv::Op::OpAtomicLoad: setScalar(inst[2], inst[1], run(inst[3], ir::AtomicOp::load, {})); return true;
+        case spv::Op::OpAtomicStore: run(inst[1], ir::AtomicOp::store, {scalarOf(inst[4])}); return true;
+        case spv::Op::OpAtomicIIncrement:
+            setScalar(inst[2], inst[1], run(inst[3], ir::AtomicOp::add, {emitter_.constantI32(1)}));
+            return true;
+        case spv::Op::OpAtomicIDecrement:
+            setScalar(inst[2], inst[1], run(inst[3], ir::AtomicOp::sub, {emitter_.constantI32(1)}));
+            return true;
+        case spv::Op::OpAtomicCompareExchange:
+            setScalar(inst[2], inst[1],
+                      run(inst[3], ir::AtomicOp::compareExchange, {scalarOf(inst[7]), scalarOf(inst[8])}));
+            return true;
+        default: return false;
+    }
+}
+
+}  // namespace vernier

@@ -1,0 +1,254 @@
+#include "spirv_interp/front/lowering.h"
+
+#include <algorithm>
+
+#include <spirv-tools/libspirv.h>
+
+namespace vernier {
+namespace {
+
+using spv::Capability;
+
+constexpr Capability kCapabilities[] = {
+    Capability::Matrix, Capability::Shader, Capability::Float64, Capability::Int64,
+    // Declared by fragment shaders that read PrimitiveId or Layer.
+    Capability::Geometry, Capability::ImageGatherExtended, Capability::StorageImageMultisample,
+    Capability::UniformBufferArrayDynamicIndexing, Capability::SampledImageArrayDynamicIndexing,
+    Capability::StorageBufferArrayDynamicIndexing, Capability::StorageImageArrayDynamicIndexing,
+    Capability::ClipDistance, Capability::CullDistance, Capability::ImageCubeArray, Capability::SampleRateShading,
+    Capability::InputAttachment, Capability::Sampled1D, Capability::Image1D, Capability::SampledCubeArray,
+    Capability::SampledBuffer, Capability::ImageBuffer, Capability::ImageMSArray,
+    Capability::StorageImageExtendedFormats, Capability::ImageQuery, Capability::DerivativeControl,
+    Capability::InterpolationFunction, Capability::StorageImageReadWithoutFormat,
+    Capability::StorageImageWriteWithoutFormat, Capability::MultiViewport, Capability::ShaderLayer,
+    Capability::ShaderViewportIndex, Capability::DrawParameters, Capability::MultiView, Capability::DenormPreserve,
+    Capability::SignedZeroInfNanPreserve, Capability::RoundingModeRTE, Capability::StencilExportEXT,
+    Capability::ShaderViewportIndexLayerEXT, Capability::ShaderNonUniform, Capability::RuntimeDescriptorArray,
+    Capability::InputAttachmentArrayDynamicIndexing, Capability::UniformTexelBufferArrayDynamicIndexing,
+    Capability::StorageTexelBufferArrayDynamicIndexing, Capability::UniformBufferArrayNonUniformIndexing,
+    Capability::SampledImageArrayNonUniformIndexing, Capability::StorageBufferArrayNonUniformIndexing,
+    Capability::StorageImageArrayNonUniformIndexing, Capability::InputAttachmentArrayNonUniformIndexing,
+    Capability::UniformTexelBufferArrayNonUniformIndexing, Capability::StorageTexelBufferArrayNonUniformIndexing,
+    Capability::VulkanMemoryModel, Capability::VulkanMemoryModelDeviceScope,
+    Capability::DemoteToHelperInvocationEXT,
+};
+
+/// The name by way of the disassembler, which knows the grammar.
+std::string capabilityName(uint32_t capability) {
+    const uint32_t words[] = {spv::MagicNumber, 0x00010600, 0, 1, 0, (2u << 16) | static_cast<uint32_t>(spv::Op::OpCapability),
+                              capability};
+    const spv_context context = spvContextCreate(SPV_ENV_UNIVERSAL_1_6);
+    spv_text text = nullptr;
+    std::string name = std::to_string(capability);
+    if (spvBinaryToText(context, words, std::size(words), SPV_BINARY_TO_TEXT_OPTION_NO_HEADER, &text, nullptr) ==
+        SPV_SUCCESS) {
+        name.assign(text->str, text->length);
+        name.erase(0, name.find_last_of(' ') + 1);
+        name.erase(name.find_last_not_of('\n') + 1);
+    }
+    spvTextDestroy(text);
+    spvContextDestroy(context);
+    return name;
+}
+
+spv::ExecutionModel modelOf(ir::Stage stage) {
+    switch (stage) {
+        case ir::Stage::vertex: return spv::ExecutionModel::Vertex;
+        case ir::Stage::fragment: return spv::ExecutionModel::Fragment;
+        case ir::Stage::compute: break;
+    }
+    return spv::ExecutionModel::GLCompute;
+}
+
+}  // namespace
+
+void Lowering::run() {
+    if (source_.stage == ir::Stage::compute) throw LoweringError{unsupported("SPIR-V: compute shaders are not supported")};
+    const auto& entries = module_.entryPoints();
+    const auto found = std::find_if(entries.begin(), entries.end(), [this](const EntryPoint& entry) {
+        return entry.name == source_.entryPoint && entry.model == modelOf(source_.stage);
+    });
+    if (found == entries.end()) {
+        throw LoweringError{invalidArgument("SPIR-V: the module has no " +
+                                            std::string(source_.stage == ir::Stage::vertex ? "vertex" : "fragment") +
+                                            " entry point named '" + source_.entryPoint + "'")};
+    }
+    program_.stage = source_.stage;
+    program_.name = found->name;
+    interface_ = found->interface;
+    ids_.resize(module_.bound());
+    typeIndex_.assign(module_.bound(), 0);
+    dynamicRoot_.assign(module_.bound(), false);
+    resourceOfId_.assign(module_.bound(), ir::kNoIndex);
+    localOfId_.assign(module_.bound(), ir::kNoIndex);
+    markDynamicRoots();
+    emitter_.begin(emitter_.newBlock());
+    lowerGlobals();
+    lowerExecutionModes(*found);
+    lowerEntry(*found);
+    emitter_.finish();
+}
+
+void Lowering::lowerGlobals() {
+    for (uint32_t offset = Module::kFirstInstruction; offset < module_.globalsEnd();) {
+        const Instruction inst = module_.next(offset);
+        const auto op = static_cast<uint32_t>(inst.op);
+        if (inst.op == spv::Op::OpCapability) {
+            const auto capability = static_cast<Capability>(inst[1]);
+            if (std::find(std::begin(kCapabilities), std::end(kCapabilities), capability) == std::end(kCapabilities)) {
+                throw LoweringError{unsupported("SPIR-V: capability " + capabilityName(inst[1]) + " is not supported")};
+            }
+        } else if (inst.op == spv::Op::OpExtInstImport) {
+            const std::string_view set = module_.extendedSet(inst[1]);
+            if (set != "GLSL.std.450" && !set.starts_with("NonSemantic.")) {
+                refuse(inst, "the instruction set '" + std::string(set) + "' is not supported");
+            }
+        } else if (op >= static_cast<uint32_t>(spv::Op::OpTypeVoid) &&
+                   op <= static_cast<uint32_t>(spv::Op::OpTypeForwardPointer)) {
+            lowerType(inst);
+        } else if ((op >= static_cast<uint32_t>(spv::Op::OpConstantTrue) &&
+                    op <= static_cast<uint32_t>(spv::Op::OpSpecConstantOp)) ||
+                   inst.op == spv::Op::OpUndef) {
+            lowerConstant(inst);
+        } else if (inst.op == spv::Op::OpVariable) {
+            lowerVariable(inst);
+        }
+    }
+}
+
+void Lowering::lowerExecutionModes(const EntryPoint& entry) {
+    for (uint32_t offset : module_.executionModes()) {
+        const Instruction inst = module_.next(offset);
+        if (inst[1] != entry.function) continue;
+        switch (static_cast<spv::ExecutionMode>(inst[2])) {
+            case spv::ExecutionMode::EarlyFragmentTests: program_.earlyFragmentTests = true; break;
+            case spv::ExecutionMode::OriginUpperLeft:
+            case spv::ExecutionMode::DepthReplacing:
+            case spv::ExecutionMode::DepthGreater:
+            case spv::ExecutionMode::DepthLess:
+            case spv::ExecutionMode::DepthUnchanged:
+            case spv::ExecutionMode::StencilRefReplacingEXT:
+            // What they ask for is what every program gets.
+            case spv::ExecutionMode::DenormPreserve:
+            case spv::ExecutionMode::SignedZeroInfNanPreserve:
+            case spv::ExecutionMode::RoundingModeRTE: break;
+            default: refuse(inst, "execution mode " + std::to_string(inst[2]) + " is not supported");
+        }
+    }
+}
+
+void Lowering::markDynamicRoots() {
+    const auto isConstant = [this](uint32_t id) {
+        const auto op = static_cast<uint32_t>(module_.definition(id).op);
+        return op >= static_cast<uint32_t>(spv::Op::OpConstantTrue) &&
+               op <= static_cast<uint32_t>(spv::Op::OpSpecConstantOp);
+    };
+    const auto rootOf = [this](uint32_t id) {
+        // A chain of access chains is as long as the module at most.
+        for (;;) {
+            const Instruction inst = module_.definition(id);
+            if (inst.op != spv::Op::OpAccessChain && inst.op != spv::Op::OpInBoundsAccessChain &&
+                inst.op != spv::Op::OpCopyObject) {
+                return id;
+            }
+            if (inst[3] == id) return id;
+            id = inst[3];
+        }
+    };
+    std::vector<Instruction> calls;
+    for (const Function& function : module_.functions()) {
+        for (const SpirvBlock& block : function.blocks) {
+            for (uint32_t offset = block.first; offset < block.end;) {
+                const Instruction inst = module_.next(offset);
+                if (inst.op == spv::Op::OpFunctionCall) calls.push_back(inst);
+                if (inst.op != spv::Op::OpAccessChain && inst.op != spv::Op::OpInBoundsAccessChain) continue;
+                for (uint32_t word = 4; word < inst.count; ++word) {
+                    if (isConstant(inst[word])) continue;
+                    const uint32_t root = rootOf(inst[3]);
+                    if (root < dynamicRoot_.size()) dynamicRoot_[root] = true;
+                    break;
+                }
+            }
+        }
+    }
+    // Through parameters to the arguments, as far as they go.
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (const Instruction& call : calls) {
+            const Function* callee = module_.function(call[3]);
+            if (callee == nullptr) continue;
+            for (size_t i = 0; i < callee->parameters.size(); ++i) {
+                const uint32_t root = rootOf(call[static_cast<uint32_t>(4 + i)]);
+                if (!dynamicRoot_[callee->parameters[i]] || root >= dynamicRoot_.size() || dynamicRoot_[root]) continue;
+                dynamicRoot_[root] = true;
+                changed = true;
+            }
+        }
+    }
+}
+
+// --- ids ----------------------------------------------------------------------------------------------------------------
+
+const IdValue& Lowering::idValue(uint32_t id) const {
+    if (id >= ids_.size() || ids_[id].kind == IdValue::Kind::none) refuseId(id, "is used where it has no value");
+    return ids_[id];
+}
+
+Lowering::Leaves Lowering::leavesOf(uint32_t id) const {
+    const IdValue& value = idValue(id);
+    if (value.kind != IdValue::Kind::value || value.leaves.empty()) refuseId(id, "is not a value of scalars");
+    return value.leaves;
+}
+
+const Pointer& Lowering::pointerOf(uint32_t id) const {
+    const IdValue& value = idValue(id);
+    if (value.kind != IdValue::Kind::pointer) refuseId(id, "is not a pointer");
+    return *value.pointer;
+}
+
+const Handle& Lowering::handleOf(uint32_t id) const {
+    const IdValue& value = idValue(id);
+    if (value.kind != IdValue::Kind::handle) refuseId(id, "is not an image or sampler");
+    return *value.handle;
+}
+
+void Lowering::setValue(uint32_t id, uint32_t type, Leaves leaves) {
+    ids_[id] = {IdValue::Kind::value, type, leaves, nullptr, nullptr};
+}
+
+void Lowering::setScalar(uint32_t id, uint32_t type, ir::ValueId value) {
+    const std::span<ir::ValueId> leaves = newLeaves(1);
+    leaves[0] = value;
+    setValue(id, type, leaves);
+}
+
+void Lowering::setPointer(uint32_t id, const Pointer& pointer) {
+    ids_[id] = {IdValue::Kind::pointer, pointer.type, {}, arena_.create(pointer), nullptr};
+}
+
+void Lowering::setHandle(uint32_t id, const Handle& handle) {
+    ids_[id] = {IdValue::Kind::handle, handle.imageType, {}, nullptr, arena_.create(handle)};
+}
+
+// --- errors -------------------------------------------------------------------------------------------------------------
+
+std::string Lowering::describe(const Instruction& inst) const {
+    std::string text = std::string("Op") + spvOpcodeString(static_cast<uint32_t>(inst.op));
+    bool hasResult = false, hasType = false;
+    spv::HasResultAndType(inst.op, &hasResult, &hasType);
+    if (hasResult) text += " " + module_.nameOf(inst[hasType ? 2 : 1]);
+    if (emitter_.line() != 0) text += ", line " + std::to_string(emitter_.line());
+    return text;
+}
+
+void Lowering::refuse(const Instruction& inst, const std::string& reason) const {
+    throw LoweringError{unsupported("SPIR-V: " + describe(inst) + ": " + reason)};
+}
+
+void Lowering::refuseId(uint32_t id, const std::string& reason) const {
+    std::string text = "SPIR-V: " + module_.nameOf(id) + " " + reason;
+    if (emitter_.line() != 0) text += ", line " + std::to_string(emitter_.line());
+    throw LoweringError{unsupported(std::move(text))};
+}
+
+}  // namespace vernier

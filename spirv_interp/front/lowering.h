@@ -1,0 +1,251 @@
+// Lowers one entry point of a valid module to the IR. The class is one; its parts are spread over lower_*.cpp by theme.
+//
+// Inside front/ what cannot be lowered is thrown as a LoweringError and caught in load_shader.cpp: the errors come from deep
+// inside expressions, and every one of them ends the whole lowering.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/arena.h"
+#include "base/result.h"
+#include "spirv_interp/front/emitter.h"
+#include "spirv_interp/front/module.h"
+#include "spirv_interp/front/structure.h"
+#include "spirv_interp/front/types.h"
+#include "spirv_interp/program.h"
+
+namespace vernier {
+
+struct LoweringError {
+    Error error;
+};
+
+/// Where a pointer points, known while lowering: a variable and a path into it.
+struct Pointer {
+    enum class Base : uint8_t {
+        ssa,     // scalars that are SSA variables: `root` is the first
+        local,   // invocation-local memory: `root` is its first word, `extent` its words
+        input,   // input slots: `root` is the first, `extent` their number
+        helper,  // HelperInvocation
+        buffer,  // `root` is the id of the variable
+        handle,  // an image or sampler: `root` is the id of the variable
+        texel,   // of a storage image: `texel` tells
+    };
+    Base base = Base::ssa;
+    uint32_t type = 0;  // of what it points to
+    uint32_t root = 0, extent = 0;
+    uint32_t offset = 0;                    // constant part, in leaves (ssa), words (local, input) or bytes (buffer)
+    ir::ValueId dynamic = ir::kNoValue;     // the rest, in the same unit
+    ir::ValueId descriptor = ir::kNoValue;  // buffer, handle: index in the array of descriptors
+    bool descriptorArray = false;           // the next indices select a descriptor
+    uint32_t matrixStride = 0;              // buffer: of the matrices inside
+    bool rowMajor = false;
+    uint32_t elementStride = 0;             // buffer: bytes between the components of a vector that is a matrix's column
+    const struct Texel* texel = nullptr;
+};
+
+/// An image, a sampler or both.
+struct Handle {
+    uint32_t imageType = 0;  // id of the OpTypeImage; 0 for a sampler
+    uint32_t imageResource = ir::kNoIndex, samplerResource = ir::kNoIndex;
+    ir::ValueId imageIndex = ir::kNoValue, samplerIndex = ir::kNoValue;  // descriptors
+};
+
+struct Texel {
+    Handle image;
+    std::span<const ir::ValueId> coords;
+    ir::ValueId sample = ir::kNoValue;
+};
+
+/// What an id stands for at this point of the lowering. Functions are inlined one call at a time and never inside
+/// themselves, so one table serves them all.
+struct IdValue {
+    enum class Kind : uint8_t { none, value, pointer, handle };
+    Kind kind = Kind::none;
+    uint32_t type = 0;
+    std::span<const ir::ValueId> leaves;
+    const Pointer* pointer = nullptr;
+    const Handle* handle = nullptr;
+};
+
+class Lowering {
+  public:
+    Lowering(const Module& module, const ShaderSource& source, ir::Program& program)
+        : module_(module), source_(source), program_(program), emitter_(program) {}
+
+    /// Fills the program. Throws LoweringError.
+    void run();
+
+  private:
+    using Leaves = std::span<const ir::ValueId>;
+    struct Frame;
+    /// Where a slot's decorations are: on a variable or on a member of a block.
+    struct SlotPlace {
+        uint32_t variable = 0;
+        uint32_t structure = 0, member = Decoration::kNoMember;
+        bool input = true;
+    };
+    struct SlotCursor {
+        uint32_t location = 0, component = 0;
+    };
+    struct Output {
+        Pointer pointer;
+        uint32_t firstSlot = 0;  // in Program::outputs, one per word
+    };
+
+    // lowering.cpp: the whole, ids, errors
+    void lowerExecutionModes(const EntryPoint& entry);
+    void lowerGlobals();
+    void markDynamicRoots();
+    [[noreturn]] void refuse(const Instruction& inst, const std::string& reason) const;
+    [[noreturn]] void refuseId(uint32_t id, const std::string& reason) const;
+    std::string describe(const Instruction& inst) const;
+    const IdValue& idValue(uint32_t id) const;
+    Leaves leavesOf(uint32_t id) const;
+    ir::ValueId scalarOf(uint32_t id) const { return leavesOf(id)[0]; }
+    const Pointer& pointerOf(uint32_t id) const;
+    const Handle& handleOf(uint32_t id) const;
+    void setValue(uint32_t id, uint32_t type, Leaves leaves);
+    void setScalar(uint32_t id, uint32_t type, ir::ValueId value);
+    void setPointer(uint32_t id, const Pointer& pointer);
+    void setHandle(uint32_t id, const Handle& handle);
+    std::span<ir::ValueId> newLeaves(size_t count) { return arena_.array<ir::ValueId>(count); }
+
+    // lower_types.cpp
+    void lowerType(const Instruction& inst);
+    const SpirvType& typeInfo(uint32_t id) const;
+    const std::vector<ir::Type>& leafTypes(uint32_t id);
+    void appendLeafTypes(uint32_t id, std::vector<ir::Type>& types) const;
+    uint32_t typeOfId(uint32_t id) const { return idValue(id).type; }
+    ir::Type scalarType(uint32_t id) const { return typeInfo(id).scalar; }
+
+    // lower_constants.cpp
+    void lowerConstant(const Instruction& inst);
+    uint64_t specialised(const Instruction& inst, uint64_t bits, uint32_t bytes) const;
+    uint32_t constantIndex(uint32_t id);
+    std::optional<uint32_t> constantOf(uint32_t id);
+    Leaves zeroOf(uint32_t type);
+    Leaves undefOf(uint32_t type);
+
+    // lower_function.cpp
+    void lowerEntry(const EntryPoint& entry);
+    void lowerFunction(const Function& function, Frame& frame);
+    void lowerBlock(const SpirvBlock& block, Frame& frame);
+    void lowerInstruction(const Instruction& inst);
+    bool lowerTerminator(const Instruction& inst, const SpirvBlock& block, Frame& frame);
+    void lowerSwitch(const Instruction& inst, Frame& frame);
+    void lowerCall(const Instruction& inst);
+    void lowerReturn(const Instruction& inst, Frame& frame);
+    void writePhis(uint32_t fromLabel, const Instruction& terminator, Frame& frame);
+    ir::BlockId blockOf(uint32_t label, const Instruction& inst, Frame& frame);
+    void storeOutputs();
+
+    // lower_interface.cpp: variables and the borders of the stage
+    void lowerVariable(const Instruction& inst);
+    void lowerStageVariable(const Instruction& inst, bool input);
+    void initialise(const Instruction& inst, const Pointer& pointer);
+    void appendSlots(uint32_t type, const SlotPlace& place, ir::InterfaceSlot slot, SlotCursor& at,
+                     std::vector<ir::InterfaceSlot>& slots) const;
+    void decorateSlot(const SlotPlace& place, ir::InterfaceSlot& slot, SlotCursor& at) const;
+    ir::Builtin builtinOf(const SlotPlace& place, uint32_t builtin) const;
+
+    // lower_resources.cpp
+    uint32_t resourceOf(uint32_t variable);
+    ir::ResourceKind resourceKindOf(uint32_t variable, spv::StorageClass storage, uint32_t type) const;
+    uint32_t byteSizeOf(uint32_t type, uint32_t matrixStride, bool rowMajor) const;
+
+    // lower_memory.cpp
+    Pointer stepInto(const Pointer& pointer, uint32_t indexId, const Instruction& inst);
+    void stepDescriptor(Pointer& pointer, const SpirvType& type, uint32_t indexId);
+    void advance(Pointer& pointer, uint32_t indexId, uint32_t count, uint32_t stride);
+    void lowerAccessChain(const Instruction& inst);
+    Leaves load(const Pointer& pointer);
+    void store(const Pointer& pointer, Leaves leaves);
+    void lowerArrayLength(const Instruction& inst);
+    bool lowerAtomic(const Instruction& inst);
+    ir::ValueId atomic(const Pointer& pointer, ir::AtomicOp op, ir::Type type, Leaves values);
+    bool lowerMemory(const Instruction& inst);
+    ir::ValueId place(const Pointer& pointer, uint32_t more);
+    ir::ValueId descriptorOf(const Pointer& pointer);
+    ir::ValueId loadWord(const Pointer& pointer, uint32_t at, ir::Type type);
+    ir::ValueId loadScalar(const Pointer& pointer, uint32_t at, ir::Type type);
+    void storeScalar(const Pointer& pointer, uint32_t at, ir::ValueId value);
+    template <class Visit>
+    void visitBuffer(const Pointer& pointer, uint32_t at, const Visit& visit);
+
+    // lower_arith.cpp, lower_matrix.cpp, lower_composite.cpp
+    bool lowerArithmetic(const Instruction& inst);
+    bool lowerElementwise(const Instruction& inst);
+    bool lowerExtendedResult(const Instruction& inst);
+    void lowerBitcast(const Instruction& inst);
+    void lowerSelect(const Instruction& inst);
+    ir::ValueId toI32(ir::ValueId value);
+    ir::ValueId withType(ir::ValueId value, ir::Type type);
+    bool lowerMatrix(const Instruction& inst);
+    bool lowerComposite(const Instruction& inst);
+    uint32_t leafOfPart(uint32_t type, const Instruction& inst, uint32_t firstWord, uint32_t& partType) const;
+    ir::ValueId chooseLeaf(Leaves values, ir::ValueId index);
+    ir::ValueId dot(Leaves a, Leaves b);
+    ir::ValueId add(ir::ValueId a, ir::ValueId b) { return binary(ir::Op::fadd, a, b); }
+    ir::ValueId sub(ir::ValueId a, ir::ValueId b) { return binary(ir::Op::fsub, a, b); }
+    ir::ValueId mul(ir::ValueId a, ir::ValueId b) { return binary(ir::Op::fmul, a, b); }
+    ir::ValueId binary(ir::Op op, ir::ValueId a, ir::ValueId b) { return emitter_.emit(op, emitter_.typeOf(a), {a, b}); }
+    ir::ValueId unary(ir::Op op, ir::ValueId a) { return emitter_.emit(op, emitter_.typeOf(a), {a}); }
+    ir::ValueId compare(ir::Op op, ir::ValueId a, ir::ValueId b) {
+        return emitter_.emit(op, ir::Type::b1, {a, b}, static_cast<uint64_t>(emitter_.typeOf(a)));
+    }
+    ir::ValueId convert(ir::Op op, ir::Type to, ir::ValueId a) {
+        return emitter_.emit(op, to, {a}, static_cast<uint64_t>(emitter_.typeOf(a)));
+    }
+
+    // lower_glsl450.cpp, lower_glsl450_geometry.cpp, lower_glsl450_pack.cpp
+    void lowerExtended(const Instruction& inst);
+    bool lowerExtendedElementwise(const Instruction& inst);
+    bool lowerGeometric(const Instruction& inst);
+    bool lowerPacking(const Instruction& inst);
+    void lowerSplit(const Instruction& inst);
+    void lowerInterpolate(const Instruction& inst);
+    void lowerNormalize(const Instruction& inst);
+    void lowerRefract(const Instruction& inst);
+    ir::ValueId determinant(Leaves m, uint32_t size);
+    ir::ValueId minorOf(Leaves m, uint32_t size, uint32_t column, uint32_t row);
+    void lowerInverse(const Instruction& inst);
+    ir::ValueId packNorm(Leaves components, uint32_t bits, bool isSigned);
+    ir::ValueId unpackNorm(ir::ValueId word, uint32_t index, uint32_t bits, bool isSigned);
+
+    // lower_image.cpp, lower_image_access.cpp
+    bool lowerImage(const Instruction& inst);
+    void lowerSample(const Instruction& inst);
+    void lowerFetch(const Instruction& inst);
+    void lowerGather(const Instruction& inst);
+    void lowerImageQuery(const Instruction& inst);
+    void lowerImageWrite(const Instruction& inst);
+    void lowerTexelPointer(const Instruction& inst);
+    void appendImageOperands(const Instruction& inst, uint32_t maskWord, ir::ImageOp& op,
+                             std::vector<ir::ValueId>& operands, uint32_t* constOffsets);
+    ir::ImageOp imageOpOf(const Handle& handle, ir::ImageKind kind) const;
+    std::vector<ir::ValueId> imageOperandsOf(const Handle& handle) const;
+    void appendCoords(const Handle& handle, Leaves coords, ir::ImageOp& op, std::vector<ir::ValueId>& operands);
+    ir::ValueId emitImage(const ir::ImageOp& op, ir::Type type, std::span<const ir::ValueId> operands);
+    void setTexel(const Instruction& inst, ir::ValueId first);
+
+    const Module& module_;
+    const ShaderSource& source_;
+    ir::Program& program_;
+    Emitter emitter_;
+    Arena arena_{16 * 1024};
+
+    std::vector<IdValue> ids_;
+    std::vector<uint32_t> typeIndex_;  // by id, into types_
+    std::vector<SpirvType> types_{SpirvType{}};
+    std::vector<std::vector<ir::Type>> leafTypes_{{}};
+    std::vector<bool> dynamicRoot_;  // by id: variables some access chain indexes at run time
+    std::vector<Output> outputs_;
+    std::vector<uint32_t> interface_;        // ids of the entry point's interface variables
+    std::vector<uint32_t> resourceOfId_;     // by id of a variable; kNoIndex = not used so far
+    std::vector<uint32_t> localOfId_;        // by id of a variable in local memory: its first word
+    std::vector<const Function*> calls_;  // functions being inlined, outermost first
+};
+
+}  // namespace vernier

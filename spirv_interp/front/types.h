@@ -1,0 +1,44 @@
+// The types of a module, and how their values come apart into scalars ("leaves").
+#pragma once
+
+#include <vector>
+
+#include "spirv_interp/front/module.h"
+#include "spirv_interp/ir/ir.h"
+
+namespace vernier {
+
+struct ImageType {
+    ir::Type component = ir::Type::f32;  // f32 or i32
+    spv::Dim dim{};
+    bool depth = false, arrayed = false, multisampled = false;
+    bool storage = false;  // used without a sampler: read and write
+};
+
+struct SpirvType {
+    enum class Kind : uint8_t {
+        unknown, void_, boolean, integer, floating, vector, matrix, array, runtimeArray, structure, pointer, function,
+        image, sampler, sampledImage,
+    };
+    Kind kind = Kind::unknown;
+    ir::Type scalar = ir::Type::none;  // of scalars, vectors and matrices
+    bool isSigned = false;             // integers
+    uint32_t element = 0;              // vector, matrix (column), array, pointer, sampledImage (image): type id
+    uint32_t count = 0;                // vector, matrix, array: elements
+    spv::StorageClass storage{};       // pointer
+    std::vector<uint32_t> members;     // structure: type ids; their first leaves and words in memberLeaf, memberWord
+    std::vector<uint32_t> memberLeaf, memberWord;
+    uint32_t leaves = 0;               // scalars in a value; opaque types have none
+    uint32_t words = 0;                // 32-bit words of the leaves
+    ImageType image;
+
+    bool isComposite() const {
+        return kind == Kind::vector || kind == Kind::matrix || kind == Kind::array || kind == Kind::structure;
+    }
+    bool isOpaque() const { return kind == Kind::image || kind == Kind::sampler || kind == Kind::sampledImage; }
+};
+
+/// Composites of more leaves than this are refused.
+inline constexpr uint32_t kMaxLeaves = 1u << 16;
+
+}  // namespace vernier

@@ -1,0 +1,102 @@
+#include "spirv_interp/ir/link.h"
+
+#include <algorithm>
+
+#include "spirv_interp/ir/optimise.h"
+#include "spirv_interp/ir/ops.h"
+
+namespace vernier::ir {
+namespace {
+
+bool samePlace(const InterfaceSlot& output, const InterfaceSlot& input) {
+    return output.builtin == input.builtin && output.location == input.location && output.component == input.component;
+}
+
+/// Whether a fragment input is fed by a vertex output, rather than by the rasteriser.
+bool isVarying(const InterfaceSlot& slot) {
+    return slot.builtin == Builtin::user || slot.builtin == Builtin::clipDistance || slot.builtin == Builtin::cullDistance;
+}
+
+const InterfaceSlot* findSlot(const std::vector<InterfaceSlot>& slots, const InterfaceSlot& like) {
+    const auto found = std::find_if(slots.begin(), slots.end(), [&](const InterfaceSlot& s) { return samePlace(s, like); });
+    return found == slots.end() ? nullptr : &*found;
+}
+
+void dropUnreadOutputs(Program& vertex, const Program& fragment) {
+    std::vector<bool> read(vertex.outputs.size());
+    for (size_t i = 0; i < vertex.outputs.size(); ++i) {
+        const InterfaceSlot& slot = vertex.outputs[i];
+        read[i] = slot.builtin != Builtin::user || findSlot(fragment.inputs, slot) != nullptr;
+    }
+    for (Block& block : vertex.blocks) {
+        std::erase_if(block.insts, [&](const Inst& inst) { return inst.op == Op::storeOutput && !read[inst.imm]; });
+    }
+}
+
+/// Inputs that are read one by one and that nothing writes become 0.
+void zeroUnwrittenInputs(Program& fragment, const std::vector<bool>& written) {
+    for (Block& block : fragment.blocks) {
+        for (Inst& inst : block.insts) {
+            if (inst.op == Op::inputIndexed || immKind(inst.op) != ImmKind::input || written[inst.imm]) continue;
+            inst.op = Op::constant;
+            inst.operandCount = 0;
+            inst.imm = 0;
+        }
+    }
+}
+
+/// Writes 0 to `slot` before every return.
+void writeZero(Program& vertex, const InterfaceSlot& slot) {
+    Inst zero;
+    zero.op = Op::constant;
+    zero.type = slot.type;
+    zero.result = vertex.newValue(slot.type);
+    const auto index = static_cast<uint32_t>(vertex.outputs.size());
+    InterfaceSlot output = slot;
+    output.interpolation = Interpolation::smooth;
+    output.sampling = Sampling::center;
+    vertex.outputs.push_back(output);
+    for (Block& block : vertex.blocks) {
+        if (block.insts.back().op != Op::ret) continue;
+        Inst store;
+        store.op = Op::storeOutput;
+        store.imm = index;
+        store.firstOperand = static_cast<uint32_t>(vertex.operands.size());
+        store.operandCount = 1;
+        vertex.operands.push_back(zero.result);
+        block.insts.insert(block.insts.end() - 1, store);
+    }
+    auto& entry = vertex.blocks[0].insts;
+    entry.insert(entry.begin(), zero);
+}
+
+}  // namespace
+
+Status linkStages(Program& vertex, Program& fragment) {
+    if (vertex.stage != Stage::vertex || fragment.stage != Stage::fragment) {
+        return invalidArgument("linkStages: the programs are not a vertex and a fragment program, in this order");
+    }
+    std::vector<bool> written(fragment.inputs.size(), true);
+    for (size_t i = 0; i < fragment.inputs.size(); ++i) {
+        const InterfaceSlot& input = fragment.inputs[i];
+        if (!isVarying(input)) continue;
+        const InterfaceSlot* output = findSlot(vertex.outputs, input);
+        written[i] = output != nullptr;
+        if (output != nullptr && output->type != input.type) {
+            return invalidArgument("location " + std::to_string(input.location) + ", component " +
+                                   std::to_string(input.component) + ": the vertex shader writes " +
+                                   std::string(typeName(output->type)) + ", the fragment shader reads " +
+                                   std::string(typeName(input.type)));
+        }
+    }
+    zeroUnwrittenInputs(fragment, written);
+    optimise(fragment);
+    for (const InterfaceSlot& input : fragment.inputs) {
+        if (isVarying(input) && findSlot(vertex.outputs, input) == nullptr) writeZero(vertex, input);
+    }
+    dropUnreadOutputs(vertex, fragment);
+    optimise(vertex);
+    return {};
+}
+
+}  // namespace vernier::ir

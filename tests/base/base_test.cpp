@@ -1,0 +1,104 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <immintrin.h>
+
+#include <atomic>
+#include <numeric>
+#include <set>
+
+#include "base/arena.h"
+#include "base/cpu_budget.h"
+#include "base/simd.h"
+#include "base/thread_pool.h"
+
+namespace vernier {
+namespace {
+
+TEST(Arena, HandsOutAlignedDisjointMemoryAndReusesItAfterReset) {
+    Arena arena(256);
+    std::vector<std::span<uint64_t>> spans;
+    for (size_t i = 1; i <= 64; ++i) {
+        spans.push_back(arena.array<uint64_t>(i));
+        EXPECT_EQ(reinterpret_cast<uintptr_t>(spans.back().data()) % alignof(uint64_t), 0u);
+        std::fill(spans.back().begin(), spans.back().end(), i);
+    }
+    for (size_t i = 1; i <= 64; ++i) EXPECT_THAT(spans[i - 1], testing::Each(i));
+    void* aligned = arena.allocate(3, 64);
+    EXPECT_EQ(reinterpret_cast<uintptr_t>(aligned) % 64, 0u);
+    const size_t used = arena.used();
+    EXPECT_GE(used, 64u * 65 / 2 * 8);
+    arena.reset();
+    EXPECT_EQ(arena.used(), 0u);
+    EXPECT_EQ(arena.array<uint64_t>(1).data(), spans[0].data());
+}
+
+TEST(ThreadPool, RunsEveryStepOnceOnValidWorkers) {
+    for (const uint32_t threads : {1u, 2u, 5u}) {
+        ThreadPool pool(threads);
+        EXPECT_EQ(pool.threadCount(), threads);
+        for (const uint32_t count : {0u, 1u, 3u, 1000u}) {
+            std::vector<std::atomic<int>> seen(count);
+            std::atomic<bool> workerInRange = true;
+            pool.parallelFor(count, [&](uint32_t index, uint32_t worker) {
+                ++seen[index];
+                if (worker >= threads) workerInRange = false;
+            });
+            EXPECT_TRUE(workerInRange);
+            for (const auto& times : seen) EXPECT_EQ(times, 1);
+        }
+    }
+}
+
+TEST(ThreadPool, SerialisesCallersFromSeveralThreads) {
+    ThreadPool pool(3);
+    std::atomic<int> inside = 0, sum = 0;
+    std::atomic<bool> mixed = false;
+    std::vector<std::thread> callers;
+    for (int caller = 1; caller <= 4; ++caller)
+        callers.emplace_back([&, caller] {
+            for (int round = 0; round < 50; ++round)
+                pool.parallelFor(16, [&](uint32_t, uint32_t) {
+                    int expected = 0;
+                    if (!inside.compare_exchange_strong(expected, caller) && expected != caller) mixed = true;
+                    ++sum;
+                    inside = 0;
+                });
+        });
+    for (auto& caller : callers) caller.join();
+    EXPECT_EQ(sum, 4 * 50 * 16);
+    EXPECT_FALSE(mixed);
+}
+
+TEST(ThreadPool, SetsTheFloatingPointControlWordAndRestoresTheCallers) {
+    constexpr uint32_t kFlushToZero = 0x9FC0;
+    const uint32_t before = _mm_getcsr();
+    _mm_setcsr(kFlushToZero);
+    ThreadPool pool(2);
+    std::atomic<bool> denormalsKept = true;
+    pool.parallelFor(64, [&](uint32_t, uint32_t) {
+        volatile float tiny = 1e-40f;
+        volatile float half = tiny * 0.5f;
+        if (half == 0) denormalsKept = false;
+    });
+    EXPECT_EQ(_mm_getcsr() & 0x8040u, kFlushToZero & 0x8040u);
+    _mm_setcsr(before);
+    EXPECT_TRUE(denormalsKept);
+}
+
+TEST(Isa, NamesRoundTripAndLimitsHold) {
+    for (const Isa isa : {Isa::sse4, Isa::avx2, Isa::avx512}) {
+        EXPECT_EQ(isaFromName(isaName(isa)), isa);
+        EXPECT_LE(bestIsaUpTo(isa), isa);
+        EXPECT_LE(bestIsaUpTo(isa), bestIsa());
+    }
+    EXPECT_EQ(isaFromName("mmx"), std::nullopt);
+}
+
+TEST(CpuBudget, IsAtLeastOneAndNotAboveTheMachine) {
+    EXPECT_GE(usableCpuCount(), 1u);
+    EXPECT_LE(usableCpuCount(), std::thread::hardware_concurrency());
+}
+
+}  // namespace
+}  // namespace vernier
