@@ -79,10 +79,12 @@ void Messages::send(VkDebugUtilsMessageSeverityFlagBitsEXT severity, VkDebugUtil
 
 void Messages::error(const char* command, MessageObject about, std::string_view text) const {
     const std::string message = std::string(command) + ": " + std::string(text);
-    VkDebugUtilsObjectNameInfoEXT named{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT};
+    VkDebugUtilsObjectNameInfoEXT named{};
+    named.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT;
     named.objectType = about.type;
     named.objectHandle = about.handle;
-    VkDebugUtilsMessengerCallbackDataEXT data{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CALLBACK_DATA_EXT};
+    VkDebugUtilsMessengerCallbackDataEXT data{};
+    data.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CALLBACK_DATA_EXT;
     data.pMessageIdName = command;
     data.pMessage = message.c_str();
     if (about.type != VK_OBJECT_TYPE_UNKNOWN) {

@@ -35,6 +35,23 @@ Result<ir::Program> loadStage(const VkPipelineShaderStageCreateInfo& stage, ir::
     return loadShader(shaderSource(stage, kind, entries));
 }
 
+/// Resources that the driver has no descriptors for.
+Status checkResources(const ir::Program* program) {
+    if (program == nullptr) return {};
+    for (const ir::Resource& resource : program->resources) {
+        const char* what = nullptr;
+        switch (resource.kind) {
+            case ir::ResourceKind::inputAttachment: what = "an input attachment"; break;
+            case ir::ResourceKind::uniformTexelBuffer:
+            case ir::ResourceKind::storageTexelBuffer: what = "a texel buffer"; break;
+            default: continue;
+        }
+        return unsupported("set " + std::to_string(resource.set) + ", binding " + std::to_string(resource.binding) +
+                           ": the shader reads " + what + ", which is not supported");
+    }
+    return {};
+}
+
 Result<std::shared_ptr<const ShaderProgram>> loadProgram(const Device& device, const VkGraphicsPipelineCreateInfo& info,
                                                          bool rasterizerDiscard) {
     const VkPipelineShaderStageCreateInfo* vertexStage = nullptr;
@@ -71,6 +88,11 @@ VkResult createOne(const Device& device, const VkGraphicsPipelineCreateInfo& inf
     if (!state) return device.report("vkCreateGraphicsPipelines", state.error());
     auto program = loadProgram(device, info, state->state.rasterizerDiscard);
     if (!program) return device.report("vkCreateGraphicsPipelines", program.error());
+    for (const ir::Program* stage : {&(*program)->vertexIr(), (*program)->fragmentIr()}) {
+        if (const Status status = checkResources(stage); !status) {
+            return device.report("vkCreateGraphicsPipelines", status.error());
+        }
+    }
     auto graphics = GraphicsPipeline::create({std::move(state->state), std::move(program).value()});
     if (!graphics) return device.report("vkCreateGraphicsPipelines", graphics.error());
     return createHandle(callbacks, out, std::move(graphics).value(), state->fixed, state->dynamicMask);

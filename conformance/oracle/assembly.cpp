@@ -29,7 +29,8 @@ struct VertexFetcher {
                 for (const Component& c : format->all()) {
                     const uint64_t code = extractBits(bytes, c.offset, c.bits);
                     const double number = decodeNumber(c, code);
-                    texel[c.channel] = format->isInteger() ? integer(number) : reference::Scalar<double>::ofNumber(number);
+                    texel[c.channel] =
+                        format->isInteger() ? integer(number) : reference::Scalar<double>::ofNumber(number);
                 }
             }
             values.locations[attribute.location] = texel;
@@ -47,15 +48,16 @@ struct VertexFetcher {
         return texel;
     }
 
-    const std::byte* address(const VkVertexInputAttributeDescription& attribute, uint32_t vertexIndex, uint32_t instance,
-                             const PixelFormat* format) const {
+    const std::byte* address(const VkVertexInputAttributeDescription& attribute, uint32_t vertexIndex,
+                             uint32_t instance, const PixelFormat* format) const {
         if (!format) return nullptr;
         for (const VkVertexInputBindingDescription& binding : pipeline.vertexBindings) {
             if (binding.binding != attribute.binding) continue;
             for (const SceneVertexBuffer& source : draw.vertexBuffers) {
                 if (source.binding != binding.binding || source.buffer >= scene.buffers.size()) continue;
                 const Bytes& data = scene.buffers[source.buffer].data;
-                const uint64_t element = binding.inputRate == VK_VERTEX_INPUT_RATE_INSTANCE ? instance : vertexIndex;
+                const uint64_t element =
+                    binding.inputRate == VK_VERTEX_INPUT_RATE_INSTANCE ? instance : vertexIndex;
                 const uint64_t offset = source.offset + element * binding.stride + attribute.offset;
                 return offset + format->bytes <= data.size() ? data.data() + offset : nullptr;
             }
@@ -65,14 +67,17 @@ struct VertexFetcher {
 };
 
 // The draw's vertex numbers in order; nothing marks a primitive restart.
-std::vector<std::optional<uint32_t>> vertexOrder(const Scene& scene, const SceneDraw& draw, const ScenePipeline& pipeline) {
+std::vector<std::optional<uint32_t>> vertexOrder(const Scene& scene, const SceneDraw& draw,
+                                                 const ScenePipeline& pipeline) {
     std::vector<std::optional<uint32_t>> order;
     for (uint32_t i = 0; i < draw.count; ++i) {
         if (draw.indexBuffer == kNone) {
             order.push_back(draw.first + i);
             continue;
         }
-        const size_t size = draw.indexType == VK_INDEX_TYPE_UINT32 ? 4 : draw.indexType == VK_INDEX_TYPE_UINT8_EXT ? 1 : 2;
+        const size_t size = draw.indexType == VK_INDEX_TYPE_UINT32      ? 4
+                            : draw.indexType == VK_INDEX_TYPE_UINT8_EXT ? 1
+                                                                        : 2;
         const Bytes& data = scene.buffers[draw.indexBuffer].data;
         const uint64_t offset = draw.indexOffset + (uint64_t{draw.first} + i) * size;
         const uint64_t index = offset + size <= data.size()
@@ -88,12 +93,15 @@ std::vector<std::optional<uint32_t>> vertexOrder(const Scene& scene, const Scene
     return order;
 }
 
-Result<ShadedVertex> shadeVertex(const Interpreter& shader, Values inputs, uint32_t vertexIndex, uint32_t instance,
-                                 const SceneDraw& draw, ShaderResources& resources) {
-    const auto set = [&inputs](spv::BuiltIn builtin, uint32_t value) { inputs.setInt(builtin, static_cast<int32_t>(value)); };
+Result<ShadedVertex> shadeVertex(const Interpreter& shader, Values inputs, uint32_t vertexIndex,
+                                 uint32_t instance, const SceneDraw& draw, ShaderResources& resources) {
+    const auto set = [&inputs](spv::BuiltIn builtin, uint32_t value) {
+        inputs.setInt(builtin, static_cast<int32_t>(value));
+    };
     set(spv::BuiltInVertexIndex, vertexIndex);
     set(spv::BuiltInInstanceIndex, instance);
-    set(spv::BuiltInBaseVertex, draw.indexBuffer == kNone ? draw.first : static_cast<uint32_t>(draw.vertexOffset));
+    set(spv::BuiltInBaseVertex,
+        draw.indexBuffer == kNone ? draw.first : static_cast<uint32_t>(draw.vertexOffset));
     set(spv::BuiltInBaseInstance, draw.firstInstance);
     set(spv::BuiltInDrawIndex, 0);
     const auto outcome = shader.run(inputs, resources);
@@ -101,7 +109,8 @@ Result<ShadedVertex> shadeVertex(const Interpreter& shader, Values inputs, uint3
     ShadedVertex vertex;
     const auto& builtins = outcome->outputs.builtins;
     if (const auto position = builtins.find(spv::BuiltInPosition); position != builtins.end()) {
-        for (size_t i = 0; i < 4 && i < position->second.size(); ++i) vertex.position[i] = position->second[i].number;
+        for (size_t i = 0; i < 4 && i < position->second.size(); ++i)
+            vertex.position[i] = position->second[i].number;
     }
     if (const auto clip = builtins.find(spv::BuiltInClipDistance); clip != builtins.end()) {
         for (const auto& distance : clip->second) vertex.clipDistances.push_back(distance.number);
@@ -145,14 +154,16 @@ std::vector<std::array<uint32_t, 3>> trianglesOf(VkPrimitiveTopology topology, u
 Result<DrawGeometry> assembleDraw(const Scene& scene, const SceneDraw& draw, ShaderResources& resources) {
     const ScenePipeline& pipeline = scene.pipelines[draw.pipeline];
     if (pipeline.topology != VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST &&
-        pipeline.topology != VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP && pipeline.topology != VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN) {
+        pipeline.topology != VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP &&
+        pipeline.topology != VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN) {
         return unsupported("oracle: pipeline " + std::to_string(draw.pipeline) + ": topology " +
                            std::to_string(pipeline.topology) + " is not triangles");
     }
     for (const VkVertexInputAttributeDescription& attribute : pipeline.vertexAttributes) {
         if (!findPixelFormat(attribute.format)) {
             return unsupported("oracle: vertex attribute at location " + std::to_string(attribute.location) +
-                               " has format " + std::to_string(attribute.format) + ", which is not in the oracle's table");
+                               " has format " + std::to_string(attribute.format) +
+                               ", which is not in the oracle's table");
         }
     }
     const auto module = parseShader(scene.shaders[pipeline.vertexShader]);
@@ -180,9 +191,11 @@ Result<DrawGeometry> assembleDraw(const Scene& scene, const SceneDraw& draw, Sha
                 flush();
                 continue;
             }
-            const auto [entry, fresh] = shaded.try_emplace(*number, static_cast<uint32_t>(geometry.vertices.size()));
+            const auto [entry, fresh] =
+                shaded.try_emplace(*number, static_cast<uint32_t>(geometry.vertices.size()));
             if (fresh) {
-                auto vertex = shadeVertex(*shader, fetcher.fetch(*number, instance), *number, instance, draw, resources);
+                auto vertex = shadeVertex(*shader, fetcher.fetch(*number, instance), *number, instance, draw,
+                                          resources);
                 if (!vertex) return vertex.error();
                 geometry.vertices.push_back(std::move(*vertex));
             }

@@ -20,7 +20,8 @@ struct ShadedVertex {
     std::map<reference::Location, reference::Texel<double>> varyings;
 };
 
-/// Indices into DrawGeometry::vertices in the order of Vulkan's topology definitions; the first is the provoking vertex.
+/// Indices into DrawGeometry::vertices in the order of Vulkan's topology definitions; the first is the
+/// provoking vertex.
 using AssembledTriangle = std::array<uint32_t, 3>;
 
 struct DrawGeometry {

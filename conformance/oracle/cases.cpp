@@ -17,7 +17,9 @@ constexpr auto kCases = std::to_array<NumericCase>({
 
 }  // namespace
 
-std::span<const NumericCase> numericCases() { return kCases; }
+std::span<const NumericCase> numericCases() {
+    return kCases;
+}
 
 const NumericCase* findNumericCase(std::string_view name) {
     const auto found = std::ranges::find(kCases, name, &NumericCase::name);

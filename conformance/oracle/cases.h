@@ -1,8 +1,10 @@
-// Numeric hard cases: small scenes whose right answer is known exactly, for any driver. Names follow the catalogue of the
-// project's design notes: E coverage, C clipping, W homogeneous coordinates, I interpolation, D depth, B formats.
+// Numeric hard cases: small scenes whose right answer is known exactly, for any driver. Names follow the
+// catalogue of the project's design notes: E coverage, C clipping, W homogeneous coordinates, I
+// interpolation, D depth, B formats.
 //
-// Two ways to judge: `legal` accepts whatever the specification leaves open (snapping, tie rule, either neighbouring code);
-// `declared` asks for Vernier's own promise: snapping to nearest even on 8 sub-pixel bits, top-left ties, nearest codes.
+// Two ways to judge: `legal` accepts whatever the specification leaves open (snapping, tie rule, either
+// neighbouring code); `declared` asks for Vernier's own promise: snapping to nearest even on 8 sub-pixel
+// bits, top-left ties, nearest codes.
 #pragma once
 
 #include "base/result.h"

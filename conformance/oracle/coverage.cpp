@@ -8,15 +8,19 @@ namespace vernier::conformance::exact {
 
 namespace {
 
-Wide magnitude(Wide value) { return value < 0 ? -value : value; }
+Wide magnitude(Wide value) {
+    return value < 0 ? -value : value;
+}
 
 int64_t distance(const GridPoint& a, const GridPoint& b) {
     return (a.x < b.x ? b.x - a.x : a.x - b.x) + (a.y < b.y ? b.y - a.y : a.y - b.y);
 }
 
-// How far an edge function can move when both ends move by delta per coordinate: E is bilinear in the two ends.
+// How far an edge function can move when both ends move by delta per coordinate: E is bilinear in the two
+// ends.
 Wide support(const GridPoint& a, const GridPoint& b, const GridPoint& p, int64_t delta) {
-    return static_cast<Wide>(delta) * (distance(a, p) + distance(b, p)) + static_cast<Wide>(2) * delta * delta;
+    return static_cast<Wide>(delta) * (distance(a, p) + distance(b, p)) +
+           static_cast<Wide>(2) * delta * delta;
 }
 
 GridTriangle clockwise(const GridTriangle& triangle) {
@@ -34,15 +38,18 @@ bool outOfReach(const GridTriangle& triangle, const GridPoint& p, int64_t delta)
 // The area is an edge function of the third vertex, which moves too.
 bool orientationIsOpen(const GridTriangle& triangle, int64_t delta) {
     const Wide area = magnitude(edgeFunction(triangle[0], triangle[1], triangle[2]));
-    const Wide moved = static_cast<Wide>(delta) * (distance(triangle[0], triangle[2]) + distance(triangle[1], triangle[2]) +
-                                                   distance(triangle[0], triangle[1])) +
-                       static_cast<Wide>(6) * delta * delta;
+    const Wide moved =
+        static_cast<Wide>(delta) * (distance(triangle[0], triangle[2]) + distance(triangle[1], triangle[2]) +
+                                    distance(triangle[0], triangle[1])) +
+        static_cast<Wide>(6) * delta * delta;
     return area <= moved;
 }
 
 }  // namespace
 
-Integer snapNearestEven(const Rational& pixels, int bits) { return roundHalfEven(pixels * powerOfTwo(bits)); }
+Integer snapNearestEven(const Rational& pixels, int bits) {
+    return roundHalfEven(pixels * powerOfTwo(bits));
+}
 
 SnapBox legalSnapBox(const Rational& pixels, int bits) {
     const Rational units = pixels * powerOfTwo(bits);
@@ -84,7 +91,8 @@ Coverage classify(const GridTriangle& triangle, const GridPoint& sample, int64_t
         insideEdges += edge == Coverage::must;
         if (edge != Coverage::must) result = Coverage::may;
     }
-    // With either orientation possible, only a sample strictly on both sides of some edges is out for certain.
+    // With either orientation possible, only a sample strictly on both sides of some edges is out for
+    // certain.
     if (open) return outsideEdges != 0 && insideEdges != 0 ? Coverage::mustNot : Coverage::may;
     return outsideEdges != 0 ? Coverage::mustNot : result;
 }

@@ -1,4 +1,5 @@
-// Judging an observed coverage image against exact geometry, naming the first wrong sample and why it is wrong.
+// Judging an observed coverage image against exact geometry, naming the first wrong sample and why it is
+// wrong.
 //
 // An observed image is an additive count: how many of the triangles covered each pixel's sample.
 #pragma once
@@ -28,17 +29,18 @@ struct SampleGrid {
 /// How a sample lies to a triangle, in words: on which edge, how near to it, strictly inside or outside.
 std::string describeSample(const GridTriangle& triangle, const GridPoint& sample);
 
-/// Declared mode: every sample inside the scissor has exactly the declared count, every other sample 0. Empty text: right.
-std::string checkDeclaredCoverage(std::span<const GridTriangle> triangles, const SampleGrid& grid, const VkRect2D& scissor,
-                                  std::span<const uint32_t> observed);
+/// Declared mode: every sample inside the scissor has exactly the declared count, every other sample 0. Empty
+/// text: right.
+std::string checkDeclaredCoverage(std::span<const GridTriangle> triangles, const SampleGrid& grid,
+                                  const VkRect2D& scissor, std::span<const uint32_t> observed);
 
-/// Any legal snapping: counts lie between what must and what may be covered, and pairs of triangles that share the only
-/// open edge count exactly one between them.
+/// Any legal snapping: counts lie between what must and what may be covered, and pairs of triangles that
+/// share the only open edge count exactly one between them.
 std::string checkLegalCoverage(std::span<const GridTriangle> triangles, const SampleGrid& grid,
                                std::span<const uint32_t> observed);
 
-/// For triangles that tile a region: every sample farther than one sub-unit from the region's outline is covered exactly
-/// once inside and never outside, under any snapping and any tie rule.
+/// For triangles that tile a region: every sample farther than one sub-unit from the region's outline is
+/// covered exactly once inside and never outside, under any snapping and any tie rule.
 std::string checkPartition(std::span<const GridTriangle> triangles, const SampleGrid& grid,
                            std::span<const uint32_t> observed);
 

@@ -15,7 +15,9 @@ const Component& depthComponent(VkFormat format) {
 
 }  // namespace
 
-CodeSet encodeDepth(VkFormat format, const Rational& depth) { return encode(depthComponent(format), depth); }
+CodeSet encodeDepth(VkFormat format, const Rational& depth) {
+    return encode(depthComponent(format), depth);
+}
 
 Rational decodeDepth(VkFormat format, uint64_t code) {
     return decode(depthComponent(format), code).value_or(Rational(0));
@@ -30,7 +32,8 @@ BiasUnit biasUnit(VkFormat format, const std::array<Rational, 3>& vertexDepths) 
     Rational largest = 0;
     for (const Rational& z : vertexDepths) largest = std::max(largest, Rational(abs(z)));
     const FloatLayout layout = floatLayout(component.bits);
-    const int exponent = largest == 0 ? layout.minExponent() : std::max(floorLog2(largest), layout.minExponent());
+    const int exponent =
+        largest == 0 ? layout.minExponent() : std::max(floorLog2(largest), layout.minExponent());
     const Rational unit = powerOfTwo(exponent - layout.mantissaBits);
     return {unit, unit};
 }

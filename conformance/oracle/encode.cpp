@@ -12,11 +12,15 @@ Rational clamp(const Rational& value, const Rational& low, const Rational& high)
     return value < low ? low : value > high ? high : value;
 }
 
-uint64_t maskOf(unsigned bits) { return bits >= 64 ? ~uint64_t{0} : (uint64_t{1} << bits) - 1; }
+uint64_t maskOf(unsigned bits) {
+    return bits >= 64 ? ~uint64_t{0} : (uint64_t{1} << bits) - 1;
+}
 
 // A number on the scale of codes: the codes around it, in two's complement of the component's width.
 CodeSet around(const Rational& scaled, unsigned bits) {
-    const auto code = [bits](const Integer& value) { return static_cast<uint64_t>(toInt64(value)) & maskOf(bits); };
+    const auto code = [bits](const Integer& value) {
+        return static_cast<uint64_t>(toInt64(value)) & maskOf(bits);
+    };
     return {code(floorOf(scaled)), code(ceilOf(scaled)), code(roundHalfEven(scaled))};
 }
 
@@ -36,7 +40,8 @@ CodeSet encodeSrgb(const Rational& value, unsigned bits) {
     if (low == top) return {code(low), code(low), code(low)};
     // Codes 0 and max are met by 0 and 1 alone; any other hit on a code needs the linear segment.
     const Rational atLow = Rational(low) / Rational(top);
-    if (x <= fraction(31308, 10000000) && x * fraction(1292, 100) == atLow) return {code(low), code(low), code(low)};
+    if (x <= fraction(31308, 10000000) && x * fraction(1292, 100) == atLow)
+        return {code(low), code(low), code(low)};
     const Rational half = (Rational(low) + fraction(1, 2)) / Rational(top);
     return {code(low), code(low + 1), srgbReaches(x, half) ? code(low + 1) : code(low)};
 }
@@ -52,9 +57,11 @@ CodeSet encodeFloat(const Rational& value, const FloatLayout& layout, bool hasSi
             below = infinity - 1;
             above = nearest = infinity;
         } else {
-            // Codes of one sign are consecutive integers in the order of their values, across exponents as well.
+            // Codes of one sign are consecutive integers in the order of their values, across exponents as
+            // well.
             const Rational quanta = magnitude / powerOfTwo(exponent - layout.mantissaBits);
-            const uint64_t base = static_cast<uint64_t>(exponent - layout.minExponent()) << layout.mantissaBits;
+            const uint64_t base = static_cast<uint64_t>(exponent - layout.minExponent())
+                                  << layout.mantissaBits;
             below = base + static_cast<uint64_t>(toInt64(floorOf(quanta)));
             above = base + static_cast<uint64_t>(toInt64(ceilOf(quanta)));
             nearest = base + static_cast<uint64_t>(toInt64(roundHalfEven(quanta)));
@@ -94,14 +101,20 @@ CodeSet encode(const Component& component, const Rational& value) {
     const unsigned bits = component.bits;
     switch (component.encoding) {
         case Encoding::unorm:
-            return around(clamp(value, 0, 1) * Rational(Integer(static_cast<unsigned long>(maskOf(bits)))), bits);
+            return around(clamp(value, 0, 1) * Rational(Integer(static_cast<unsigned long>(maskOf(bits)))),
+                          bits);
         case Encoding::snorm:
-            return around(clamp(value, -1, 1) * Rational(Integer(static_cast<unsigned long>(maskOf(bits - 1)))), bits);
-        case Encoding::srgb: return encodeSrgb(value, bits);
+            return around(
+                clamp(value, -1, 1) * Rational(Integer(static_cast<unsigned long>(maskOf(bits - 1)))), bits);
+        case Encoding::srgb:
+            return encodeSrgb(value, bits);
         case Encoding::uint:
-        case Encoding::sint: return around(value, bits);
-        case Encoding::sfloat: return encodeFloat(value, floatLayout(static_cast<int>(bits)), true);
-        default: return encodeFloat(value, floatLayout(static_cast<int>(bits)), false);
+        case Encoding::sint:
+            return around(value, bits);
+        case Encoding::sfloat:
+            return encodeFloat(value, floatLayout(static_cast<int>(bits)), true);
+        default:
+            return encodeFloat(value, floatLayout(static_cast<int>(bits)), false);
     }
 }
 
@@ -114,16 +127,23 @@ std::optional<Rational> decode(const Component& component, uint64_t code) {
                                                            : static_cast<int64_t>(code))));
     };
     switch (component.encoding) {
-        case Encoding::unorm: return Rational(integer(code) / integer(maskOf(bits)));
-        case Encoding::snorm: return std::max(Rational(-1), Rational(signedCode() / integer(maskOf(bits - 1))));
-        case Encoding::srgb: return decodeSrgb(Rational(integer(code) / integer(maskOf(bits))));
-        case Encoding::uint: return integer(code);
-        case Encoding::sint: return signedCode();
-        default: break;
+        case Encoding::unorm:
+            return Rational(integer(code) / integer(maskOf(bits)));
+        case Encoding::snorm:
+            return std::max(Rational(-1), Rational(signedCode() / integer(maskOf(bits - 1))));
+        case Encoding::srgb:
+            return decodeSrgb(Rational(integer(code) / integer(maskOf(bits))));
+        case Encoding::uint:
+            return integer(code);
+        case Encoding::sint:
+            return signedCode();
+        default:
+            break;
     }
     const FloatLayout layout = floatLayout(static_cast<int>(bits));
     const uint64_t mantissa = code & maskOf(static_cast<unsigned>(layout.mantissaBits));
-    const int field = static_cast<int>((code >> layout.mantissaBits) & maskOf(static_cast<unsigned>(layout.exponentBits)));
+    const int field =
+        static_cast<int>((code >> layout.mantissaBits) & maskOf(static_cast<unsigned>(layout.exponentBits)));
     if (field == (1 << layout.exponentBits) - 1) return std::nullopt;
     const bool negative =
         component.encoding == Encoding::sfloat && ((code >> (layout.exponentBits + layout.mantissaBits)) & 1);

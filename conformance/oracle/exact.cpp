@@ -6,12 +6,14 @@ namespace vernier::conformance::exact {
 
 namespace {
 
-// Wide enough that rounding the result to double encloses the exact value after one further directed rounding.
+// Wide enough that rounding the result to double encloses the exact value after one further directed
+// rounding.
 constexpr mpfr_prec_t kWorkingBits = 256;
 
 using MpfrFunction = int (*)(mpfr_ptr, mpfr_srcptr, mpfr_rnd_t);
 
-// For an increasing function: the lower end from an argument and a result rounded down, the upper from both rounded up.
+// For an increasing function: the lower end from an argument and a result rounded down, the upper from both
+// rounded up.
 Enclosure increasing(MpfrFunction function, const Rational& value) {
     mpfr_t argument, result;
     mpfr_init2(argument, kWorkingBits);
@@ -74,7 +76,9 @@ Integer roundHalfEven(const Rational& value) {
     return mpz_even_p(low.get_mpz_t()) ? low : Integer(low + 1);
 }
 
-int64_t toInt64(const Integer& value) { return value.get_si(); }
+int64_t toInt64(const Integer& value) {
+    return value.get_si();
+}
 
 int floorLog2(const Rational& value) {
     int exponent = static_cast<int>(mpz_sizeinbase(value.get_num_mpz_t(), 2)) -
@@ -84,8 +88,12 @@ int floorLog2(const Rational& value) {
     return exponent;
 }
 
-Enclosure log2Enclosure(const Rational& value) { return increasing(mpfr_log2, value); }
+Enclosure log2Enclosure(const Rational& value) {
+    return increasing(mpfr_log2, value);
+}
 
-Enclosure sqrtEnclosure(const Rational& value) { return increasing(mpfr_sqrt, value); }
+Enclosure sqrtEnclosure(const Rational& value) {
+    return increasing(mpfr_sqrt, value);
+}
 
 }  // namespace vernier::conformance::exact

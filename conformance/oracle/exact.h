@@ -1,6 +1,6 @@
-// Exact numbers for the oracle: GMP rationals, and MPFR enclosures for the few functions that leave the rationals.
-// Float inputs are dyadic rationals, so everything up to the final rounding of a stored code can be decided here
-// without an error bound.
+// Exact numbers for the oracle: GMP rationals, and MPFR enclosures for the few functions that leave the
+// rationals. Float inputs are dyadic rationals, so everything up to the final rounding of a stored code can
+// be decided here without an error bound.
 #pragma once
 
 #include <gmpxx.h>
@@ -13,7 +13,9 @@ using Integer = mpz_class;
 using Rational = mpq_class;
 
 /// The exact value of a finite double or float.
-inline Rational rational(double value) { return Rational(value); }
+inline Rational rational(double value) {
+    return Rational(value);
+}
 
 /// numerator / denominator in lowest terms.
 Rational fraction(int64_t numerator, int64_t denominator);

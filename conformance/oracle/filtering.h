@@ -1,5 +1,5 @@
-// Texel selection, filtering and level of detail, exactly: coordinates and weights in rationals, logarithms decided by
-// comparing powers or enclosed by MPFR.
+// Texel selection, filtering and level of detail, exactly: coordinates and weights in rationals, logarithms
+// decided by comparing powers or enclosed by MPFR.
 #pragma once
 
 #include "conformance/oracle/exact.h"
@@ -22,19 +22,20 @@ struct AxisTaps {
     Rational weight;
 };
 
-/// Taps for the unnormalised coordinate u (normalised coordinate times size). With `weightBits` >= 0 the weight is rounded
-/// to that many fraction bits, nearest even; a weight that rounds to 1 stays 1.
+/// Taps for the unnormalised coordinate u (normalised coordinate times size). With `weightBits` >= 0 the
+/// weight is rounded to that many fraction bits, nearest even; a weight that rounds to 1 stays 1.
 AxisTaps linearTaps(const Rational& u, int weightBits = -1);
 
 /// Nearest filtering: floor(u).
 int64_t nearestTexel(const Rational& u);
 
 /// Bilinear filter of a texel function at unnormalised (u, v).
-Rational bilinear(const std::function<Rational(int64_t x, int64_t y)>& texel, const Rational& u, const Rational& v,
-                  int weightBits = -1);
+Rational bilinear(const std::function<Rational(int64_t x, int64_t y)>& texel, const Rational& u,
+                  const Rational& v, int weightBits = -1);
 
-/// Smallest and largest value of the bilinear filter when coordinates carry an error of up to `slack` texels and the
-/// weights are rounded in any way to `weightBits` fraction bits: the range a conforming filter can reach.
+/// Smallest and largest value of the bilinear filter when coordinates carry an error of up to `slack` texels
+/// and the weights are rounded in any way to `weightBits` fraction bits: the range a conforming filter can
+/// reach.
 struct FilterRange {
     Rational low, high;
 };
@@ -49,8 +50,8 @@ struct TexelDerivatives {
 /// Squared ideal scale factor: the longer of the two footprint axes (Vulkan, Scale Factor Operation).
 Rational squaredScale(const TexelDerivatives& d);
 
-/// Squared bounds of the approximations the specification and the CTS accept for it: the largest single derivative, and the
-/// sum over the texture axes of the larger derivative of each.
+/// Squared bounds of the approximations the specification and the CTS accept for it: the largest single
+/// derivative, and the sum over the texture axes of the larger derivative of each.
 struct SquaredScaleRange {
     Rational low, high;
 };
@@ -60,8 +61,8 @@ SquaredScaleRange squaredScaleRange(const TexelDerivatives& d);
 std::optional<Enclosure> levelOfDetail(const Rational& squaredRho, double bias = 0);
 
 /// Levels a nearest mipmap mode may choose for lambda = log2(rho), not clamped to the image: the preferred
-/// ceil(lambda + 1/2) - 1 and the alternative floor(lambda + 1/2); they differ at half-integers only. Decided by comparing
-/// rho^2 with powers of two.
+/// ceil(lambda + 1/2) - 1 and the alternative floor(lambda + 1/2); they differ at half-integers only. Decided
+/// by comparing rho^2 with powers of two.
 struct NearestLevel {
     int preferred = 0, alternative = 0;
 };

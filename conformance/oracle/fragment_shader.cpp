@@ -22,8 +22,8 @@ struct ModuleTraits {
     double imprecision = 0;
 };
 
-// Vulkan, Precision and Operation of SPIR-V Instructions: sin and cos 2^-11 absolute, atan 4096 ULP, exp and log some ULP;
-// pow magnifies the error of its logarithm by the exponent.
+// Vulkan, Precision and Operation of SPIR-V Instructions: sin and cos 2^-11 absolute, atan 4096 ULP, exp and
+// log some ULP; pow magnifies the error of its logarithm by the exponent.
 double imprecisionOf(uint32_t instruction) {
     switch (instruction) {
         case GLSLstd450Sin:
@@ -38,18 +38,23 @@ double imprecisionOf(uint32_t instruction) {
         case GLSLstd450Tanh:
         case GLSLstd450Asinh:
         case GLSLstd450Acosh:
-        case GLSLstd450Atanh: return 0x1p-10;
-        case GLSLstd450Pow: return 0x1p-14;
+        case GLSLstd450Atanh:
+            return 0x1p-10;
+        case GLSLstd450Pow:
+            return 0x1p-14;
         case GLSLstd450Exp:
         case GLSLstd450Exp2:
         case GLSLstd450Log:
-        case GLSLstd450Log2: return 0x1p-18;
+        case GLSLstd450Log2:
+            return 0x1p-18;
         case GLSLstd450Sqrt:
         case GLSLstd450InverseSqrt:
         case GLSLstd450Length:
         case GLSLstd450Distance:
-        case GLSLstd450Normalize: return 0x1p-20;
-        default: return 0;
+        case GLSLstd450Normalize:
+            return 0x1p-20;
+        default:
+            return 0;
     }
 }
 
@@ -58,7 +63,8 @@ ModuleTraits scan(const std::vector<uint32_t>& words) {
     for (size_t at = 5; at < words.size();) {
         const uint32_t length = words[at] >> 16, opcode = words[at] & 0xffff;
         if (length == 0) break;
-        traits.derivatives = traits.derivatives || opcode == spv::OpDPdx || opcode == spv::OpDPdy || opcode == spv::OpFwidth;
+        traits.derivatives =
+            traits.derivatives || opcode == spv::OpDPdx || opcode == spv::OpDPdy || opcode == spv::OpFwidth;
         if (opcode == spv::OpExtInst && length > 4 && at + 4 < words.size()) {
             traits.imprecision = std::max(traits.imprecision, imprecisionOf(words[at + 4]));
         }
@@ -88,7 +94,9 @@ class Spread {
     /// Kinds seen later (rounding alone) do not count as variation with the inputs.
     void closeVariation() { open_ = false; }
     bool varies() const { return varies_; }
-    Interval range(double slack) const { return {nominal_, nominal_ - totalBelow_ - slack, nominal_ + totalAbove_ + slack}; }
+    Interval range(double slack) const {
+        return {nominal_, nominal_ - totalBelow_ - slack, nominal_ + totalAbove_ + slack};
+    }
 
   private:
     double nominal_;
@@ -166,9 +174,11 @@ Result<FragmentShader> FragmentShader::create(const Scene& scene, const ScenePip
             const bool perSample = v.sample || (v.isBuiltin && (v.builtin == spv::BuiltInSampleId ||
                                                                 v.builtin == spv::BuiltInSamplePosition));
             if (pipeline.samples != VK_SAMPLE_COUNT_1_BIT && (perSample || v.centroid)) {
-                return unsupported("oracle: fragment input '" + v.name + "' asks for per-sample or centroid shading");
+                return unsupported("oracle: fragment input '" + v.name +
+                                   "' asks for per-sample or centroid shading");
             }
-            const bool interpolated = v.isBuiltin ? v.builtin == spv::BuiltInFragCoord : !v.flat && !isInteger(v);
+            const bool interpolated =
+                v.isBuiltin ? v.builtin == spv::BuiltInFragCoord : !v.flat && !isInteger(v);
             result.variesWithPosition_ = result.variesWithPosition_ || interpolated;
             result.inputs_.push_back(v);
         }
@@ -186,20 +196,23 @@ void FragmentShader::setVariable(const InterfaceVariable& variable, const Fragme
             if (found != source.vertices[i]->varyings.end()) at[i] = found->second;
         }
         reference::Texel<double>& texel = values.locations[location];
-        for (size_t c = variable.component; c < std::min<size_t>(4, variable.component + variable.components); ++c) {
+        for (size_t c = variable.component; c < std::min<size_t>(4, variable.component + variable.components);
+             ++c) {
             if (variable.flat || isInteger(variable)) {
                 texel[c] = at[0][c];
                 continue;
             }
             const std::array<double, 3> f{at[0][c].number, at[1][c].number, at[2][c].number};
             const auto& shape = source.triangle->homogeneous();
-            texel[c].number = variable.noPerspective ? shape.linear(weights, f) : shape.perspective(weights, f);
+            texel[c].number =
+                variable.noPerspective ? shape.linear(weights, f) : shape.perspective(weights, f);
         }
     }
 }
 
-std::array<FragmentShader::Values, 4> FragmentShader::inputsAt(const FragmentSource& source, uint32_t x, uint32_t y,
-                                                              double shiftX, double shiftY) const {
+std::array<FragmentShader::Values, 4> FragmentShader::inputsAt(const FragmentSource& source, uint32_t x,
+                                                               uint32_t y, double shiftX,
+                                                               double shiftY) const {
     std::array<Values, 4> result;
     for (uint32_t lane = 0; lane < 4; ++lane) {
         Values& values = result[lane];
@@ -213,19 +226,25 @@ std::array<FragmentShader::Values, 4> FragmentShader::inputsAt(const FragmentSou
             }
             switch (v.builtin) {
                 case spv::BuiltInFragCoord:
-                    values.setFloat(spv::BuiltInFragCoord, {px, py, shape.depth(weights), shape.inverseW(weights)});
+                    values.setFloat(spv::BuiltInFragCoord,
+                                    {px, py, shape.depth(weights), shape.inverseW(weights)});
                     break;
-                case spv::BuiltInFrontFacing: values.setInt(v.builtin, source.frontFacing); break;
-                case spv::BuiltInPrimitiveId: values.setInt(v.builtin, static_cast<int32_t>(source.primitiveId)); break;
-                default: break;  // reads as 0: SampleId and layers of what is modelled
+                case spv::BuiltInFrontFacing:
+                    values.setInt(v.builtin, source.frontFacing);
+                    break;
+                case spv::BuiltInPrimitiveId:
+                    values.setInt(v.builtin, static_cast<int32_t>(source.primitiveId));
+                    break;
+                default:
+                    break;  // reads as 0: SampleId and layers of what is modelled
             }
         }
     }
     return result;
 }
 
-Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSource& source, uint32_t x, uint32_t y,
-                                                               const std::array<bool, 4>& covered,
+Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSource& source, uint32_t x,
+                                                               uint32_t y, const std::array<bool, 4>& covered,
                                                                const OutputState& output,
                                                                ShaderResources& resources) const {
     Runs runs;
@@ -252,7 +271,8 @@ Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSou
         const double d = source.triangle->freedom();
         for (const double dx : {-d, d}) {
             for (const double dy : {-d, d}) {
-                if (Status s = add(runs.shifted, nominal_, inputsAt(source, x, y, dx, dy)); !s) return s.error();
+                if (Status s = add(runs.shifted, nominal_, inputsAt(source, x, y, dx, dy)); !s)
+                    return s.error();
             }
         }
     }
@@ -275,7 +295,8 @@ Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSou
         FragmentResult& result = results[lane];
         result.discarded = runs.nominal[lane].discarded;
         for (const auto* list : {&runs.shifted, &runs.filtered, &runs.coarse, &runs.rounded}) {
-            for (const auto& other : *list) result.discardOpen = result.discardOpen || other[lane].discarded != result.discarded;
+            for (const auto& other : *list)
+                result.discardOpen = result.discardOpen || other[lane].discarded != result.discarded;
         }
         // A nominally discarded fragment that others keep: take the outputs of one that kept it.
         if (result.discarded && result.discardOpen) {
@@ -291,7 +312,8 @@ Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSou
             const double nominalNumber = std::abs(spread->range(0).value);
             if (isInteger(v)) return spread->range(0);
             const double relative = imprecision_ + (spread->varies() ? kInterpolationError : kFloatError);
-            return spread->range(relative * std::max(1.0, std::isfinite(nominalNumber) ? nominalNumber : 1.0));
+            return spread->range(relative *
+                                 std::max(1.0, std::isfinite(nominalNumber) ? nominalNumber : 1.0));
         };
         std::array<bool, kMaxColorAttachments> written{};
         for (const InterfaceVariable& v : outputs_) {

@@ -1,10 +1,11 @@
-// Clip space to window space, clipping, facing and interpolation, in any number type: rationals for the exact checks,
-// double inside the whole-scene oracle.
+// Clip space to window space, clipping, facing and interpolation, in any number type: rationals for the exact
+// checks, double inside the whole-scene oracle.
 //
-// Interpolation follows Olano and Greer, "Triangle Scan Conversion using 2D Homogeneous Coordinates" (1997): with
-// vertices v_i = (w x, w y, w) in homogeneous window coordinates, E_i(p) = p . (v_j x v_k) are, up to a common factor,
-// the perspective-correct weights of the *unclipped* triangle. No division by w and no new vertex is needed, so that
-// clipping by the sides of the view volume is invisible by construction (Vulkan, Primitive Clipping).
+// Interpolation follows Olano and Greer, "Triangle Scan Conversion using 2D Homogeneous Coordinates" (1997):
+// with vertices v_i = (w x, w y, w) in homogeneous window coordinates, E_i(p) = p . (v_j x v_k) are, up to a
+// common factor, the perspective-correct weights of the *unclipped* triangle. No division by w and no new
+// vertex is needed, so that clipping by the sides of the view volume is invisible by construction (Vulkan,
+// Primitive Clipping).
 #pragma once
 
 #include <vulkan/vulkan_core.h>
@@ -23,7 +24,8 @@ struct WindowVertex {
     T x, y, z, w;
 };
 
-/// Vulkan, Controlling the Viewport: x_f = (width/2) x_d + x + width/2; z_f = (maxDepth - minDepth) z_d + minDepth.
+/// Vulkan, Controlling the Viewport: x_f = (width/2) x_d + x + width/2; z_f = (maxDepth - minDepth) z_d +
+/// minDepth.
 template <class T>
 WindowVertex<T> toWindow(const Clip<T>& p, const VkViewport& viewport) {
     const T halfWidth = T(viewport.width) / T(2), halfHeight = T(viewport.height) / T(2);
@@ -50,15 +52,16 @@ struct HomogeneousTriangle {
         determinant = vertex[0].x * edge[0][0] + vertex[0].y * edge[0][1] + vertex[0].w * edge[0][2];
     }
 
-    /// Perspective weights at a point, up to a common factor whose sign is that of the determinant inside the visible part.
+    /// Perspective weights at a point, up to a common factor whose sign is that of the determinant inside the
+    /// visible part.
     std::array<T, 3> weights(const T& x, const T& y) const {
         std::array<T, 3> result;
         for (size_t i = 0; i < 3; ++i) result[i] = edge[i][0] * x + edge[i][1] * y + edge[i][2];
         return result;
     }
 
-    /// sum(b_i f_i) / sum(b_i): smooth (perspective) interpolation, anchored at vertex 0 so that a constant attribute stays
-    /// constant in rounded number types too.
+    /// sum(b_i f_i) / sum(b_i): smooth (perspective) interpolation, anchored at vertex 0 so that a constant
+    /// attribute stays constant in rounded number types too.
     T perspective(const std::array<T, 3>& b, const std::array<T, 3>& f) const {
         return f[0] + T(b[1] * (f[1] - f[0]) + b[2] * (f[2] - f[0])) / T(b[0] + b[1] + b[2]);
     }
@@ -94,8 +97,8 @@ struct ClippedVertex {
     std::array<T, 3> weight;  // of the triangle's three vertices; they sum to 1
 };
 
-/// Keeps the part with distance(position) >= 0. A new vertex is always computed from the inside end to the outside end,
-/// so that both triangles at a shared edge get the same one.
+/// Keeps the part with distance(position) >= 0. A new vertex is always computed from the inside end to the
+/// outside end, so that both triangles at a shared edge get the same one.
 template <class T, class Distance>
 std::vector<ClippedVertex<T>> clipPolygon(const std::vector<ClippedVertex<T>>& polygon, Distance distance) {
     std::vector<ClippedVertex<T>> result;
@@ -110,7 +113,8 @@ std::vector<ClippedVertex<T>> clipPolygon(const std::vector<ClippedVertex<T>>& p
         const ClippedVertex<T>& out = aIn ? b : a;
         const T t = (aIn ? da : db) / T((aIn ? da : db) - (aIn ? db : da));
         ClippedVertex<T> cut;
-        for (size_t c = 0; c < 4; ++c) cut.position[c] = in.position[c] + t * (out.position[c] - in.position[c]);
+        for (size_t c = 0; c < 4; ++c)
+            cut.position[c] = in.position[c] + t * (out.position[c] - in.position[c]);
         for (size_t c = 0; c < 3; ++c) cut.weight[c] = in.weight[c] + t * (out.weight[c] - in.weight[c]);
         result.push_back(cut);
     }
@@ -130,7 +134,8 @@ std::vector<ClippedVertex<T>> clipNearFar(const std::array<Clip<T>, 3>& p) {
     return clipPolygon(polygon, [](const Clip<T>& v) { return T(v[3] - v[2]); });
 }
 
-/// The part in front of the eye, w >= minimum with minimum > 0: for depth clamping, where near and far do not clip.
+/// The part in front of the eye, w >= minimum with minimum > 0: for depth clamping, where near and far do not
+/// clip.
 template <class T>
 std::vector<ClippedVertex<T>> clipBehindEye(const std::array<Clip<T>, 3>& p, const T& minimum) {
     return clipPolygon(wholeTriangle(p), [&minimum](const Clip<T>& v) { return T(v[3] - minimum); });

@@ -41,7 +41,9 @@ class ImageStore {
     uint32_t arrayLayers() const { return arrayLayers_; }
 
     ImageLevel& level(uint32_t mip, uint32_t layer) { return levels_[mip * arrayLayers_ + layer]; }
-    const ImageLevel& level(uint32_t mip, uint32_t layer) const { return levels_[mip * arrayLayers_ + layer]; }
+    const ImageLevel& level(uint32_t mip, uint32_t layer) const {
+        return levels_[mip * arrayLayers_ + layer];
+    }
 
   private:
     const PixelFormat* format_ = nullptr;
@@ -52,7 +54,8 @@ class ImageStore {
 /// Stores a colour: each channel that the format has is quantised, the others read back as 0, alpha as 1.
 Color quantiseColor(const PixelFormat& format, const Color& color);
 
-/// Average of the samples of a pixel. sRGB may be averaged in linear or in encoded space, integers may be any one sample.
+/// Average of the samples of a pixel. sRGB may be averaged in linear or in encoded space, integers may be any
+/// one sample.
 StoredTexel resolveSamples(const PixelFormat& format, const ImageLevel& source, uint32_t x, uint32_t y);
 
 }  // namespace vernier::conformance::exact

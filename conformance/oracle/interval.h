@@ -1,4 +1,5 @@
-// A number together with the range that the specification permits for it: the currency of the whole-scene oracle.
+// A number together with the range that the specification permits for it: the currency of the whole-scene
+// oracle.
 #pragma once
 
 #include <algorithm>
@@ -37,7 +38,8 @@ struct Interval {
         return {a.value - b.value, a.low - b.high, a.high - b.low};
     }
     friend Interval operator*(const Interval& a, const Interval& b) {
-        const auto [low, high] = std::minmax({a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high});
+        const auto [low, high] =
+            std::minmax({a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high});
         return {a.value * b.value, low, high};
     }
 };

@@ -1,5 +1,5 @@
-// The reference renderer's verdict on a scene: for every pixel of every output, the value and the range of values that
-// the Vulkan specification permits.
+// The reference renderer's verdict on a scene: for every pixel of every output, the value and the range of
+// values that the Vulkan specification permits.
 #pragma once
 
 #include "base/result.h"
@@ -28,8 +28,8 @@ struct OracleImage {
     std::vector<OraclePixel> pixels;  // row by row
 };
 
-/// One image per Scene::outputs, in that order. An error with code `unsupported` when the scene uses something the oracle
-/// does not model.
+/// One image per Scene::outputs, in that order. An error with code `unsupported` when the scene uses
+/// something the oracle does not model.
 Result<std::vector<OracleImage>> renderOracle(const Scene& scene);
 
 }  // namespace vernier::conformance

@@ -21,14 +21,19 @@ namespace {
 // Standard sample locations (Vulkan, Multisampling) in 1/16 pixel.
 std::vector<GridPoint> samplePositions(uint32_t samples) {
     switch (samples) {
-        case 1: return {{8, 8}};
-        case 2: return {{12, 12}, {4, 4}};
-        case 4: return {{6, 2}, {14, 6}, {2, 10}, {10, 14}};
-        case 8: return {{9, 5}, {7, 11}, {13, 9}, {5, 3}, {3, 13}, {1, 7}, {11, 15}, {15, 1}};
+        case 1:
+            return {{8, 8}};
+        case 2:
+            return {{12, 12}, {4, 4}};
+        case 4:
+            return {{6, 2}, {14, 6}, {2, 10}, {10, 14}};
+        case 8:
+            return {{9, 5}, {7, 11}, {13, 9}, {5, 3}, {3, 13}, {1, 7}, {11, 15}, {15, 1}};
         case 16:
-            return {{9, 9},  {7, 5},  {5, 10}, {12, 7}, {3, 6},  {10, 13}, {13, 11}, {11, 3},
-                    {6, 14}, {8, 1},  {4, 2},  {2, 12}, {0, 8},  {15, 4},  {14, 15}, {1, 0}};
-        default: return {};
+            return {{9, 9},  {7, 5}, {5, 10}, {12, 7}, {3, 6}, {10, 13}, {13, 11}, {11, 3},
+                    {6, 14}, {8, 1}, {4, 2},  {2, 12}, {0, 8}, {15, 4},  {14, 15}, {1, 0}};
+        default:
+            return {};
     }
 }
 
@@ -64,7 +69,8 @@ class PassRenderer {
 
     Status load() {
         if (pass_.colors.size() > kMaxColorAttachments) {
-            return unsupported("oracle: a pass with " + std::to_string(pass_.colors.size()) + " colour attachments");
+            return unsupported("oracle: a pass with " + std::to_string(pass_.colors.size()) +
+                               " colour attachments");
         }
         width_ = pass_.extent.width;
         height_ = pass_.extent.height;
@@ -109,20 +115,23 @@ class PassRenderer {
             } else {
                 const StoredTexel& texel = attachment(a)->at(x, y, s);
                 state.colors[i] = texel.channels;
-                state.flags[i] = a.loadOp == VK_ATTACHMENT_LOAD_OP_LOAD ? texel.flags : uint8_t{kOracleUnknown};
+                state.flags[i] =
+                    a.loadOp == VK_ATTACHMENT_LOAD_OP_LOAD ? texel.flags : uint8_t{kOracleUnknown};
             }
         }
         if (output_.depthFormat) {
             const SceneAttachment& a = pass_.depthStencil;
             if (a.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR) {
                 state.depth = static_cast<double>(a.clear.depthStencil.depth);
-                if (output_.depthFormat->depth) state.depth = quantise(output_.depthFormat->components[0], state.depth);
+                if (output_.depthFormat->depth)
+                    state.depth = quantise(output_.depthFormat->components[0], state.depth);
                 state.stencil = static_cast<uint8_t>(a.clear.depthStencil.stencil);
             } else {
                 const StoredTexel& texel = attachment(a)->at(x, y, s);
                 state.depth = texel.channels[0];
                 state.stencil = static_cast<uint8_t>(texel.channels[1].value);
-                state.flags[kDepthFlags] = a.loadOp == VK_ATTACHMENT_LOAD_OP_LOAD ? texel.flags : uint8_t{kOracleUnknown};
+                state.flags[kDepthFlags] =
+                    a.loadOp == VK_ATTACHMENT_LOAD_OP_LOAD ? texel.flags : uint8_t{kOracleUnknown};
             }
         }
         return state;
@@ -134,14 +143,16 @@ class PassRenderer {
 
     Status draw(const SceneDraw& draw) {
         const ScenePipeline& pipeline = scene_.pipelines[draw.pipeline];
-        if (pipeline.polygonMode != VK_POLYGON_MODE_FILL) return unsupported("oracle: polygonMode other than FILL");
+        if (pipeline.polygonMode != VK_POLYGON_MODE_FILL)
+            return unsupported("oracle: polygonMode other than FILL");
         OutputState output = output_;
         output.pipeline = &pipeline;
         output.viewport = draw.viewport;
         ShaderResources vertexResources(scene_, images_, draw);
         auto geometry = assembleDraw(scene_, draw, vertexResources);
         if (!geometry) return geometry.error();
-        if (vertexResources.wrote) return unsupported("oracle: the vertex shader uses storage buffers or images");
+        if (vertexResources.wrote)
+            return unsupported("oracle: the vertex shader uses storage buffers or images");
         std::optional<FragmentShader> shader;
         if (pipeline.fragmentShader != kNone) {
             auto created = FragmentShader::create(scene_, pipeline);
@@ -150,7 +161,8 @@ class PassRenderer {
         }
         const std::vector<PreparedTriangle> triangles = prepare(draw, pipeline, *geometry);
 
-        // Each thread owns whole rows of quads and sees all triangles in order: the result does not depend on threads.
+        // Each thread owns whole rows of quads and sees all triangles in order: the result does not depend on
+        // threads.
         const uint32_t threads = std::clamp(std::thread::hardware_concurrency(), 1u, 16u);
         std::vector<Status> status(threads);
         std::vector<std::thread> workers;
@@ -172,17 +184,26 @@ class PassRenderer {
         return {};
     }
 
-    std::vector<PreparedTriangle> prepare(const SceneDraw& draw, const ScenePipeline& pipeline, const DrawGeometry& geometry) {
+    std::vector<PreparedTriangle> prepare(const SceneDraw& draw, const ScenePipeline& pipeline,
+                                          const DrawGeometry& geometry) {
         const VkRect2D& scissor = draw.scissor;
-        PixelBounds limits{std::max(0, scissor.offset.x), std::max(0, scissor.offset.y),
-                           static_cast<int32_t>(std::min<int64_t>(width_, int64_t{scissor.offset.x} + scissor.extent.width)),
-                           static_cast<int32_t>(std::min<int64_t>(height_, int64_t{scissor.offset.y} + scissor.extent.height))};
-        const double context[] = {static_cast<double>(pipeline.vertexShader), draw.viewport.x, draw.viewport.y,
-                                  draw.viewport.width, draw.viewport.height, draw.viewport.minDepth, draw.viewport.maxDepth};
+        PixelBounds limits{
+            std::max(0, scissor.offset.x), std::max(0, scissor.offset.y),
+            static_cast<int32_t>(std::min<int64_t>(width_, int64_t{scissor.offset.x} + scissor.extent.width)),
+            static_cast<int32_t>(
+                std::min<int64_t>(height_, int64_t{scissor.offset.y} + scissor.extent.height))};
+        const double context[] = {static_cast<double>(pipeline.vertexShader),
+                                  draw.viewport.x,
+                                  draw.viewport.y,
+                                  draw.viewport.width,
+                                  draw.viewport.height,
+                                  draw.viewport.minDepth,
+                                  draw.viewport.maxDepth};
         std::vector<PreparedTriangle> result;
         for (size_t i = 0; i < geometry.triangles.size(); ++i) {
             FragmentSource source;
-            Triangle::Setup setup{{}, draw.viewport, !pipeline.depthClamp, {}, hashNumbers(0, context, std::size(context))};
+            Triangle::Setup setup{
+                {}, draw.viewport, !pipeline.depthClamp, {}, hashNumbers(0, context, std::size(context))};
             size_t distances = ~size_t{0};
             for (size_t k = 0; k < 3; ++k) {
                 source.vertices[k] = &geometry.vertices[geometry.triangles[i][k]];
@@ -202,12 +223,14 @@ class PassRenderer {
             source.primitiveId = geometry.primitiveIds[i];
             const bool culled = (source.frontFacing && (pipeline.cullMode & VK_CULL_MODE_FRONT_BIT)) ||
                                 (!source.frontFacing && (pipeline.cullMode & VK_CULL_MODE_BACK_BIT));
-            if (culled && (!triangle->orientationOpen() || pipeline.cullMode == VK_CULL_MODE_FRONT_AND_BACK)) continue;
+            if (culled && (!triangle->orientationOpen() || pipeline.cullMode == VK_CULL_MODE_FRONT_AND_BACK))
+                continue;
             PreparedTriangle prepared{std::move(*triangle), source, bounds, 0.0, 0, culled};
             prepared.depthOrigin = prepared.triangle.identity();
             if (pipeline.depthBias && output_.depthFormat) {
                 prepared.bias = biasOf(prepared.triangle, pipeline);
-                const double bias[] = {pipeline.depthBiasConstant, pipeline.depthBiasClamp, pipeline.depthBiasSlope};
+                const double bias[] = {pipeline.depthBiasConstant, pipeline.depthBiasClamp,
+                                       pipeline.depthBiasSlope};
                 prepared.depthOrigin = hashNumbers(prepared.depthOrigin, bias, 3);
             }
             result.push_back(std::move(prepared));
@@ -221,19 +244,21 @@ class PassRenderer {
         const std::array<double, 3> z = triangle.vertexDepths();
         for (size_t i = 0; i < 3; ++i) depths[i] = rational(std::isfinite(z[i]) ? z[i] : 1.0);
         const BiasRange range =
-            depthBias(output_.depthFormat->format, depths, rational(triangle.depthSlopeX()), rational(triangle.depthSlopeY()),
-                      pipeline.depthBiasConstant, pipeline.depthBiasClamp, pipeline.depthBiasSlope);
+            depthBias(output_.depthFormat->format, depths, rational(triangle.depthSlopeX()),
+                      rational(triangle.depthSlopeY()), pipeline.depthBiasConstant, pipeline.depthBiasClamp,
+                      pipeline.depthBiasSlope);
         return {(range.low + range.high) / 2, range.low, range.high};
     }
 
     GridPoint samplePoint(int32_t x, int32_t y, uint32_t s) const {
         constexpr int64_t kUnits = (1 << kSubPixelBits) / 16;
-        return {(int64_t{x} << kSubPixelBits) + positions_[s].x * kUnits, (int64_t{y} << kSubPixelBits) + positions_[s].y * kUnits};
+        return {(int64_t{x} << kSubPixelBits) + positions_[s].x * kUnits,
+                (int64_t{y} << kSubPixelBits) + positions_[s].y * kUnits};
     }
 
     // The two pixel rows of quads that begin at `row`.
-    Status shadeRow(const PreparedTriangle& t, uint32_t row, const FragmentShader* shader, const OutputState& output,
-                    ShaderResources& resources) {
+    Status shadeRow(const PreparedTriangle& t, uint32_t row, const FragmentShader* shader,
+                    const OutputState& output, ShaderResources& resources) {
         const int32_t y0 = std::max<int32_t>(t.bounds.y0, static_cast<int32_t>(row));
         const int32_t y1 = std::min<int32_t>(t.bounds.y1, static_cast<int32_t>(row) + 2);
         if (y0 >= y1) return {};
@@ -249,19 +274,22 @@ class PassRenderer {
                     if (!(output.pipeline->sampleMask & (1u << s))) continue;
                     verdict = t.triangle.classify(samplePoint(x, y, s));
                     if (t.culled) verdict.nominalAsWhole = false;
-                    covered[static_cast<size_t>(lane)] = covered[static_cast<size_t>(lane)] || verdict.possible;
+                    covered[static_cast<size_t>(lane)] =
+                        covered[static_cast<size_t>(lane)] || verdict.possible;
                 }
             }
             if (std::ranges::none_of(covered, [](bool c) { return c; })) continue;
             std::array<FragmentResult, 4> fragments{};
             if (shader) {
-                auto shaded = shader->evaluate(t.source, static_cast<uint32_t>(qx), row, covered, output, resources);
+                auto shaded =
+                    shader->evaluate(t.source, static_cast<uint32_t>(qx), row, covered, output, resources);
                 if (!shaded) return shaded.error();
                 fragments = std::move(*shaded);
             }
             for (size_t lane = 0; lane < 4; ++lane) {
                 if (!covered[lane]) continue;
-                const int32_t x = qx + static_cast<int32_t>(lane % 2), y = static_cast<int32_t>(row + lane / 2);
+                const int32_t x = qx + static_cast<int32_t>(lane % 2),
+                              y = static_cast<int32_t>(row + lane / 2);
                 for (uint32_t s = 0; s < samples_; ++s) {
                     applySample(t, x, y, s, verdicts[lane * samples_ + s], fragments[lane], output);
                 }
@@ -270,8 +298,9 @@ class PassRenderer {
         return {};
     }
 
-    void applySample(const PreparedTriangle& t, int32_t x, int32_t y, uint32_t s, const SampleVerdict& verdict,
-                     const FragmentResult& fragment, const OutputState& output) {
+    void applySample(const PreparedTriangle& t, int32_t x, int32_t y, uint32_t s,
+                     const SampleVerdict& verdict, const FragmentResult& fragment,
+                     const OutputState& output) {
         if (!verdict.possible) return;
         SampleInput input;
         input.verdict = verdict;
@@ -282,9 +311,11 @@ class PassRenderer {
             input.coverageOpen = alpha.low < 1 - kCodeTolerance;
         }
         input.depth = t.triangle.depth(samplePoint(x, y, s)) + t.bias;
-        // Without depth clamping fragments beyond the viewport's range have been clipped; rounding leaves no more than a trace.
+        // Without depth clamping fragments beyond the viewport's range have been clipped; rounding leaves no
+        // more than a trace.
         const auto [low, high] = std::minmax(output.viewport.minDepth, output.viewport.maxDepth);
-        if (!output.pipeline->depthClamp && !output.pipeline->depthBias) input.depth = input.depth.clamped(low, high);
+        if (!output.pipeline->depthClamp && !output.pipeline->depthBias)
+            input.depth = input.depth.clamped(low, high);
         input.depthOrigin = t.depthOrigin;
         input.frontFacing = t.source.frontFacing;
         applyTriangle(output, input, at(static_cast<uint32_t>(x), static_cast<uint32_t>(y), s));
@@ -307,16 +338,19 @@ class PassRenderer {
             for (const SampleState& state : states) {
                 texel.flags |= state.flags[i];
                 if (state.colors[i] != states[0].colors[i]) texel.flags |= kOracleEdge;
-                for (size_t c = 0; c < 4; ++c) texel.channels[c] = texel.channels[c].united(state.colors[i][c]);
+                for (size_t c = 0; c < 4; ++c)
+                    texel.channels[c] = texel.channels[c].united(state.colors[i][c]);
             }
             target->at(x, y, s) = texel;
         }
         if (ImageLevel* target = attachment(pass_.depthStencil)) {
-            StoredTexel texel{{states[0].depth, static_cast<double>(states[0].stencil), 0.0, 1.0}, states[0].flags[kDepthFlags]};
+            StoredTexel texel{{states[0].depth, static_cast<double>(states[0].stencil), 0.0, 1.0},
+                              states[0].flags[kDepthFlags]};
             for (const SampleState& state : states) {
                 texel.flags |= state.flags[kDepthFlags];
                 const Interval stencil(state.stencil);
-                if (state.depth != states[0].depth || state.stencil != states[0].stencil) texel.flags |= kOracleEdge;
+                if (state.depth != states[0].depth || state.stencil != states[0].stencil)
+                    texel.flags |= kOracleEdge;
                 texel.channels[0] = texel.channels[0].united(state.depth);
                 texel.channels[1] = texel.channels[1].united(stencil);
             }

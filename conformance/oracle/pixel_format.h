@@ -1,5 +1,6 @@
-// The oracle's own table of pixel formats: where each component's bits are and how they encode a number. Read straight
-// from the specification's "Identification of Formats"; nothing is shared with the renderer's tables.
+// The oracle's own table of pixel formats: where each component's bits are and how they encode a number. Read
+// straight from the specification's "Identification of Formats"; nothing is shared with the renderer's
+// tables.
 #pragma once
 
 #include <vulkan/vulkan_core.h>

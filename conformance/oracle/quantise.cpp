@@ -67,18 +67,23 @@ double srgbDecode(double encoded) {
 Interval quantise(const Component& component, const Interval& number) {
     const double codes = std::ldexp(1.0, component.bits) - 1;
     switch (component.encoding) {
-        case Encoding::unorm: return quantiseFixed(number, 0, codes);
-        case Encoding::snorm: return quantiseFixed(number, -1, std::ldexp(1.0, component.bits - 1) - 1);
+        case Encoding::unorm:
+            return quantiseFixed(number, 0, codes);
+        case Encoding::snorm:
+            return quantiseFixed(number, -1, std::ldexp(1.0, component.bits - 1) - 1);
         case Encoding::srgb: {
             if (number.isNan()) return {0, 0, 1};
             const Interval n = number.clamped(0, 1);
-            const Interval c = roundedCodes(srgbEncode(n.value) * 255, srgbEncode(n.low) * 255, srgbEncode(n.high) * 255);
+            const Interval c =
+                roundedCodes(srgbEncode(n.value) * 255, srgbEncode(n.low) * 255, srgbEncode(n.high) * 255);
             const auto at = [](double code) { return srgbTable()[static_cast<size_t>(code)]; };
             return {at(c.value), at(c.low), at(c.high)};
         }
         case Encoding::uint:
-        case Encoding::sint: return number;
-        default: break;
+        case Encoding::sint:
+            return number;
+        default:
+            break;
     }
     Interval n = number;
     if (component.encoding != Encoding::sfloat) {
@@ -86,7 +91,8 @@ Interval quantise(const Component& component, const Interval& number) {
         if (std::isnan(number.value)) n.value = number.value;
     }
     const FloatLayout layout = floatLayout(component.bits);
-    return {roundToFloat(n.value, layout, 0), roundToFloat(n.low, layout, -1), roundToFloat(n.high, layout, 1)};
+    return {roundToFloat(n.value, layout, 0), roundToFloat(n.low, layout, -1),
+            roundToFloat(n.high, layout, 1)};
 }
 
 double decodeNumber(const Component& component, uint64_t code) {
@@ -95,24 +101,32 @@ double decodeNumber(const Component& component, uint64_t code) {
         return static_cast<double>(static_cast<int64_t>(code << (64 - bits)) >> (64 - bits));
     };
     switch (component.encoding) {
-        case Encoding::unorm: return static_cast<double>(code) / (std::ldexp(1.0, static_cast<int>(bits)) - 1);
+        case Encoding::unorm:
+            return static_cast<double>(code) / (std::ldexp(1.0, static_cast<int>(bits)) - 1);
         case Encoding::snorm:
             return std::max(-1.0, signedCode() / (std::ldexp(1.0, static_cast<int>(bits) - 1) - 1));
-        case Encoding::srgb: return srgbTable()[code];
-        case Encoding::uint: return static_cast<double>(code);
-        case Encoding::sint: return signedCode();
-        default: break;
+        case Encoding::srgb:
+            return srgbTable()[code];
+        case Encoding::uint:
+            return static_cast<double>(code);
+        case Encoding::sint:
+            return signedCode();
+        default:
+            break;
     }
     if (bits == 32) return std::bit_cast<float>(static_cast<uint32_t>(code));
     const FloatLayout layout = floatLayout(static_cast<int>(bits));
     const uint64_t mantissa = code & ((uint64_t{1} << layout.mantissaBits) - 1);
     const int field = static_cast<int>(code >> layout.mantissaBits) & ((1 << layout.exponentBits) - 1);
-    const bool negative = component.encoding == Encoding::sfloat && (code >> (layout.exponentBits + layout.mantissaBits));
+    const bool negative =
+        component.encoding == Encoding::sfloat && (code >> (layout.exponentBits + layout.mantissaBits));
     double result;
     if (field == (1 << layout.exponentBits) - 1) {
-        result = mantissa ? std::numeric_limits<double>::quiet_NaN() : std::numeric_limits<double>::infinity();
+        result =
+            mantissa ? std::numeric_limits<double>::quiet_NaN() : std::numeric_limits<double>::infinity();
     } else {
-        const double significand = static_cast<double>(mantissa) + (field ? std::ldexp(1.0, layout.mantissaBits) : 0);
+        const double significand =
+            static_cast<double>(mantissa) + (field ? std::ldexp(1.0, layout.mantissaBits) : 0);
         result = std::ldexp(significand, layout.minExponent() + std::max(field, 1) - 1 - layout.mantissaBits);
     }
     return negative ? -result : result;
@@ -125,7 +139,8 @@ std::array<double, 4> decodeTexel(const PixelFormat& format, const std::byte* te
         for (size_t i = 0; i < 3; ++i) result[i] = rgb[i].get_d();
         return result;
     }
-    for (const Component& c : format.all()) result[c.channel] = decodeNumber(c, extractBits(texel, c.offset, c.bits));
+    for (const Component& c : format.all())
+        result[c.channel] = decodeNumber(c, extractBits(texel, c.offset, c.bits));
     return result;
 }
 

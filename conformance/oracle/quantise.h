@@ -1,4 +1,5 @@
-// Storing a range in a format: what may be read back. The double-precision companion of encode.h, for whole images.
+// Storing a range in a format: what may be read back. The double-precision companion of encode.h, for whole
+// images.
 #pragma once
 
 #include "conformance/oracle/interval.h"
@@ -9,15 +10,17 @@
 
 namespace vernier::conformance::exact {
 
-/// Distance from a code, in codes, within which a number counts as that code: a float pipeline cannot know it better, and
-/// without it every code would admit its two neighbours as soon as a range has any width.
+/// Distance from a code, in codes, within which a number counts as that code: a float pipeline cannot know it
+/// better, and without it every code would admit its two neighbours as soon as a range has any width.
 inline constexpr double kCodeTolerance = 1e-3;
 
-/// Value read back after storing: value through the nearest code (ties to even), low through the code below, high through
-/// the code above. Fixed-point formats clamp. NaN in a fixed-point component leaves the component's whole range.
+/// Value read back after storing: value through the nearest code (ties to even), low through the code below,
+/// high through the code above. Fixed-point formats clamp. NaN in a fixed-point component leaves the
+/// component's whole range.
 Interval quantise(const Component& component, const Interval& number);
 
-/// The encoded (not linear) counterpart of an sRGB value and back; used where averaging encoded values is legal.
+/// The encoded (not linear) counterpart of an sRGB value and back; used where averaging encoded values is
+/// legal.
 double srgbEncode(double linear);
 double srgbDecode(double encoded);
 

@@ -19,14 +19,22 @@ struct Answer {
 
 bool holds(VkCompareOp op, double a, double b) {
     switch (op) {
-        case VK_COMPARE_OP_NEVER: return false;
-        case VK_COMPARE_OP_LESS: return a < b;
-        case VK_COMPARE_OP_EQUAL: return a == b;
-        case VK_COMPARE_OP_LESS_OR_EQUAL: return a <= b;
-        case VK_COMPARE_OP_GREATER: return a > b;
-        case VK_COMPARE_OP_NOT_EQUAL: return a != b;
-        case VK_COMPARE_OP_GREATER_OR_EQUAL: return a >= b;
-        default: return true;
+        case VK_COMPARE_OP_NEVER:
+            return false;
+        case VK_COMPARE_OP_LESS:
+            return a < b;
+        case VK_COMPARE_OP_EQUAL:
+            return a == b;
+        case VK_COMPARE_OP_LESS_OR_EQUAL:
+            return a <= b;
+        case VK_COMPARE_OP_GREATER:
+            return a > b;
+        case VK_COMPARE_OP_NOT_EQUAL:
+            return a != b;
+        case VK_COMPARE_OP_GREATER_OR_EQUAL:
+            return a >= b;
+        default:
+            return true;
     }
 }
 
@@ -34,37 +42,50 @@ Answer compareDepth(VkCompareOp op, const Interval& fragment, const Interval& st
     if (op == VK_COMPARE_OP_NEVER || op == VK_COMPARE_OP_ALWAYS) return {op == VK_COMPARE_OP_ALWAYS, false};
     if (sameTriangle) return {holds(op, 0, 0), false};
     const bool value = holds(op, fragment.value, stored.value);
-    if (fragment.high < stored.low || fragment.low > stored.high || (fragment.isExact() && stored.isExact())) {
+    if (fragment.high < stored.low || fragment.low > stored.high ||
+        (fragment.isExact() && stored.isExact())) {
         return {value, false};
     }
     // Touching ranges with one common point still decide the inclusive or exclusive comparison.
-    if (fragment.low == stored.high && (op == VK_COMPARE_OP_LESS || op == VK_COMPARE_OP_GREATER_OR_EQUAL)) return {value, false};
-    if (fragment.high == stored.low && (op == VK_COMPARE_OP_GREATER || op == VK_COMPARE_OP_LESS_OR_EQUAL)) return {value, false};
+    if (fragment.low == stored.high && (op == VK_COMPARE_OP_LESS || op == VK_COMPARE_OP_GREATER_OR_EQUAL))
+        return {value, false};
+    if (fragment.high == stored.low && (op == VK_COMPARE_OP_GREATER || op == VK_COMPARE_OP_LESS_OR_EQUAL))
+        return {value, false};
     return {value, true};
 }
 
 uint8_t applyStencilOp(VkStencilOp op, uint8_t stored, uint8_t reference) {
     switch (op) {
-        case VK_STENCIL_OP_ZERO: return 0;
-        case VK_STENCIL_OP_REPLACE: return reference;
-        case VK_STENCIL_OP_INCREMENT_AND_CLAMP: return static_cast<uint8_t>(stored == 255 ? 255 : stored + 1);
-        case VK_STENCIL_OP_DECREMENT_AND_CLAMP: return static_cast<uint8_t>(stored == 0 ? 0 : stored - 1);
-        case VK_STENCIL_OP_INVERT: return static_cast<uint8_t>(~stored);
-        case VK_STENCIL_OP_INCREMENT_AND_WRAP: return static_cast<uint8_t>(stored + 1);
-        case VK_STENCIL_OP_DECREMENT_AND_WRAP: return static_cast<uint8_t>(stored - 1);
-        default: return stored;
+        case VK_STENCIL_OP_ZERO:
+            return 0;
+        case VK_STENCIL_OP_REPLACE:
+            return reference;
+        case VK_STENCIL_OP_INCREMENT_AND_CLAMP:
+            return static_cast<uint8_t>(stored == 255 ? 255 : stored + 1);
+        case VK_STENCIL_OP_DECREMENT_AND_CLAMP:
+            return static_cast<uint8_t>(stored == 0 ? 0 : stored - 1);
+        case VK_STENCIL_OP_INVERT:
+            return static_cast<uint8_t>(~stored);
+        case VK_STENCIL_OP_INCREMENT_AND_WRAP:
+            return static_cast<uint8_t>(stored + 1);
+        case VK_STENCIL_OP_DECREMENT_AND_WRAP:
+            return static_cast<uint8_t>(stored - 1);
+        default:
+            return stored;
     }
 }
 
 void updateStencil(const VkStencilOpState& state, VkStencilOp op, SampleState& s) {
-    const auto reference = static_cast<uint8_t>(state.reference), mask = static_cast<uint8_t>(state.writeMask);
+    const auto reference = static_cast<uint8_t>(state.reference),
+               mask = static_cast<uint8_t>(state.writeMask);
     const uint8_t updated = applyStencilOp(op, s.stencil, reference);
     s.stencil = static_cast<uint8_t>((s.stencil & ~mask) | (updated & mask));
 }
 
 Color clampForFormat(const PixelFormat& format, Color color) {
     const Encoding encoding = format.components[0].encoding;
-    const bool fixed = encoding == Encoding::unorm || encoding == Encoding::srgb || encoding == Encoding::snorm;
+    const bool fixed =
+        encoding == Encoding::unorm || encoding == Encoding::srgb || encoding == Encoding::snorm;
     if (!fixed) return color;
     for (Interval& c : color) c = c.clamped(encoding == Encoding::snorm ? -1 : 0, 1);
     return color;
@@ -84,7 +105,8 @@ void writeColors(const OutputState& output, const FragmentResult& fragment, Samp
         const bool blend = state.blendEnable && !format->isInteger();
         if (blend) {
             Color constants;
-            for (size_t c = 0; c < 4; ++c) constants[c] = static_cast<double>(output.pipeline->blendConstants[c]);
+            for (size_t c = 0; c < 4; ++c)
+                constants[c] = static_cast<double>(output.pipeline->blendConstants[c]);
             constants = clampForFormat(*format, constants);
             const Color source1 = clampForFormat(*format, fragment.source1.value_or(Color{}));
             for (size_t c = 0; c < 4; ++c) {
@@ -170,7 +192,9 @@ class Splitter {
         const bool stencilTest = pipeline.stencilTest && output_.depthFormat && output_.depthFormat->stencil;
         const bool depthTest = pipeline.depthTest && output_.depthFormat && output_.depthFormat->depth;
         if (stencilTest) {
-            const auto masked = [&stencil](uint32_t v) { return static_cast<double>(v & stencil.compareMask & 0xff); };
+            const auto masked = [&stencil](uint32_t v) {
+                return static_cast<double>(v & stencil.compareMask & 0xff);
+            };
             if (!holds(stencil.compareOp, masked(stencil.reference), masked(state.stencil))) {
                 updateStencil(stencil, stencil.failOp, state);
                 add(std::move(state), nominal);
@@ -182,10 +206,12 @@ class Splitter {
             const auto [low, high] = std::minmax(output_.viewport.minDepth, output_.viewport.maxDepth);
             depth = depth.clamped(low, high);
         }
-        if (output_.depthFormat && output_.depthFormat->depth) depth = quantise(output_.depthFormat->components[0], depth);
+        if (output_.depthFormat && output_.depthFormat->depth)
+            depth = quantise(output_.depthFormat->components[0], depth);
         Answer passes{true, false};
         if (depthTest) {
-            const bool same = input_.depthOrigin != 0 && input_.depthOrigin == state.depthOrigin && !input_.fragment->depth;
+            const bool same =
+                input_.depthOrigin != 0 && input_.depthOrigin == state.depthOrigin && !input_.fragment->depth;
             passes = compareDepth(pipeline.depthCompare, depth, state.depth, same);
         }
         if (passes.open || !passes.value) {
@@ -227,8 +253,8 @@ class Splitter {
 }  // namespace
 
 bool SampleState::sameContents(const SampleState& other) const {
-    return stencil == other.stencil && depth == other.depth && depthOrigin == other.depthOrigin && flags == other.flags &&
-           colors == other.colors;
+    return stencil == other.stencil && depth == other.depth && depthOrigin == other.depthOrigin &&
+           flags == other.flags && colors == other.colors;
 }
 
 void applyTriangle(const OutputState& output, const SampleInput& input, Sample& sample) {

@@ -1,7 +1,8 @@
-// What a sample may hold. Wherever the specification leaves an answer open (an edge within snapping freedom, a depth test
-// within its budget) the sample splits into the states that legal implementations can be in; every state goes on through
-// the per-sample operations by itself. States remember on which side of an edge they have put the sample, so that two
-// triangles at a shared edge never both cover it and never both leave it.
+// What a sample may hold. Wherever the specification leaves an answer open (an edge within snapping freedom,
+// a depth test within its budget) the sample splits into the states that legal implementations can be in;
+// every state goes on through the per-sample operations by itself. States remember on which side of an edge
+// they have put the sample, so that two triangles at a shared edge never both cover it and never both leave
+// it.
 #pragma once
 
 #include "conformance/oracle/image_store.h"

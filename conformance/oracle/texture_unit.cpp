@@ -11,8 +11,9 @@ namespace vernier::conformance::exact {
 
 namespace {
 
-// CTS "high quality": 20 bits of coordinate; 8 bits of weight (subTexelPrecisionBits of every driver compared); 6 bits of
-// level of detail. Derivatives may be coarse or fine, which moves lambda a little more on perspective surfaces.
+// CTS "high quality": 20 bits of coordinate; 8 bits of weight (subTexelPrecisionBits of every driver
+// compared); 6 bits of level of detail. Derivatives may be coarse or fine, which moves lambda a little more
+// on perspective surfaces.
 constexpr double kCoordinateSlack = 0x1p-20;
 constexpr double kWeightSlack = 0x1p-8;
 constexpr double kLodSlack = 0x1p-6 + 0.03;
@@ -31,10 +32,13 @@ struct Sampler {
 Color borderColor(VkBorderColor border) {
     switch (border) {
         case VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE:
-        case VK_BORDER_COLOR_INT_OPAQUE_WHITE: return {1.0, 1.0, 1.0, 1.0};
+        case VK_BORDER_COLOR_INT_OPAQUE_WHITE:
+            return {1.0, 1.0, 1.0, 1.0};
         case VK_BORDER_COLOR_FLOAT_OPAQUE_BLACK:
-        case VK_BORDER_COLOR_INT_OPAQUE_BLACK: return {0.0, 0.0, 0.0, 1.0};
-        default: return {0.0, 0.0, 0.0, 0.0};
+        case VK_BORDER_COLOR_INT_OPAQUE_BLACK:
+            return {0.0, 0.0, 0.0, 1.0};
+        default:
+            return {0.0, 0.0, 0.0, 0.0};
     }
 }
 
@@ -42,17 +46,26 @@ Color borderColor(VkBorderColor border) {
 Interval compareRanges(VkCompareOp op, const Interval& a, const Interval& b) {
     const auto holds = [op](double x, double y) {
         switch (op) {
-            case VK_COMPARE_OP_NEVER: return false;
-            case VK_COMPARE_OP_LESS: return x < y;
-            case VK_COMPARE_OP_EQUAL: return x == y;
-            case VK_COMPARE_OP_LESS_OR_EQUAL: return x <= y;
-            case VK_COMPARE_OP_GREATER: return x > y;
-            case VK_COMPARE_OP_NOT_EQUAL: return x != y;
-            case VK_COMPARE_OP_GREATER_OR_EQUAL: return x >= y;
-            default: return true;
+            case VK_COMPARE_OP_NEVER:
+                return false;
+            case VK_COMPARE_OP_LESS:
+                return x < y;
+            case VK_COMPARE_OP_EQUAL:
+                return x == y;
+            case VK_COMPARE_OP_LESS_OR_EQUAL:
+                return x <= y;
+            case VK_COMPARE_OP_GREATER:
+                return x > y;
+            case VK_COMPARE_OP_NOT_EQUAL:
+                return x != y;
+            case VK_COMPARE_OP_GREATER_OR_EQUAL:
+                return x >= y;
+            default:
+                return true;
         }
     };
-    const bool value = holds(a.value, b.value), oneWay = holds(a.low, b.high), otherWay = holds(a.high, b.low);
+    const bool value = holds(a.value, b.value), oneWay = holds(a.low, b.high),
+               otherWay = holds(a.high, b.low);
     const bool overlap = a.low <= b.high && b.low <= a.high && !(a.isExact() && b.isExact());
     const bool equality = op == VK_COMPARE_OP_EQUAL || op == VK_COMPARE_OP_NOT_EQUAL;
     const bool open = equality ? overlap : oneWay != otherWay;
@@ -127,11 +140,14 @@ std::vector<double> breaks(double at, double reach, double phase) {
     return result;
 }
 
-SampleResult filterLevel(const Sampler& s, uint32_t mip, VkFilter filter, double sCoordinate, double tCoordinate) {
+SampleResult filterLevel(const Sampler& s, uint32_t mip, VkFilter filter, double sCoordinate,
+                         double tCoordinate) {
     const VkExtent2D extent = s.image.level(mip, s.layer).extent;
     const double u = sCoordinate * extent.width, v = tCoordinate * extent.height;
-    const double reachU = s.weightSlack + kCoordinateSlack * extent.width * std::max(1.0, std::abs(sCoordinate));
-    const double reachV = s.weightSlack + kCoordinateSlack * extent.height * std::max(1.0, std::abs(tCoordinate));
+    const double reachU =
+        s.weightSlack + kCoordinateSlack * extent.width * std::max(1.0, std::abs(sCoordinate));
+    const double reachV =
+        s.weightSlack + kCoordinateSlack * extent.height * std::max(1.0, std::abs(tCoordinate));
     Box box;
     if (filter == VK_FILTER_NEAREST) {
         const auto nearest = [&](double x, double y) {
@@ -152,8 +168,10 @@ SampleResult filterLevel(const Sampler& s, uint32_t mip, VkFilter filter, double
     return box.result();
 }
 
-// All that one lambda allows: magnification at or below 0, otherwise the minification filter over one or two levels.
-void addAtLod(Box& box, const Sampler& s, double lambda, bool magnify, double sCoordinate, double tCoordinate) {
+// All that one lambda allows: magnification at or below 0, otherwise the minification filter over one or two
+// levels.
+void addAtLod(Box& box, const Sampler& s, double lambda, bool magnify, double sCoordinate,
+              double tCoordinate) {
     if (magnify) {
         box.add(filterLevel(s, 0, s.state.magFilter, sCoordinate, tCoordinate));
         return;
@@ -161,7 +179,8 @@ void addAtLod(Box& box, const Sampler& s, double lambda, bool magnify, double sC
     const double last = s.image.mipLevels() - 1;
     const VkFilter filter = s.state.minFilter;
     const auto at = [&](double level) {
-        return filterLevel(s, static_cast<uint32_t>(std::clamp(level, 0.0, last)), filter, sCoordinate, tCoordinate);
+        return filterLevel(s, static_cast<uint32_t>(std::clamp(level, 0.0, last)), filter, sCoordinate,
+                           tCoordinate);
     };
     if (s.state.mipmapMode == VK_SAMPLER_MIPMAP_MODE_NEAREST) {
         box.add(at(std::ceil(lambda + 0.5) - 1));
@@ -250,7 +269,8 @@ SampleResult gatherImage(const ImageStore& image, const SceneSampler& sampler, c
     SampleResult result;
     const std::array<std::array<int, 2>, 4> order{{{0, 1}, {1, 1}, {1, 0}, {0, 0}}};
     const auto at = [&](double x, double y, size_t i) {
-        return tap(s, 0, static_cast<int64_t>(std::floor(x)) + order[i][0], static_cast<int64_t>(std::floor(y)) + order[i][1]);
+        return tap(s, 0, static_cast<int64_t>(std::floor(x)) + order[i][0],
+                   static_cast<int64_t>(std::floor(y)) + order[i][1]);
     };
     for (size_t i = 0; i < 4; ++i) {
         Box box;
@@ -264,15 +284,18 @@ SampleResult gatherImage(const ImageStore& image, const SceneSampler& sampler, c
     return result;
 }
 
-SampleResult fetchImage(const ImageStore& image, int64_t x, int64_t y, int64_t layer, int64_t mip, uint32_t sample) {
+SampleResult fetchImage(const ImageStore& image, int64_t x, int64_t y, int64_t layer, int64_t mip,
+                        uint32_t sample) {
     if (mip < 0 || mip >= image.mipLevels() || layer < 0 || layer >= image.arrayLayers()) return {};
     const ImageLevel& level = image.level(static_cast<uint32_t>(mip), static_cast<uint32_t>(layer));
-    if (x < 0 || y < 0 || x >= level.extent.width || y >= level.extent.height || sample >= level.samples) return {};
+    if (x < 0 || y < 0 || x >= level.extent.width || y >= level.extent.height || sample >= level.samples)
+        return {};
     const StoredTexel& texel = level.at(static_cast<uint32_t>(x), static_cast<uint32_t>(y), sample);
     return {texel.channels, texel.flags};
 }
 
-SampleResult blitTexel(const ImageStore& image, uint32_t mip, uint32_t layer, double u, double v, VkFilter filter) {
+SampleResult blitTexel(const ImageStore& image, uint32_t mip, uint32_t layer, double u, double v,
+                       VkFilter filter) {
     SceneSampler state;
     state.addressModeU = state.addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     // Texel centres map to dyadic positions in nearly all blits: a nearest blit has coordinate error only.

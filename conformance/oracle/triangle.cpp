@@ -9,8 +9,8 @@ namespace vernier::conformance::exact {
 namespace {
 
 constexpr double kSubUnit = 1.0 / (1 << kSubPixelBits);
-// Beyond this many pixels the homogeneous test takes over: snapped coordinates would not fit the exact edge functions'
-// declared range, and no implementation keeps such vertices unclipped.
+// Beyond this many pixels the homogeneous test takes over: snapped coordinates would not fit the exact edge
+// functions' declared range, and no implementation keeps such vertices unclipped.
 constexpr double kFarAway = 0x1p22;
 // Float rounding of clip coordinates and viewport transform, relative to the window coordinate.
 constexpr double kPositionRounding = 0x1p-22;
@@ -28,7 +28,9 @@ Point toPoint(const GridPoint& p) {
     return {static_cast<double>(p.x) * kSubUnit, static_cast<double>(p.y) * kSubUnit};
 }
 
-double distance(const std::array<double, 2>& a, const Point& p) { return std::abs(a[0] - p.x) + std::abs(a[1] - p.y); }
+double distance(const std::array<double, 2>& a, const Point& p) {
+    return std::abs(a[0] - p.x) + std::abs(a[1] - p.y);
+}
 
 double cross(const std::array<double, 2>& a, const std::array<double, 2>& b, const Point& p) {
     return (b[0] - a[0]) * (p.y - a[1]) - (b[1] - a[1]) * (p.x - a[0]);
@@ -50,7 +52,8 @@ std::optional<Triangle> Triangle::create(const Setup& setup) {
     bool inFront = true;
     for (size_t i = 0; i < 3; ++i) {
         for (const double c : setup.position[i]) {
-            if (!std::isfinite(c)) return std::nullopt;  // undefined position: dropping the primitive is the sane choice
+            if (!std::isfinite(c))
+                return std::nullopt;  // undefined position: dropping the primitive is the sane choice
         }
         v[i] = toWindow(setup.position[i], setup.viewport);
         inFront = inFront && v[i].w > 0;
@@ -59,14 +62,16 @@ std::optional<Triangle> Triangle::create(const Setup& setup) {
 
     if (setup.depthClip) {
         t.cuts_.push_back({setup.position[0][2], setup.position[1][2], setup.position[2][2]});
-        t.cuts_.push_back({setup.position[0][3] - setup.position[0][2], setup.position[1][3] - setup.position[1][2],
+        t.cuts_.push_back({setup.position[0][3] - setup.position[0][2],
+                           setup.position[1][3] - setup.position[1][2],
                            setup.position[2][3] - setup.position[2][2]});
     }
     t.cuts_.insert(t.cuts_.end(), setup.clipDistances.begin(), setup.clipDistances.end());
     for (const auto& cut : t.cuts_) {
         if (std::ranges::all_of(cut, [](double d) { return d < 0; })) return std::nullopt;
     }
-    std::erase_if(t.cuts_, [](const auto& cut) { return std::ranges::all_of(cut, [](double d) { return d >= 0; }); });
+    std::erase_if(t.cuts_,
+                  [](const auto& cut) { return std::ranges::all_of(cut, [](double d) { return d >= 0; }); });
 
     t.freedom_ = kSubUnit;
     t.snapped_ = inFront;
@@ -88,11 +93,12 @@ std::optional<Triangle> Triangle::create(const Setup& setup) {
         const auto& [a, b, c] = t.window_;
         const Point third{c[0], c[1]};
         const double area = std::abs(cross(a, b, third));
-        const double reach = t.freedom_ * (distance(a, third) + distance(b, third) + distance(a, {b[0], b[1]})) +
-                             6 * t.freedom_ * t.freedom_;
+        const double reach =
+            t.freedom_ * (distance(a, third) + distance(b, third) + distance(a, {b[0], b[1]})) +
+            6 * t.freedom_ * t.freedom_;
         t.orientationOpen_ = area <= reach;
-        // Exactly coincident or exactly collinear on the grid: empty under every snapping rule that is a function of the
-        // coordinates.
+        // Exactly coincident or exactly collinear on the grid: empty under every snapping rule that is a
+        // function of the coordinates.
         bool onGrid = true;
         for (const auto& w : t.window_) {
             onGrid = onGrid && w[0] == std::nearbyint(w[0] / kSubUnit) * kSubUnit &&
@@ -125,7 +131,8 @@ std::optional<Triangle> Triangle::create(const Setup& setup) {
             t.slopeX_ += t.shape_.edge[i][0] * v[i].z / determinant;
             t.slopeY_ += t.shape_.edge[i][1] * v[i].z / determinant;
         }
-        t.depthSlack_ = t.freedom_ * (std::abs(t.slopeX_) + std::abs(t.slopeY_)) + kDepthRounding * std::min(largest, 1e6);
+        t.depthSlack_ = t.freedom_ * (std::abs(t.slopeX_) + std::abs(t.slopeY_)) +
+                        kDepthRounding * std::min(largest, 1e6);
     }
     return t;
 }
@@ -152,7 +159,8 @@ SampleVerdict Triangle::classifySnapped(const GridPoint& sample) const {
     const Point p = toPoint(sample);
     const auto [left, right] = std::minmax({window_[0][0], window_[1][0], window_[2][0]});
     const auto [top, bottom] = std::minmax({window_[0][1], window_[1][1], window_[2][1]});
-    if (p.x < left - freedom_ || p.x > right + freedom_ || p.y < top - freedom_ || p.y > bottom + freedom_) return verdict;
+    if (p.x < left - freedom_ || p.x > right + freedom_ || p.y < top - freedom_ || p.y > bottom + freedom_)
+        return verdict;
     int outside = 0, inside = 0;
     for (size_t i = 0; i < 3; ++i) {
         const size_t j = (i + 1) % 3, k = (i + 2) % 3;
@@ -166,7 +174,8 @@ SampleVerdict Triangle::classifySnapped(const GridPoint& sample) const {
             const GridPoint& a = side_ > 0 ? grid_[j] : grid_[k];
             const GridPoint& b = side_ > 0 ? grid_[k] : grid_[j];
             const Wide exactly = edgeFunction(a, b, sample);
-            verdict.edges[verdict.edgeCount++] = openEdge(i, exactly > 0 || (exactly == 0 && isTopLeft(a, b)));
+            verdict.edges[verdict.edgeCount++] =
+                openEdge(i, exactly > 0 || (exactly == 0 && isTopLeft(a, b)));
         }
     }
     if (orientationOpen_) {
@@ -191,7 +200,8 @@ SampleVerdict Triangle::classifyHomogeneous(const GridPoint& sample) const {
         if (e < -support) return verdict;
         if (e > support) continue;
         const double dx = side_ * a, dy = side_ * b;
-        verdict.edges[verdict.edgeCount++] = openEdge(i, e > 0 || (e == 0 && (dx > 0 || (dx == 0 && dy > 0))));
+        verdict.edges[verdict.edgeCount++] =
+            openEdge(i, e > 0 || (e == 0 && (dx > 0 || (dx == 0 && dy > 0))));
     }
     verdict.possible = true;
     return verdict;

@@ -1,10 +1,12 @@
-// One triangle of a draw as the oracle rasterises it: where samples must, may or must not be covered, and its depth.
+// One triangle of a draw as the oracle rasterises it: where samples must, may or must not be covered, and its
+// depth.
 //
-// Nominal coverage is the declared one: vertices snapped to nearest even on 8 sub-pixel bits, exact integers, top-left
-// ties. What is open is decided on the unsnapped vertices, each free to move by one sub-unit (plus float rounding of the
-// viewport transform). Triangles that cross the eye plane or reach very far out are tested in homogeneous coordinates,
-// unsnapped: new vertices of a clipper would themselves be snapped within the same freedom. Near, far and user clip planes
-// are half-space tests at the sample, open within a sub-unit of the cut.
+// Nominal coverage is the declared one: vertices snapped to nearest even on 8 sub-pixel bits, exact integers,
+// top-left ties. What is open is decided on the unsnapped vertices, each free to move by one sub-unit (plus
+// float rounding of the viewport transform). Triangles that cross the eye plane or reach very far out are
+// tested in homogeneous coordinates, unsnapped: new vertices of a clipper would themselves be snapped within
+// the same freedom. Near, far and user clip planes are half-space tests at the sample, open within a sub-unit
+// of the cut.
 #pragma once
 
 #include "conformance/oracle/coverage.h"
@@ -20,8 +22,8 @@ namespace vernier::conformance::exact {
 
 inline constexpr int kSubPixelBits = 8;
 
-/// An edge or cut that a legal implementation may put on either side of a sample. All primitives with the same key must
-/// take the same side: their edges have the same two vertices.
+/// An edge or cut that a legal implementation may put on either side of a sample. All primitives with the
+/// same key must take the same side: their edges have the same two vertices.
 struct OpenEdge {
     uint64_t key = 0;
     bool insideSide = false;     // the side, relative to the key, that is inside this triangle
@@ -92,8 +94,8 @@ class Triangle {
     double freedom_ = 0;
     std::array<std::array<double, 2>, 3> window_{};  // snapped_: unsnapped positions
     GridTriangle grid_{};
-    std::array<uint64_t, 3> edgeKey_{};  // of the edge opposite each vertex
-    std::array<bool, 3> edgeForward_{};  // the edge runs along its key's direction
+    std::array<uint64_t, 3> edgeKey_{};        // of the edge opposite each vertex
+    std::array<bool, 3> edgeForward_{};        // the edge runs along its key's direction
     std::vector<std::array<double, 3>> cuts_;  // per plane: the vertices' distances
     double slopeX_ = 0, slopeY_ = 0;
     double depthSlack_ = 0;

@@ -35,10 +35,20 @@ Rgb8 classColor(PixelClass pixelClass) {
     return {};
 }
 
-Picture heatMap(const ImageDiff& diff) {
+Picture heatMap(const ImageDiff& diff, uint32_t spread) {
     Picture picture(diff.extent.width, diff.extent.height);
-    for (size_t i = 0; i < picture.pixels.size(); ++i) {
-        picture.pixels[i] = heatColor(diff.pixels[i].error, diff.pixels[i].pixelClass == PixelClass::edge);
+    const auto weight = [](const PixelDiff& pixel) { return std::abs(int64_t{pixel.error}); };
+    for (uint32_t y = 0; y < picture.height; ++y) {
+        for (uint32_t x = 0; x < picture.width; ++x) {
+            PixelDiff shown = diff.pixels[size_t{y} * picture.width + x];
+            for (uint32_t v = y - std::min(y, spread); v <= std::min(y + spread, picture.height - 1); ++v) {
+                for (uint32_t u = x - std::min(x, spread); u <= std::min(x + spread, picture.width - 1); ++u) {
+                    const PixelDiff& near = diff.pixels[size_t{v} * picture.width + u];
+                    if (weight(near) > weight(shown)) shown = near;
+                }
+            }
+            picture.at(x, y) = heatColor(shown.error, shown.pixelClass == PixelClass::edge);
+        }
     }
     return picture;
 }

@@ -153,8 +153,9 @@ bool isOurs(const Report& report, std::string_view driver) {
                        [driver](const ReportDriver& each) { return each.ours && each.name == driver; });
 }
 
-std::string verdictPill(bool failed) {
-    return failed ? "<span class=\"pill bad\">unexplained</span>" : "<span class=\"pill good\">explained</span>";
+std::string verdictPill(const ReportScene& scene) {
+    if (!scene.judged) return "<span class=\"pill\">not judged</span>";
+    return scene.failed ? "<span class=\"pill bad\">unexplained</span>" : "<span class=\"pill good\">explained</span>";
 }
 
 }  // namespace vernier::conformance

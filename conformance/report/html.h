@@ -37,7 +37,7 @@ std::string legend();
 /// The title of a driver, or "oracle".
 std::string titleOf(const Report& report, std::string_view driver);
 bool isOurs(const Report& report, std::string_view driver);
-std::string verdictPill(bool failed);
+std::string verdictPill(const ReportScene& scene);
 
 /// The pages (report.h's writeReport() stores them).
 std::string indexPage(const Report& report);

@@ -65,7 +65,7 @@ std::string comparisonRows(const Report& report, const ReportScene& scene) {
 std::string sceneRow(const Report& report, const ReportScene& scene) {
     std::string html = "<section class=\"scene" + std::string(scene.failed ? " failed" : "") +
                        "\"><div class=\"head\"><a href=\"" + scene.scene.name + ".html\">" + scene.scene.name + "</a>" +
-                       verdictPill(scene.failed) + "<p>" + escapeHtml(scene.scene.description) +
+                       verdictPill(scene) + "<p>" + escapeHtml(scene.scene.description) +
                        "</p></div><div class=\"strip\">";
     Stretch stretch;
     for (const auto& [name, rendering] : scene.renderings) {
@@ -79,7 +79,7 @@ std::string sceneRow(const Report& report, const ReportScene& scene) {
                        duration(scene.oracleSeconds * 1000));
     }
     if (const ReportComparison* worst = headline(report, scene)) {
-        html += figure(imageTag(heatMap(worst->diff), "signed difference"), "signed difference",
+        html += figure(imageTag(heatMap(worst->diff, 1), "signed difference"), "signed difference",
                        escapeHtml(titleOf(report, worst->ours)) + " \u2212 " + escapeHtml(titleOf(report, worst->other)));
     } else {
         html += figure(missing("nothing to compare", false), "signed difference", "&nbsp;");
@@ -99,15 +99,17 @@ std::string tile(const std::string& number, const std::string& text, const char*
 }
 
 std::string tiles(const Report& report) {
-    const auto failed = static_cast<size_t>(std::count_if(report.scenes.begin(), report.scenes.end(),
-                                                          [](const ReportScene& scene) { return scene.failed; }));
-    const auto judged = static_cast<size_t>(std::count_if(
-        report.scenes.begin(), report.scenes.end(), [](const ReportScene& scene) { return !scene.oracle.empty(); }));
+    const auto count = [&](auto condition) {
+        return static_cast<size_t>(std::count_if(report.scenes.begin(), report.scenes.end(), condition));
+    };
+    const size_t failed = count([](const ReportScene& scene) { return scene.failed; });
+    const size_t explained = count([](const ReportScene& scene) { return scene.judged && !scene.failed; });
+    const size_t withOracle = count([](const ReportScene& scene) { return !scene.oracle.empty(); });
     std::string html = "<div class=\"tiles\">";
     html += tile(std::to_string(report.scenes.size()), "scenes");
-    html += tile(std::to_string(report.scenes.size() - failed), "explained to the last pixel", "good");
+    html += tile(std::to_string(explained), "explained to the last pixel", explained != 0 ? "good" : "");
     html += tile(std::to_string(failed), "with unexplained pixels", failed != 0 ? "bad" : "");
-    html += tile(std::to_string(judged), "judged by the oracle");
+    html += tile(std::to_string(withOracle), "judged by the oracle");
     html += tile(std::to_string(report.judgement.covered.size()), "known gaps in use");
     html += tile(std::to_string(report.judgement.stale.size()), "known gaps that pass now",
                  report.judgement.stale.empty() ? "" : "bad");

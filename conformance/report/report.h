@@ -45,6 +45,7 @@ struct ReportScene {
     std::string oracleAbsence;
     double oracleSeconds = 0;
     std::vector<ReportComparison> comparisons;
+    bool judged = false;  // at least one driver of ours was tried
     bool failed = false;  // a finding that no known gap covers
 };
 

@@ -174,7 +174,7 @@ std::string shaders(const Scene& scene) {
 
 std::string scenePage(const Report& report, const ReportScene& scene) {
     std::string html = "<main><header class=\"top\"><p><a href=\"index.html\">Vernier conformance</a></p><h1>" +
-                       scene.scene.name + "<small>" + verdictPill(scene.failed) + "</small></h1><p>" +
+                       scene.scene.name + "<small>" + verdictPill(scene) + "</small></h1><p>" +
                        escapeHtml(scene.scene.description) + "</p></header>";
     html += outputViewers(report, scene);
     for (const ReportComparison& comparison : scene.comparisons) html += comparisonSection(report, scene, comparison);

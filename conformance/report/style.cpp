@@ -72,7 +72,7 @@ figcaption b { font-weight: 600; } figcaption span { color: var(--soft); }
 .counts span { margin-right: 12px; white-space: nowrap; color: var(--soft); } .counts b { color: var(--ink); font-weight: 600; }
 .counts .bad, .counts .bad b { color: var(--bad); }
 .pill { border-radius: 99px; padding: 1px 11px; font-size: 12.5px; font-weight: 600; white-space: nowrap; }
-.pill.good { color: var(--good); background: var(--goodground); } .pill.bad { color: var(--bad); background: var(--badground); }
+.pill { color: var(--soft); background: var(--code); } .pill.good { color: var(--good); background: var(--goodground); } .pill.bad { color: var(--bad); background: var(--badground); }
 .viewer { display: inline-block; vertical-align: top; margin: 0 22px 18px 0; max-width: 100%; }
 .viewer .buttons { display: flex; flex-wrap: wrap; gap: 6px; margin-bottom: 8px; }
 .viewer button { font: inherit; font-size: 13px; border: 1px solid var(--line); background: var(--card); color: var(--ink);

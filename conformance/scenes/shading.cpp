@@ -98,7 +98,7 @@ void main() {
                                   .cull(VK_CULL_MODE_BACK_BIT, VK_FRONT_FACE_COUNTER_CLOCKWISE)
                                   .depth(VK_COMPARE_OP_LESS);
     const uint32_t frame = record.uniformBuffer(
-        "frame", Frame{cameraMatrix({1.1, 3.3, 3.4}, {0, -0.08, 0}, 42, 1, 1, 12),
+        "frame", Frame{cameraMatrix({1.1, 3.3, 3.4}, {0.06, -0.1, 0}, 45, 1, 1, 12),
                        {{0.36f, 0.8f, 0.48f, 0}, {-0.8f, -0.36f, 0.48f, 0}},
                        {{0.98f, 0.95f, 0.88f, 0}, {0.12f, 0.22f, 0.42f, 0}}});
     const uint32_t vertices = record.vertexBuffer("knot", mesh.vertices);

@@ -21,8 +21,16 @@ std::string lastWords(const std::filesystem::path& log) {
     constexpr size_t kMost = 600;
     const Result<std::string> text = readFile(log);
     if (!text || text.value().empty()) return {};
-    const std::string& all = text.value();
+    std::string all = text.value();
+    while (!all.empty() && all.back() == '\n') all.pop_back();
     return ": " + (all.size() > kMost ? "..." + all.substr(all.size() - kMost) : all);
+}
+
+/// What a child of this program says itself on its way out, if that is how it ended.
+std::string ownWords(const std::filesystem::path& log) {
+    const std::string prefix = ": vernier-conformance: ";
+    const std::string words = lastWords(log);
+    return words.starts_with(prefix) ? words.substr(prefix.size()) : std::string();
 }
 
 }  // namespace
@@ -63,6 +71,7 @@ ChildResult runChild(const std::vector<std::string>& arguments, const std::files
         const int signal = WTERMSIG(status);
         return {false, "signal " + std::to_string(signal) + " (" + strsignal(signal) + ")" + lastWords(log)};
     }
+    if (const std::string words = ownWords(log); !words.empty()) return {false, words};
     return {false, "exit code " + std::to_string(WEXITSTATUS(status)) + lastWords(log)};
 }
 

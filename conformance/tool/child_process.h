@@ -9,7 +9,7 @@ namespace vernier::conformance {
 
 struct ChildResult {
     bool ok = false;      // exited with 0
-    std::string failure;  // "exit code 2", "signal 11 (Segmentation fault)", "no end after 60 s", with the last output
+    std::string failure;  // what it said, or "signal 11 (Segmentation fault)", "no end after 60 s" with its last output
 };
 
 /// Runs this executable with `arguments` and waits at most `timeoutSeconds`; then it is killed. Its output goes to `log`.

@@ -196,11 +196,17 @@ Result<bool> runComparison(const std::vector<DriverChoice>& choices, const RunOp
         if (!scene.oracle.empty()) extent.drivers.push_back("oracle");
         VERNIER_TRY(compareScene(scene, report.drivers));
         const std::vector<Finding> found = findingsOf(scene, report.drivers);
+        scene.judged = std::any_of(report.drivers.begin(), report.drivers.end(), [](const ReportDriver& driver) {
+            return driver.ours && driver.absence.empty();
+        });
         scene.failed = !judgeFindings(found, gaps.value(), {}).violations.empty();
         findings.insert(findings.end(), found.begin(), found.end());
         report.scenes.push_back(std::move(scene));
     }
     report.judgement = judgeFindings(findings, gaps.value(), extent);
+    const bool judged = std::any_of(report.scenes.begin(), report.scenes.end(),
+                                    [](const ReportScene& scene) { return scene.judged; });
+    if (!judged) report.judgement.violations.push_back("no driver of Vernier's took part: nothing was judged");
     VERNIER_TRY(writeReport(report, options.out));
     printVerdict(report, options.out);
     return report.judgement.passed();

@@ -32,8 +32,11 @@ HWY_INLINE VF floatOf(VU x) { return hn::BitCast(F32(), x); }
 HWY_INLINE VU splatBits(uint32_t x) { return hn::Set(U32(), x); }
 HWY_INLINE VF splatFloat(float x) { return hn::Set(F32(), x); }
 
-/// n / d correctly rounded, for integers n of at most 24 bits and d = 2^k - 1 (k <= 24) whose reciprocal is `reciprocal`: one
-/// correction of the quotient by its exact remainder suffices (the tests run through all n).
+/// n / d correctly rounded, for d = 2^k - 1 (k <= 24) with the correctly rounded `reciprocal`, and n zero or far from
+/// overflow and underflow. The first quotient is within 2 units in the last place, so its remainder is exact (a multiple of
+/// the quotient's last place, below 2^26 of them), and the corrected quotient is off by less than 2^-22 of a unit before
+/// it is rounded. n / d comes no closer than that to the middle of two floats when k <= 16, and for k = 24 and integers n the
+/// tests run through all n.
 HWY_INLINE VF divideExact(VF n, VF d, VF reciprocal) {
 #if HWY_TARGET == HWY_SSE4
     (void)reciprocal;

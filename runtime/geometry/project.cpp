@@ -50,7 +50,7 @@ void vertexFlags(const ProjectionInput& in, const ProjectionOutput& out) {
     const auto flagInt = [&](auto mask, uint32_t bit) HWY_ATTR {
         return hn::IfThenElseZero(mask, hn::Set(i, static_cast<int32_t>(bit)));
     };
-    const uint32_t nearBit = in.depthClip ? kOutsideNear : 0, farBit = in.depthClip ? kOutsideFar : 0;
+    const uint32_t nearBit = in.depthClip ? uint32_t{kOutsideNear} : 0, farBit = in.depthClip ? uint32_t{kOutsideFar} : 0;
     for (uint32_t n = 0; n < in.count; n += hn::Lanes(f)) {
         const auto x = hn::LoadU(f, in.clip[0] + n), y = hn::LoadU(f, in.clip[1] + n);
         const auto z = hn::LoadU(f, in.clip[2] + n), w = hn::LoadU(f, in.clip[3] + n);

@@ -53,7 +53,7 @@ uint64_t blockMask(const T c[3], const T a[3], const T b[3], int32_t y0, int32_t
     const hn::CappedTag<T, 8> d;
     using V = hn::Vec<decltype(d)>;
     constexpr uint32_t kLanes = hn::MaxLanes(hn::CappedTag<T, 8>());
-    uint64_t mask = 0;
+    uint64_t outside = 0;  // the sign bit of any edge
     for (uint32_t x = 0; x < 8; x += kLanes) {
         V edge[3], step[3];
         for (int e = 0; e < 3; ++e) {
@@ -65,12 +65,12 @@ uint64_t blockMask(const T c[3], const T a[3], const T b[3], int32_t y0, int32_t
         for (int32_t y = y0; y <= y1; ++y) {
             const V sign = hn::Or(hn::Or(edge[0], edge[1]), edge[2]);
             uint8_t bits[8] = {};
-            hn::StoreMaskBits(d, hn::Ge(sign, hn::Zero(d)), bits);
-            mask |= static_cast<uint64_t>(bits[0]) << (8 * y + x);
+            hn::StoreMaskBits(d, hn::Lt(sign, hn::Zero(d)), bits);
+            outside |= static_cast<uint64_t>(bits[0]) << (8 * y + x);
             for (int e = 0; e < 3; ++e) edge[e] = hn::Add(edge[e], step[e]);
         }
     }
-    return mask;
+    return ~outside;
 }
 
 template <class T>

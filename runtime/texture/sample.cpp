@@ -33,14 +33,18 @@ class Sampler {
     Sampler(const TextureView& view, const SamplerState& sampler, const SampleRequest& request)
         : view_(view), sampler_(sampler), request_(request), source_(view), compare_(sampler.compareEnable) {
         source_.borderPlanes(sampler.borderColor, border_);
-        if (compare_) {
-            neededComponents_ = 1;
-        } else {
-            for (uint32_t c = 0; c < 4; ++c) {
-                const Route route = routeOf(view.swizzle, c);
-                if (request.out[c] != nullptr && route <= Route::a) {
-                    neededComponents_ |= 1u << static_cast<uint32_t>(route);
-                }
+        neededComponents_ = compare_ ? 1 : 0;
+        for (uint32_t c = 0; c < 4; ++c) {
+            const Route route = compare_ ? Route::r : routeOf(view.swizzle, c);
+            if (request.out[c] == nullptr || (compare_ && c != 0)) continue;
+            Output& output = outputs_[outputCount_++];
+            output.target = request.out[c];
+            if (route <= Route::a) {
+                output.plane = source_.planeOf[static_cast<uint32_t>(route)];
+                neededComponents_ |= 1u << static_cast<uint32_t>(route);
+            } else {
+                output.plane = kConstantPlane;
+                output.constant = constantBits(view.ops.layout, route == Route::one);
             }
         }
         fixedPointDepth_ = view.ops.layout.rgba[0].kind == ComponentKind::unorm;
@@ -398,19 +402,11 @@ class Sampler {
     }
 
     HWY_INLINE void write(const Texel& texel, uint32_t first, uint32_t count) const {
-        if (compare_) {
-            if (request_.out[0] != nullptr) storeLanes(source_.finish(texel[0], 0), request_.out[0], first, count);
-            return;
-        }
-        for (uint32_t c = 0; c < 4; ++c) {
-            if (request_.out[c] == nullptr) continue;
-            const Route route = routeOf(view_.swizzle, c);
-            VU value = splatBits(constantBits(view_.ops.layout, route == Route::one));
-            if (route <= Route::a) {
-                const uint8_t plane = source_.planeOf[static_cast<uint32_t>(route)];
-                value = source_.finish(texel[plane], plane);
-            }
-            storeLanes(value, request_.out[c], first, count);
+        for (uint32_t i = 0; i < outputCount_; ++i) {
+            const Output& output = outputs_[i];
+            const VU value = output.plane == kConstantPlane ? splatBits(output.constant)
+                                                            : source_.finish(texel[output.plane]);
+            storeLanes(value, output.target, first, count);
         }
     }
 
@@ -443,9 +439,19 @@ class Sampler {
         }
     }
 
+    /// An output that somebody wants: a plane of the filtered texel or a constant.
+    struct Output {
+        float* target;
+        uint32_t constant;
+        uint8_t plane;
+    };
+    static constexpr uint8_t kConstantPlane = 4;
+
     const TextureView& view_;
     const SamplerState& sampler_;
     const SampleRequest& request_;
+    Output outputs_[4];
+    uint32_t outputCount_ = 0;
     Source source_;
     uint32_t border_[4];
     uint32_t neededComponents_ = 0;

@@ -56,8 +56,8 @@ struct Rgba8Source {
         for (int t = 0; t < kTaps; ++t) unpack(word(level, at[t]), texels[t]);
     }
 
-    HWY_INLINE VU finish(VU plane, uint32_t) const {
-        return kSrgb ? plane : bitsOf(hn::Div(floatOf(plane), splatFloat(255.0f)));
+    HWY_INLINE VU finish(VU plane) const {
+        return kSrgb ? plane : bitsOf(divideExact(floatOf(plane), splatFloat(255.0f), splatFloat(1.0f / 255)));
     }
 
   private:
@@ -136,7 +136,7 @@ struct AnySource {
         }
     }
 
-    HWY_INLINE VU finish(VU plane, uint32_t) const { return plane; }
+    HWY_INLINE VU finish(VU plane) const { return plane; }
 };
 
 /// a where t = 0, towards b: a + t (b - a), the same bits as a where a = b.

@@ -64,12 +64,12 @@ class Allocator {
             for (const Operand& operand : inst.operands) visit(operand);
             for (const Operand& operand : inst.hidden) visit(operand);
         }
+        // An input may itself be an output: then nothing reads or writes it, but it is there from beginning to end.
+        for (const uint32_t reg : code_.outputs) {
+            if (reg != kNone) intervals_[reg].cover(writeTime(static_cast<uint32_t>(code_.insts.size())));
+        }
         for (const uint32_t reg : code_.inputs) {
             if (reg != kNone && intervals_[reg].alive()) intervals_[reg].cover(0);
-        }
-        for (const uint32_t reg : code_.outputs) {
-            if (reg == kNone || !intervals_[reg].alive()) continue;
-            intervals_[reg].cover(writeTime(static_cast<uint32_t>(code_.insts.size())));
         }
     }
 

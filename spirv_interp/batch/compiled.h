@@ -29,7 +29,7 @@ Code encode(const MachineCode& machine, const Allocation& allocation, const Scal
 
 class CompiledProgram final : public BatchProgram {
   public:
-    CompiledProgram(const ir::Program& source, const BatchOptions& options);
+    CompiledProgram(const ir::Program& source, LoweredProgram lowered, const BatchOptions& options);
 
     const BatchStatistics& statistics() const override { return statistics_; }
     std::string disassemble() const override;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 
 #include "spirv_interp/batch/fuse.h"
 #include "spirv_interp/batch/select.h"
@@ -84,14 +85,16 @@ struct Facts {
     std::vector<uint32_t> uses;
 };
 
-constexpr uint32_t kUnset = kNone;
+bool isConversion(ir::Op op) {
+    return op == ir::Op::ftof || op == ir::Op::zext || op == ir::Op::sext || op == ir::Op::itrunc;
+}
 
 /// Lowers one piece. In draw-rate code every value but a constant is in a row.
 class Lowerer {
   public:
     Lowerer(const Facts& facts, ScalarFile& scalars, std::vector<uint32_t>& scalarIndex, bool draw, MachineCode& code)
         : facts_(facts), program_(facts.program), scalars_(scalars), scalarIndex_(scalarIndex), draw_(draw),
-          code_(code), registers_(facts.program.valueTypes.size(), kUnset) {
+          code_(code), registers_(facts.program.valueTypes.size(), kNone) {
         code_.inputs.assign(program_.inputs.size(), kNone);
         code_.outputs.assign(program_.outputs.size(), kNone);
     }
@@ -99,6 +102,8 @@ class Lowerer {
     void lowerBatch();
     /// Emits the definitions that `wanted` names and everything they need, and keeps them in the scalar file.
     void lowerDraw(const std::vector<bool>& wanted);
+    /// The name of the first operation there is no way to run; empty if all is well.
+    const std::string& unsupported() const { return unsupported_; }
 
   private:
     // Values.
@@ -170,6 +175,7 @@ class Lowerer {
     };
     std::vector<OutputPlan> outputPlans_;
     ir::BlockId block_ = 0;
+    std::string unsupported_;
 };
 
 uint32_t Lowerer::scalarOf(ir::ValueId value) {
@@ -188,7 +194,7 @@ uint32_t Lowerer::newRegister(bool wide) {
 
 uint32_t Lowerer::registerOf(ir::ValueId value) {
     uint32_t& index = registers_[value];
-    if (index == kUnset) index = newRegister(isWide(value));
+    if (index == kNone) index = newRegister(isWide(value));
     return index;
 }
 
@@ -244,12 +250,14 @@ void Lowerer::lowerElement(const ir::Inst& inst, Op op) {
 /// Operations that only move words: copies, halves of wide values, and select and b1 logic on them.
 void Lowerer::lowerWords(const ir::Inst& inst) {
     const auto operands = program_.operandsOf(inst);
-    if ((inst.op == ir::Op::copy || inst.op == ir::Op::bitcast) && !isScalar(operands[0])) {
+    const bool wide = ir::isWide(inst.type);
+    const bool renames = inst.op != ir::Op::select && isWide(operands[0]) == wide && inst.op != ir::Op::makeWide &&
+                         inst.op != ir::Op::lowWord && inst.op != ir::Op::highWord;
+    if (renames && !isScalar(operands[0])) {
         registers_[inst.result] = registerOf(operands[0]);
         return;
     }
     const uint32_t to = registerOf(inst.result);
-    const bool wide = ir::isWide(inst.type);
     switch (inst.op) {
         case ir::Op::makeWide:
             emitMove(Operand::write(to, 0), operandOf(operands[0]));
@@ -263,7 +271,7 @@ void Lowerer::lowerWords(const ir::Inst& inst) {
                            {operandOf(operands[0]), wordOf(operands[1], word), wordOf(operands[2], word)});
             }
             return;
-        default:  // copy and bitcast of a scalar, itrunc
+        default:  // renaming a scalar, itrunc
             for (uint8_t word = 0; word <= (wide ? 1 : 0); ++word) {
                 emitMove(Operand::write(to, word), wordOf(operands[0], word));
             }
@@ -350,8 +358,11 @@ void Lowerer::lowerInst(const ir::Inst& inst) {
         case ir::Op::switchOn:
         case ir::Op::ret:
         case ir::Op::kill: return;  // lowerTerminator
-        default: return lowerElement(inst, *elementOp(program_, inst));
+        default: break;
     }
+    if (isConversion(inst.op) && program_.valueTypes[operands[0]] == inst.type) return lowerWords(inst);
+    if (const std::optional<Op> op = elementOp(program_, inst)) return lowerElement(inst, *op);
+    if (unsupported_.empty()) unsupported_ = ir::opInfo(inst.op).name;
 }
 
 void Lowerer::lowerAtomic(const ir::Inst& inst) {
@@ -675,14 +686,22 @@ void Lowerer::lowerDraw(const std::vector<bool>& wanted) {
 
 }  // namespace
 
-LoweredProgram lower(const ir::Program& program) {
+Result<LoweredProgram> lower(const ir::Program& program) {
     LoweredProgram lowered;
     const Facts facts(program);
     std::vector<uint32_t> scalarIndex(program.valueTypes.size(), kNone);
-    Lowerer(facts, lowered.scalars, scalarIndex, false, lowered.batch).lowerBatch();
+    Lowerer batch(facts, lowered.scalars, scalarIndex, false, lowered.batch);
+    batch.lowerBatch();
     std::vector<bool> wanted(program.valueTypes.size());
     for (size_t v = 0; v < wanted.size(); ++v) wanted[v] = scalarIndex[v] != kNone;
-    Lowerer(facts, lowered.scalars, scalarIndex, true, lowered.draw).lowerDraw(wanted);
+    Lowerer draw(facts, lowered.scalars, scalarIndex, true, lowered.draw);
+    draw.lowerDraw(wanted);
+    for (const Lowerer* piece : {&batch, &draw}) {
+        if (!piece->unsupported().empty()) {
+            return unsupported("IR of '" + program.name + "': the batch interpreter cannot run " + piece->unsupported() +
+                               " on operands of this type");
+        }
+    }
     return lowered;
 }
 

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "base/result.h"
 #include "spirv_interp/batch/machine.h"
 #include "spirv_interp/ir/ir.h"
 
@@ -18,8 +19,8 @@ struct LoweredProgram {
     ScalarFile scalars;
 };
 
-/// `program` must verify.
-LoweredProgram lower(const ir::Program& program);
+/// `program` must verify. An operation on types it is not defined for is refused.
+Result<LoweredProgram> lower(const ir::Program& program);
 
 /// Moves that happen at once, put in an order in which none destroys the source of another. `fresh` makes a register for
 /// a cycle.

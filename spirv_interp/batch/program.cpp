@@ -33,8 +33,8 @@ HandlerTable handlerTable(Isa isa, MathTier tier) {
     return table;
 }
 
-CompiledProgram::CompiledProgram(const ir::Program& source, const BatchOptions& options) : source_(source) {
-    LoweredProgram lowered = lower(source_);
+CompiledProgram::CompiledProgram(const ir::Program& source, LoweredProgram lowered, const BatchOptions& options)
+    : source_(source) {
     const HandlerTable handlers = handlerTable(options.isa, options.tier);
     const Allocation batchRows = allocate(lowered.batch), drawRows = allocate(lowered.draw);
     const uint32_t lanes = options.lanes != 0 ? options.lanes : chooseLanes(batchRows.rows);
@@ -72,7 +72,10 @@ Result<std::shared_ptr<const BatchProgram>> BatchProgram::compile(const ir::Prog
                            ", which this CPU does not have");
     }
     if (Status status = ir::verify(program); !status.ok()) return status.error();
-    return std::shared_ptr<const BatchProgram>(std::make_shared<batch::CompiledProgram>(program, options));
+    auto lowered = batch::lower(program);
+    if (!lowered) return lowered.error();
+    return std::shared_ptr<const BatchProgram>(
+        std::make_shared<batch::CompiledProgram>(program, std::move(lowered).value(), options));
 }
 
 }  // namespace vernier

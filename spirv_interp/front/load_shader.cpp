@@ -30,7 +30,7 @@ Status checkModule(std::span<const uint32_t> words) {
     const std::unique_ptr<std::remove_pointer_t<spv_context>, DestroyContext> context(
         spvContextCreate(environmentOf(words[1])));
     spv_diagnostic diagnostic = nullptr;
-    const spv_const_binary_t binary{words.data(), words.size()};
+    spv_const_binary_t binary{words.data(), words.size()};
     if (spvValidate(context.get(), &binary, &diagnostic) == SPV_SUCCESS) {
         spvDiagnosticDestroy(diagnostic);
         return {};

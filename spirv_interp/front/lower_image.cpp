@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "spirv_interp/front/lowering.h"
+#include "spirv_interp/ir/ops.h"
 
 namespace vernier {
 namespace {
@@ -37,10 +38,15 @@ constexpr auto kConstOffsets = static_cast<uint32_t>(spv::ImageOperandsMask::Con
 constexpr auto kSample = static_cast<uint32_t>(spv::ImageOperandsMask::Sample);
 // Availability, visibility and volatility: invocations see their own accesses in order, others' at barriers. Sign and zero
 // extension repeat what the sampled type says.
-constexpr uint32_t kNoEffect = static_cast<uint32_t>(
-    spv::ImageOperandsMask::MakeTexelAvailable | spv::ImageOperandsMask::MakeTexelVisible |
-    spv::ImageOperandsMask::NonPrivateTexel | spv::ImageOperandsMask::VolatileTexel | spv::ImageOperandsMask::SignExtend |
-    spv::ImageOperandsMask::ZeroExtend);
+constexpr uint32_t bitsOf(std::initializer_list<spv::ImageOperandsMask> masks) {
+    uint32_t bits = 0;
+    for (const spv::ImageOperandsMask mask : masks) bits |= static_cast<uint32_t>(mask);
+    return bits;
+}
+constexpr uint32_t kNoEffect =
+    bitsOf({spv::ImageOperandsMask::MakeTexelAvailable, spv::ImageOperandsMask::MakeTexelVisible,
+            spv::ImageOperandsMask::NonPrivateTexel, spv::ImageOperandsMask::VolatileTexel,
+            spv::ImageOperandsMask::SignExtend, spv::ImageOperandsMask::ZeroExtend});
 
 }  // namespace
 

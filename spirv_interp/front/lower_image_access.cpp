@@ -1,5 +1,6 @@
 // Images without filtering: fetches, reads, writes, queries, texel pointers.
 #include "spirv_interp/front/lowering.h"
+#include "spirv_interp/ir/ops.h"
 
 namespace vernier {
 

@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
+#define SPV_ENABLE_UTILITY_CODE  // spv::HasResultAndType
 #include <spirv/unified1/spirv.hpp11>
 
 #include "base/result.h"

@@ -9,7 +9,7 @@
 //
 // Number types: with float every instruction is IEEE single precision, and each GLSL.std.450 function is computed in double
 // and rounded once. With double and Real every 32-bit float of the module is held in that type: results are not rounded to
-// float unless Options::roundToFloat asks for it (then as if each instruction were computed exactly and rounded once).
+// float unless Options::roundToFloat asks for it (then each instruction is computed in Number and its result rounded).
 // 64-bit floats of a module are held in Number too: with Number = float they have only float's precision. Bit casts and
 // packing go through the bits of the declared type (float32 or float64), rounding to nearest.
 #pragma once

@@ -55,6 +55,8 @@ struct Type {
     std::vector<uint64_t> cellOffsets;  // struct: first scalar of each member
     uint64_t scalars = 0;     // when flattened; 0 for opaque types, saturating
     uint32_t depth = 0;       // nesting
+    bool holdable = false;    // has values that variables and results can hold; then scalars > 0
+    uint64_t bytes = 0;       // struct: ModuleData::byteSize
     spv::StorageClass storage = spv::StorageClassFunction;  // pointer
     ImageShape shape;         // image
 

@@ -48,6 +48,7 @@ template <class Number>
 uint64_t toInteger(const Number& x, uint32_t width, bool isSigned) {
     using std::fabs;
     using std::isnan;
+    using std::ldexp;
     using std::trunc;
     if (isnan(x)) return 0;
     const uint64_t mask = width == 64 ? ~uint64_t{0} : (uint64_t{1} << width) - 1;

@@ -71,8 +71,8 @@ TEST(FusedMultiplyAdd, EqualsFmafWhereTheSumNearlyCancelsOrTies) {
     std::vector<float> a(kCount), b(kCount), c(kCount);
     for (int round = 0; round < 20; ++round) {
         for (size_t i = 0; i < kCount; ++i) {
-            a[i] = std::bit_cast<float>(0x3F800000u + (random() & 0x7FFFFFu));
-            b[i] = std::bit_cast<float>(0x3F800000u + (random() & 0x7FFFFFu));
+            a[i] = std::bit_cast<float>(static_cast<uint32_t>(0x3F800000u + (random() & 0x7FFFFFu)));
+            b[i] = std::bit_cast<float>(static_cast<uint32_t>(0x3F800000u + (random() & 0x7FFFFFu)));
             const int exponent = static_cast<int>(random() % 60) - 30;
             c[i] = std::ldexp(-a[i] * b[i], exponent);
         }

@@ -23,7 +23,7 @@ TEST(FormatTable, FindsEachFormatOnce) {
     EXPECT_EQ(findFormat(VK_FORMAT_BC1_RGB_UNORM_BLOCK), nullptr);
     EXPECT_EQ(findFormat(VK_FORMAT_G8B8G8R8_422_UNORM), nullptr);
     EXPECT_EQ(findFormat(VK_FORMAT_MAX_ENUM), nullptr);
-    EXPECT_EQ(findFormat(static_cast<VkFormat>(-1)), nullptr);
+    EXPECT_EQ(findFormat(static_cast<VkFormat>(0x7ffffffe)), nullptr);
 }
 
 TEST(FormatTable, ComponentsFitTheTexelWithoutOverlap) {

@@ -10,8 +10,12 @@
 namespace vernier::conformance::exact {
 namespace {
 
-GridPoint pixels(int64_t x, int64_t y) { return {x * 256, y * 256}; }
-GridPoint centre(int64_t x, int64_t y) { return {x * 256 + 128, y * 256 + 128}; }
+GridPoint pixels(int64_t x, int64_t y) {
+    return {x * 256, y * 256};
+}
+GridPoint centre(int64_t x, int64_t y) {
+    return {x * 256 + 128, y * 256 + 128};
+}
 
 int countCovered(const GridTriangle& t, int64_t width, int64_t height) {
     int count = 0;
@@ -21,7 +25,8 @@ int countCovered(const GridTriangle& t, int64_t width, int64_t height) {
     return count;
 }
 
-// E01: six centres lie on the diagonal; it is a left edge of the lower right triangle, which therefore owns them.
+// E01: six centres lie on the diagonal; it is a left edge of the lower right triangle, which therefore owns
+// them.
 TEST(Coverage, DiagonalThroughCentresBelongsToTheTriangleOnItsRight) {
     const GridTriangle upperLeft{pixels(1, 1), pixels(1, 7), pixels(7, 1)};
     const GridTriangle lowerRight{pixels(7, 7), pixels(7, 1), pixels(1, 7)};
@@ -58,15 +63,15 @@ TEST(Coverage, HorizontalAndVerticalEdgesThroughCentres) {
 // E05: the hub of a fan belongs to exactly one triangle.
 TEST(Coverage, HubOfAFanIsCoveredOnce) {
     const GridPoint hub = centre(8, 8);
-    const std::vector<GridPoint> rim{{300, 200},  {1500, 100}, {3900, 90},   {4100, 2176}, {4000, 4000},
-                                     {2176, 4100}, {700, 4096}, {2176 - 2000, 2176}};
+    const std::vector<GridPoint> rim{{300, 200},   {1500, 100},  {3900, 90},  {4100, 2176},
+                                     {4000, 4000}, {2176, 4100}, {700, 4096}, {2176 - 2000, 2176}};
     int count = 0;
     for (size_t i = 0; i < rim.size(); ++i) count += covers({hub, rim[i], rim[(i + 1) % rim.size()]}, hub);
     EXPECT_EQ(count, 1);
 }
 
-// E10: a sliver of 0.777 square pixels that a float area calls empty; 24 sample points on the integer lattice are strictly
-// inside, so the vertices move by half a pixel to bring them onto centres.
+// E10: a sliver of 0.777 square pixels that a float area calls empty; 24 sample points on the integer lattice
+// are strictly inside, so the vertices move by half a pixel to bring them onto centres.
 TEST(Coverage, SliverOfAlmostNoAreaCoversItsTwentyFourCentres) {
     GridTriangle sliver{GridPoint{965334, 9134}, GridPoint{1857265, 1515506}, GridPoint{1515249, 937879}};
     for (GridPoint& p : sliver) p = {p.x + 128, p.y + 128};

@@ -1,7 +1,7 @@
 // Hand-computed clipping, viewport, facing and interpolation, in rationals.
+#include "conformance/oracle/homogeneous.h"
 #include "conformance/oracle/coverage.h"
 #include "conformance/oracle/exact.h"
-#include "conformance/oracle/homogeneous.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,8 @@ using Q = Rational;
 constexpr VkViewport kViewport{0, 0, 8, 8, 0, 1};
 
 HomogeneousTriangle<Q> triangle(const std::array<Clip<Q>, 3>& p, const VkViewport& viewport = kViewport) {
-    return HomogeneousTriangle<Q>({toWindow(p[0], viewport), toWindow(p[1], viewport), toWindow(p[2], viewport)});
+    return HomogeneousTriangle<Q>(
+        {toWindow(p[0], viewport), toWindow(p[1], viewport), toWindow(p[2], viewport)});
 }
 
 TEST(Viewport, CornersAndNegativeHeight) {
@@ -46,7 +47,8 @@ TEST(Interpolation, ConstantStaysConstant) {
     EXPECT_EQ(t.linear(b, {1, 1, 1}), 1);
 }
 
-// I05 by hand: an edge from w = 1 at x = 0 to w = 3 at x = 8; half-way on the screen the attribute 0..1 is 1/4.
+// I05 by hand: an edge from w = 1 at x = 0 to w = 3 at x = 8; half-way on the screen the attribute 0..1 is
+// 1/4.
 TEST(Interpolation, PerspectiveAndLinear) {
     const auto t = triangle({Clip<Q>{-1, -1, 0, 1}, Clip<Q>{3, -3, 3, 3}, Clip<Q>{-1, 1, 0, 1}});
     const auto b = t.weights(4, 0);
@@ -71,8 +73,8 @@ TEST(Interpolation, HomogeneousScaling) {
 
 // C02: both triangles at a clipped shared edge introduce the same vertex.
 TEST(Clipping, SharedEdgeGetsTheSameNewVertex) {
-    const Clip<Q> a{-1, 0, fraction(-1, 3), 1}, b{fraction(1, 2), fraction(1, 7), fraction(5, 7), 2}, c{0, -1, fraction(1, 2), 1},
-        d{0, 1, fraction(1, 3), 1};
+    const Clip<Q> a{-1, 0, fraction(-1, 3), 1}, b{fraction(1, 2), fraction(1, 7), fraction(5, 7), 2},
+        c{0, -1, fraction(1, 2), 1}, d{0, 1, fraction(1, 3), 1};
     const auto first = clipNearFar<Q>({a, b, c}), second = clipNearFar<Q>({b, a, d});
     int common = 0;
     for (const auto& v : first) {
@@ -88,8 +90,10 @@ TEST(Clipping, SharedEdgeGetsTheSameNewVertex) {
 // C07: vertices on the planes are inside; W03: behind the eye is nothing.
 TEST(Clipping, PlanesAreInside) {
     EXPECT_EQ(clipNearFar<Q>({Clip<Q>{0, 0, 0, 1}, Clip<Q>{1, 0, 1, 1}, Clip<Q>{0, 1, 0, 1}}).size(), 3u);
-    EXPECT_TRUE(clipNearFar<Q>({Clip<Q>{0, 0, -1, -1}, Clip<Q>{1, 0, -1, -2}, Clip<Q>{0, 1, -1, -1}}).empty());
-    const auto cut = clipBehindEye<Q>({Clip<Q>{0, 0, 0, 1}, Clip<Q>{4, 0, 0, -1}, Clip<Q>{0, 4, 0, 1}}, powerOfTwo(-20));
+    EXPECT_TRUE(
+        clipNearFar<Q>({Clip<Q>{0, 0, -1, -1}, Clip<Q>{1, 0, -1, -2}, Clip<Q>{0, 1, -1, -1}}).empty());
+    const auto cut =
+        clipBehindEye<Q>({Clip<Q>{0, 0, 0, 1}, Clip<Q>{4, 0, 0, -1}, Clip<Q>{0, 4, 0, 1}}, powerOfTwo(-20));
     EXPECT_EQ(cut.size(), 4u);
     for (const auto& v : cut) EXPECT_GT(v.position[3], 0);
 }

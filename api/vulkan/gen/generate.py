@@ -7,6 +7,7 @@ Reads which commands and extensions the driver implements from the two lists, ta
 registry, and fails when a list names something the registry does not know. Output:
 
   entry_points.inc     VERNIER_ENTRY_ROW(name, function, level, core version or 0, extensions that bring it), by name
+  core_1_0.inc         VERNIER_CORE_COMMAND(name, level, implemented) for every command of Vulkan 1.0; for tests
   extensions.inc       VERNIER_EXTENSION_ROW(identifier, "name", spec version, isInstance)
   structures.inc       VERNIER_STRUCTURE(type, sType value) for every structure that can stand in a pNext chain
   feature_names.inc    VERNIER_FEATURE_NAME(member) for the members of VkPhysicalDeviceFeatures, in order
@@ -149,6 +150,9 @@ def main():
         (out / name).write_text("// Written by api/vulkan/gen/generate.py from vk.xml.\n" + "\n".join(lines) + "\n")
 
     write("entry_points.inc", rows)
+    write("core_1_0.inc", ["VERNIER_CORE_COMMAND(%s, %s, %s)" %
+                           (name, registry.level(name), "true" if name in commands else "false")
+                           for name, (core, _) in sorted(providers.items()) if core == "VK_API_VERSION_1_0"])
     write("extensions.inc", ['VERNIER_EXTENSION_ROW(%s, "%s", %d, %s)' %
                              (name[3:], name, registry.spec_version(name),
                               "true" if registry.extensions[name].get("type") == "instance" else "false")

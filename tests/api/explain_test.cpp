@@ -1,0 +1,138 @@
+// A draw runs what the scene calls for and nothing else: explain() says what is left out, and the counters show that it
+// cost nothing.
+#include <array>
+
+#include "tests/api/fixture.h"
+
+namespace vernier::test {
+namespace {
+
+using testing::HasSubstr;
+
+class Explain : public ApiTest {
+  protected:
+    std::string explain() {
+        size_t length = 0;
+        EXPECT_EQ(vnExplain(context_, nullptr, 0, &length), VN_SUCCESS) << lastError();
+        std::string text(length, '\0');
+        EXPECT_EQ(vnExplain(context_, text.data(), length + 1, nullptr), VN_SUCCESS);
+        return text;
+    }
+    /// Draws one full-screen triangle and returns what it took.
+    VnStatistics run(VnProgram with, VnBlendState blend = {}, VnDepthStencilState depth = {}, std::string* text = nullptr) {
+        const VnImage target = image(VK_FORMAT_R8G8B8A8_UNORM, kSize, kSize);
+        VnPassDesc pass = passOn(target);
+        pass.depthStencil.view = view(image(VK_FORMAT_D32_SFLOAT, kSize, kSize));
+        pass.depthStencil.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+        pass.depthStencil.clear.depthStencil.depth = 1;
+        EXPECT_EQ(vnResetStatistics(context_), VN_SUCCESS);
+        EXPECT_EQ(vnBeginPass(context_, &pass), VN_SUCCESS) << lastError();
+        EXPECT_EQ(vnBindProgram(context_, with), VN_SUCCESS);
+        EXPECT_EQ(vnBindBlendState(context_, blend), VN_SUCCESS);
+        EXPECT_EQ(vnBindDepthStencilState(context_, depth), VN_SUCCESS);
+        if (text) *text = explain();
+        EXPECT_EQ(vnDraw(context_, 3, 1, 0, 0), VN_SUCCESS) << lastError();
+        EXPECT_EQ(vnEndPass(context_), VN_SUCCESS);
+        VnStatistics statistics{};
+        EXPECT_EQ(vnGetStatistics(context_, &statistics), VN_SUCCESS);
+        return statistics;
+    }
+
+    static constexpr uint32_t kSize = 64, kPixels = kSize * kSize;
+};
+
+TEST_F(Explain, NoBlendingReadsNoDestination) {
+    VnBlendStateDesc desc{};
+    desc.attachments[0].enable = 1;
+    VnBlendState blend{};
+    ASSERT_EQ(vnCreateBlendState(device_, &desc, &blend), VN_SUCCESS);
+    const VnProgram white = program(kFullScreenVertex, kWhiteFragment);
+    std::string without, with;
+    EXPECT_EQ(run(white, {}, {}, &without).destinationReads, 0u);
+    EXPECT_EQ(run(white, blend, {}, &with).destinationReads, kPixels);
+    EXPECT_NE(with, without);
+    EXPECT_THAT(without, HasSubstr("destination"));
+}
+
+TEST_F(Explain, NoDepthTestReadsNoDepth) {
+    VnDepthStencilStateDesc desc{};
+    desc.depthTest = 1;
+    VnDepthStencilState depth{};
+    ASSERT_EQ(vnCreateDepthStencilState(device_, &desc, &depth), VN_SUCCESS);
+    const VnProgram white = program(kFullScreenVertex, kWhiteFragment);
+    std::string without, with;
+    EXPECT_EQ(run(white, {}, {}, &without).depthReads, 0u);
+    EXPECT_GT(run(white, {}, depth, &with).depthReads, 0u);
+    EXPECT_THAT(without, HasSubstr("depth"));
+    EXPECT_NE(with, without);
+}
+
+TEST_F(Explain, HelperLanesRunOnlyForDerivatives) {
+    const char* oddTriangle = R"(#version 450
+layout(location = 0) out vec2 uv;
+void main() { uv = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1); gl_Position = vec4(uv * 1.3 - 0.9, 0.5, 1.0); })";
+    const VnProgram plain = program(oddTriangle, R"(#version 450
+layout(location = 0) in vec2 uv;
+layout(location = 0) out vec4 color;
+void main() { color = vec4(uv, 0, 1); })");
+    const VnProgram derivatives = program(oddTriangle, R"(#version 450
+layout(location = 0) in vec2 uv;
+layout(location = 0) out vec4 color;
+void main() { color = vec4(fwidth(uv), 0, 1); })");
+    std::string without, with;
+    EXPECT_EQ(run(plain, {}, {}, &without).helperInvocations, 0u);
+    EXPECT_GT(run(derivatives, {}, {}, &with).helperInvocations, 0u);
+    EXPECT_THAT(without, HasSubstr("helper"));
+}
+
+TEST_F(Explain, EqualWNeedsNoPerspectiveDivide) {
+    const auto withW = [](const char* w) {
+        return std::string(R"(#version 450
+layout(location = 0) out vec2 uv;
+void main() {
+    uv = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1);
+    float w = )") +
+               w + R"(;
+    gl_Position = vec4((uv * 4.0 - 1.0) * w, 0.5 * w, w);
+})";
+    };
+    const char* reads = R"(#version 450
+layout(location = 0) in vec2 uv;
+layout(location = 0) out vec4 color;
+void main() { color = vec4(uv, 0, 1); })";
+    EXPECT_EQ(run(program(withW("2.0"), reads)).perspectiveDivides, 0u);
+    EXPECT_EQ(run(program(withW("float(gl_VertexIndex + 1)"), reads)).perspectiveDivides, kPixels);
+}
+
+TEST_F(Explain, WithoutAFragmentStageNoneRuns) {
+    std::string text;
+    EXPECT_EQ(run(program(kFullScreenVertex, ""), {}, {}, &text).fragmentInvocations, 0u);
+    EXPECT_THAT(text, HasSubstr("fragment"));
+}
+
+TEST_F(Explain, UnreadVaryingsAreNotComputed) {
+    std::string text;
+    run(program(R"(#version 450
+layout(location = 0) out vec4 unread;
+void main() {
+    unread = vec4(sin(float(gl_VertexIndex)));
+    gl_Position = vec4(vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 4.0 - 1.0, 0.5, 1.0);
+})",
+                kWhiteFragment),
+        {}, {}, &text);
+    EXPECT_THAT(text, HasSubstr("4")) << "four scalar outputs are left out:\n" << text;
+}
+
+TEST_F(Explain, ACombinationIsPlannedOnce) {
+    const VnProgram white = program(kFullScreenVertex, kWhiteFragment);
+    EXPECT_EQ(run(white).plans, 1u);
+    EXPECT_EQ(run(white).plans, 0u);
+}
+
+TEST_F(Explain, NeedsAPassAndAProgram) {
+    EXPECT_EQ(vnExplain(context_, nullptr, 0, nullptr), VN_ERROR_INVALID_STATE);
+    EXPECT_THAT(lastError(), HasSubstr("no pass is open"));
+}
+
+}  // namespace
+}  // namespace vernier::test

@@ -1,0 +1,13 @@
+# Takes the first C block of the README that has a main() and writes it to OUTPUT: what the README shows is what is compiled.
+file(READ "${README}" text)
+string(REGEX MATCH "```c\n([^`]*int main[^`]*)```" block "${text}")
+if(NOT block)
+    message(FATAL_ERROR "README.md has no C program")
+endif()
+set(program "${CMAKE_MATCH_1}")
+string(REGEX MATCHALL "\n" lines "${program}")
+list(LENGTH lines count)
+if(count GREATER_EQUAL 80)
+    message(FATAL_ERROR "the triangle in README.md has ${count} lines; it must stay under 80")
+endif()
+file(WRITE "${OUTPUT}" "${program}")

@@ -1,0 +1,1 @@
+#include "tests/raster/harness.h"

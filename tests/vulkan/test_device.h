@@ -1,0 +1,76 @@
+// What the driver's tests share: a device reached through the unmodified Vulkan loader, and the few lines that every test
+// would write again. Handles are destroyed with the device.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace vernier::test {
+
+/// Points the loader to the driver of this build. Call before the first Vulkan call.
+void useOwnDriver();
+
+/// GLSL to SPIR-V; the test fails when it does not compile.
+std::vector<uint32_t> compileGlsl(VkShaderStageFlagBits stage, const std::string& source);
+
+struct TestBuffer {
+    VkBuffer buffer = VK_NULL_HANDLE;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    void* data = nullptr;  // mapped
+    VkDeviceSize size = 0;
+};
+
+struct TestImage {
+    VkImage image = VK_NULL_HANDLE;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    VkImageView view = VK_NULL_HANDLE;
+    VkFormat format = VK_FORMAT_UNDEFINED;
+    VkExtent2D extent{};
+};
+
+/// A fixture with an instance, a device and a queue, all features on.
+class VulkanTest : public testing::Test {
+  protected:
+    void SetUp() override;
+    void TearDown() override;
+
+    TestBuffer makeBuffer(VkDeviceSize size, VkBufferUsageFlags usage);
+    TestImage makeImage(VkFormat format, VkExtent2D extent, VkImageUsageFlags usage,
+                        VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT);
+    VkShaderModule makeShader(VkShaderStageFlagBits stage, const std::string& glsl);
+    VkCommandBuffer begin();
+    /// Ends, submits and waits.
+    void submit(VkCommandBuffer commands);
+    /// The texels of level 0, tightly packed.
+    std::vector<uint8_t> readImage(const TestImage& image, VkImageAspectFlags aspect, uint32_t texelBytes);
+
+    /// Remembers how to destroy something; done in reverse order at the end.
+    void defer(std::function<void()> destroy) { deferred_.push_back(std::move(destroy)); }
+
+    VkInstance instance = VK_NULL_HANDLE;
+    VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
+    VkDevice device = VK_NULL_HANDLE;
+    VkQueue queue = VK_NULL_HANDLE;
+    VkCommandPool pool = VK_NULL_HANDLE;
+    std::vector<std::string> messages;  // what the driver said through VK_EXT_debug_utils
+
+  private:
+    std::vector<std::function<void()>> deferred_;
+    VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+};
+
+/// A structure with its sType set and everything else zero.
+template <class T>
+T make(VkStructureType type) {
+    T result{};
+    result.sType = type;
+    return result;
+}
+
+}  // namespace vernier::test
