@@ -1,5 +1,5 @@
-// Creating and destroying the objects behind handles, through the application's allocation callbacks where it gives some.
-// Nothing thrown leaves the driver: guarded() turns exceptions into result codes.
+// Creating and destroying the objects behind handles, through the application's allocation callbacks where it
+// gives some. Nothing thrown leaves the driver: guarded() turns exceptions into result codes.
 #pragma once
 
 #include <vulkan/vulkan_core.h>
@@ -18,8 +18,8 @@ void* allocateHost(const VkAllocationCallbacks* callbacks, size_t bytes, size_t 
                    VkSystemAllocationScope scope);
 void freeHost(const VkAllocationCallbacks* callbacks, void* memory, size_t alignment);
 
-/// Runs the body of an entry point. What it throws becomes a result: std::bad_alloc VK_ERROR_OUT_OF_HOST_MEMORY, anything
-/// else VK_ERROR_UNKNOWN.
+/// Runs the body of an entry point. What it throws becomes a result: std::bad_alloc
+/// VK_ERROR_OUT_OF_HOST_MEMORY, anything else VK_ERROR_UNKNOWN.
 template <class Body>
 VkResult guarded(Body&& body) noexcept {
     try {
@@ -31,7 +31,8 @@ VkResult guarded(Body&& body) noexcept {
     }
 }
 
-/// Constructs a T in memory from the callbacks; nullptr when there is none. Exceptions of the constructor pass through.
+/// Constructs a T in memory from the callbacks; nullptr when there is none. Exceptions of the constructor
+/// pass through.
 template <class T, class... Args>
 T* newObject(const VkAllocationCallbacks* callbacks, VkSystemAllocationScope scope, Args&&... args) {
     void* memory = allocateHost(callbacks, sizeof(T), alignof(T), scope);

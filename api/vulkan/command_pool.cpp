@@ -33,7 +33,8 @@ CommandPool::~CommandPool() {
 
 VkResult CommandPool::allocate(VkCommandBufferLevel level, VkCommandBuffer* out) {
     buffers_.reserve(buffers_.size() + 1);
-    auto* buffer = newObject<CommandBuffer>(callbacks(), VK_SYSTEM_ALLOCATION_SCOPE_OBJECT, device_, *this, level);
+    auto* buffer =
+        newObject<CommandBuffer>(callbacks(), VK_SYSTEM_ALLOCATION_SCOPE_OBJECT, device_, *this, level);
     if (buffer == nullptr) return VK_ERROR_OUT_OF_HOST_MEMORY;
     buffers_.push_back(buffer);
     *out = handleOf<VkCommandBuffer>(buffer);
@@ -63,7 +64,8 @@ VKAPI_ATTR void VKAPI_CALL DestroyCommandPool(VkDevice, VkCommandPool commandPoo
     destroyHandle(pAllocator, commandPool);
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL ResetCommandPool(VkDevice, VkCommandPool commandPool, VkCommandPoolResetFlags) {
+VKAPI_ATTR VkResult VKAPI_CALL ResetCommandPool(VkDevice, VkCommandPool commandPool,
+                                                VkCommandPoolResetFlags) {
     object(commandPool)->reset();
     return VK_SUCCESS;
 }
@@ -71,7 +73,8 @@ VKAPI_ATTR VkResult VKAPI_CALL ResetCommandPool(VkDevice, VkCommandPool commandP
 // Command buffers hold their own memory; a pool has none to give back.
 VKAPI_ATTR void VKAPI_CALL TrimCommandPool(VkDevice, VkCommandPool, VkCommandPoolTrimFlags) {}
 
-VKAPI_ATTR VkResult VKAPI_CALL AllocateCommandBuffers(VkDevice, const VkCommandBufferAllocateInfo* pAllocateInfo,
+VKAPI_ATTR VkResult VKAPI_CALL AllocateCommandBuffers(VkDevice,
+                                                      const VkCommandBufferAllocateInfo* pAllocateInfo,
                                                       VkCommandBuffer* pCommandBuffers) {
     CommandPool& pool = *object(pAllocateInfo->commandPool);
     const uint32_t count = pAllocateInfo->commandBufferCount;
@@ -93,7 +96,8 @@ VKAPI_ATTR VkResult VKAPI_CALL AllocateCommandBuffers(VkDevice, const VkCommandB
     return result;
 }
 
-VKAPI_ATTR void VKAPI_CALL FreeCommandBuffers(VkDevice, VkCommandPool commandPool, uint32_t commandBufferCount,
+VKAPI_ATTR void VKAPI_CALL FreeCommandBuffers(VkDevice, VkCommandPool commandPool,
+                                              uint32_t commandBufferCount,
                                               const VkCommandBuffer* pCommandBuffers) {
     for (uint32_t i = 0; i < commandBufferCount; ++i) {
         if (pCommandBuffers[i] != nullptr) object(commandPool)->free(object(pCommandBuffers[i]));
@@ -108,7 +112,8 @@ VKAPI_ATTR VkResult VKAPI_CALL BeginCommandBuffer(VkCommandBuffer commandBuffer,
     const VkCommandBufferInheritanceInfo* inherited = pBeginInfo->pInheritanceInfo;
     if (buffer.level == VK_COMMAND_BUFFER_LEVEL_SECONDARY && inherited != nullptr &&
         (pBeginInfo->flags & VK_COMMAND_BUFFER_USAGE_RENDER_PASS_CONTINUE_BIT) != 0 &&
-        inherited->renderPass != VK_NULL_HANDLE && inherited->subpass < object(inherited->renderPass)->subpasses.size()) {
+        inherited->renderPass != VK_NULL_HANDLE &&
+        inherited->subpass < object(inherited->renderPass)->subpasses.size()) {
         buffer.pass.pass = object(inherited->renderPass);
         buffer.pass.subpass = inherited->subpass;
         buffer.pass.formats = buffer.pass.pass->formats(inherited->subpass);

@@ -1,11 +1,12 @@
 // What the environment says about the driver:
 //
-//   VERNIER_PROFILE      draft, fast, standard (default), fine, reference: the accuracy of everything the device computes.
+//   VERNIER_PROFILE      draft, fast, standard (default), fine, reference: the accuracy of everything the
+//   device computes.
 //                        draft and fast are below what Vulkan asks for and are never chosen unasked.
-//   VERNIER_DEVICE_TYPE  cpu (default), integrated, discrete, virtual, other: some programs refuse a CPU device.
-//   VERNIER_THREADS      a number of threads; default: as many as there are usable CPUs.
-//   VERNIER_ISA          sse4, avx2, avx512: the best instruction set to use. The pictures are the same.
-//   VERNIER_LOG          set and not 0: messages go to stderr, too.
+//   VERNIER_DEVICE_TYPE  cpu (default), integrated, discrete, virtual, other: some programs refuse a CPU
+//   device. VERNIER_THREADS      a number of threads; default: as many as there are usable CPUs. VERNIER_ISA
+//   sse4, avx2, avx512: the best instruction set to use. The pictures are the same. VERNIER_LOG          set
+//   and not 0: messages go to stderr, too.
 #pragma once
 
 #include <vulkan/vulkan_core.h>

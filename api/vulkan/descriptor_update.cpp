@@ -10,8 +10,8 @@
 namespace vernier::vulkan {
 namespace {
 
-/// A slot of a set and the binding it belongs to. Slots of consecutive bindings are neighbours, so that updates run over
-/// from one binding into the next by counting on ("consecutive binding updates").
+/// A slot of a set and the binding it belongs to. Slots of consecutive bindings are neighbours, so that
+/// updates run over from one binding into the next by counting on ("consecutive binding updates").
 class SlotCursor {
   public:
     SlotCursor(const DescriptorSetLayout& layout, uint32_t binding, uint32_t element)
@@ -56,7 +56,8 @@ void writeOne(const Device& device, DescriptorSet& set, const SlotCursor& cursor
     Status status;
     switch (cursor.type()) {
         case VK_DESCRIPTOR_TYPE_SAMPLER:
-            status = set.writeImage(cursor.slot(), nullptr, immutable != nullptr ? immutable : object(image.sampler), isa);
+            status = set.writeImage(cursor.slot(), nullptr,
+                                    immutable != nullptr ? immutable : object(image.sampler), isa);
             break;
         case VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER:
             status = set.writeImage(cursor.slot(), textureOf(image.imageView),
@@ -73,18 +74,22 @@ void writeOne(const Device& device, DescriptorSet& set, const SlotCursor& cursor
         case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC:
             set.writeBuffer(cursor.slot(), object(buffer.buffer), buffer.offset, buffer.range);
             break;
-        default: break;  // layouts with other types cannot be made
+        default:
+            break;  // layouts with other types cannot be made
     }
     if (!status) (void)device.report("vkUpdateDescriptorSets", status.error());
 }
 
 /// The types must agree: a source of another type would be read as what it is not.
-bool matches(const SlotCursor& cursor, VkDescriptorType type) { return cursor.valid() && cursor.type() == type; }
+bool matches(const SlotCursor& cursor, VkDescriptorType type) {
+    return cursor.valid() && cursor.type() == type;
+}
 
 void write(const Device& device, const VkWriteDescriptorSet& info) {
     DescriptorSet& set = object(info.dstSet)->set;
     SlotCursor cursor(set.layout(), info.dstBinding, info.dstArrayElement);
-    for (uint32_t i = 0; i < info.descriptorCount && matches(cursor, info.descriptorType); ++i, cursor.next()) {
+    for (uint32_t i = 0; i < info.descriptorCount && matches(cursor, info.descriptorType);
+         ++i, cursor.next()) {
         const void* image = info.pImageInfo != nullptr ? info.pImageInfo + i : nullptr;
         const void* buffer = info.pBufferInfo != nullptr ? info.pBufferInfo + i : nullptr;
         const bool isBuffer = cursor.type() >= VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER &&
@@ -126,10 +131,9 @@ VKAPI_ATTR void VKAPI_CALL UpdateDescriptorSets(VkDevice device, uint32_t descri
     });
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL CreateDescriptorUpdateTemplate(VkDevice device,
-                                                              const VkDescriptorUpdateTemplateCreateInfo* pCreateInfo,
-                                                              const VkAllocationCallbacks* pAllocator,
-                                                              VkDescriptorUpdateTemplate* pDescriptorUpdateTemplate) {
+VKAPI_ATTR VkResult VKAPI_CALL CreateDescriptorUpdateTemplate(
+    VkDevice device, const VkDescriptorUpdateTemplateCreateInfo* pCreateInfo,
+    const VkAllocationCallbacks* pAllocator, VkDescriptorUpdateTemplate* pDescriptorUpdateTemplate) {
     return guarded([&] {
         if (pCreateInfo->templateType != VK_DESCRIPTOR_UPDATE_TEMPLATE_TYPE_DESCRIPTOR_SET) {
             return object(device)->report("vkCreateDescriptorUpdateTemplate", VK_ERROR_FEATURE_NOT_PRESENT,
@@ -141,14 +145,14 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateDescriptorUpdateTemplate(VkDevice device,
     });
 }
 
-VKAPI_ATTR void VKAPI_CALL DestroyDescriptorUpdateTemplate(VkDevice, VkDescriptorUpdateTemplate descriptorUpdateTemplate,
-                                                           const VkAllocationCallbacks* pAllocator) {
+VKAPI_ATTR void VKAPI_CALL DestroyDescriptorUpdateTemplate(
+    VkDevice, VkDescriptorUpdateTemplate descriptorUpdateTemplate, const VkAllocationCallbacks* pAllocator) {
     destroyHandle(pAllocator, descriptorUpdateTemplate);
 }
 
-VKAPI_ATTR void VKAPI_CALL UpdateDescriptorSetWithTemplate(VkDevice device, VkDescriptorSet descriptorSet,
-                                                           VkDescriptorUpdateTemplate descriptorUpdateTemplate,
-                                                           const void* pData) {
+VKAPI_ATTR void VKAPI_CALL
+UpdateDescriptorSetWithTemplate(VkDevice device, VkDescriptorSet descriptorSet,
+                                VkDescriptorUpdateTemplate descriptorUpdateTemplate, const void* pData) {
     (void)guarded([&] {
         DescriptorSet& set = object(descriptorSet)->set;
         for (const VkDescriptorUpdateTemplateEntry& entry : object(descriptorUpdateTemplate)->entries) {

@@ -1,6 +1,6 @@
-// From names to functions: vkGetInstanceProcAddr, vkGetDeviceProcAddr, and the three symbols the loader looks for
-// (Vulkan-Loader, docs/LoaderDriverInterface.md). A command that is not implemented, or whose version or extension is not
-// there, is NULL.
+// From names to functions: vkGetInstanceProcAddr, vkGetDeviceProcAddr, and the three symbols the loader looks
+// for (Vulkan-Loader, docs/LoaderDriverInterface.md). A command that is not implemented, or whose version or
+// extension is not there, is NULL.
 #include "api/vulkan/entry_points.h"
 
 #include <vulkan/vk_icd.h>
@@ -16,7 +16,8 @@
 #define VERNIER_EXPORT extern "C" __attribute__((visibility("default")))
 
 VERNIER_EXPORT PFN_vkVoidFunction VKAPI_CALL vk_icdGetInstanceProcAddr(VkInstance instance, const char* name);
-VERNIER_EXPORT PFN_vkVoidFunction VKAPI_CALL vk_icdGetPhysicalDeviceProcAddr(VkInstance instance, const char* name);
+VERNIER_EXPORT PFN_vkVoidFunction VKAPI_CALL vk_icdGetPhysicalDeviceProcAddr(VkInstance instance,
+                                                                             const char* name);
 VERNIER_EXPORT VkResult VKAPI_CALL vk_icdNegotiateLoaderICDInterfaceVersion(uint32_t* version);
 
 namespace vernier::vulkan {

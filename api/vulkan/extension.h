@@ -21,14 +21,17 @@ enum class Extension : uint32_t {
 using ExtensionSet = uint64_t;
 static_assert(static_cast<uint32_t>(Extension::count) <= 64);
 
-constexpr ExtensionSet bit(Extension extension) { return ExtensionSet{1} << static_cast<uint32_t>(extension); }
+constexpr ExtensionSet bit(Extension extension) {
+    return ExtensionSet{1} << static_cast<uint32_t>(extension);
+}
 
 enum class ExtensionScope : uint8_t { instance, device };
 
 /// Writes the extensions of a scope as vkEnumerate*ExtensionProperties does.
 VkResult enumerateExtensions(ExtensionScope scope, uint32_t* count, VkExtensionProperties* properties);
 
-/// Adds the named extensions to `set`. VK_ERROR_EXTENSION_NOT_PRESENT when one is not ours; `missing` then names it.
+/// Adds the named extensions to `set`. VK_ERROR_EXTENSION_NOT_PRESENT when one is not ours; `missing` then
+/// names it.
 VkResult selectExtensions(ExtensionScope scope, std::span<const char* const> names, ExtensionSet& set,
                           const char*& missing);
 

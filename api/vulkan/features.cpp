@@ -9,42 +9,44 @@ namespace vernier::vulkan {
 namespace {
 
 // X-macro over the members of VkPhysicalDeviceFeatures that are supported.
-#define VERNIER_FEATURES(X)                                                                                        \
-    X(robustBufferAccess)                                                                                          \
-    X(fullDrawIndexUint32)                                                                                         \
-    X(imageCubeArray)                                                                                              \
-    X(independentBlend)                                                                                            \
-    X(sampleRateShading)                                                                                           \
-    X(dualSrcBlend)                                                                                                \
-    X(logicOp)                                                                                                     \
-    X(multiDrawIndirect)                                                                                           \
-    X(drawIndirectFirstInstance)                                                                                   \
-    X(depthClamp)                                                                                                  \
-    X(depthBiasClamp)                                                                                              \
-    X(depthBounds)                                                                                                 \
-    X(fillModeNonSolid)                                                                                            \
-    X(alphaToOne)                                                                                                  \
-    X(occlusionQueryPrecise)                                                                                       \
-    X(pipelineStatisticsQuery)                                                                                     \
-    X(vertexPipelineStoresAndAtomics)                                                                              \
-    X(fragmentStoresAndAtomics)                                                                                    \
-    X(shaderImageGatherExtended)                                                                                   \
-    X(shaderStorageImageExtendedFormats)                                                                           \
-    X(shaderStorageImageReadWithoutFormat)                                                                         \
-    X(shaderStorageImageWriteWithoutFormat)                                                                        \
-    X(shaderUniformBufferArrayDynamicIndexing)                                                                     \
-    X(shaderSampledImageArrayDynamicIndexing)                                                                      \
-    X(shaderStorageBufferArrayDynamicIndexing)                                                                     \
-    X(shaderStorageImageArrayDynamicIndexing)                                                                      \
-    X(shaderClipDistance)                                                                                          \
-    X(shaderCullDistance)                                                                                          \
+#define VERNIER_FEATURES(X)                    \
+    X(robustBufferAccess)                      \
+    X(fullDrawIndexUint32)                     \
+    X(imageCubeArray)                          \
+    X(independentBlend)                        \
+    X(sampleRateShading)                       \
+    X(dualSrcBlend)                            \
+    X(logicOp)                                 \
+    X(multiDrawIndirect)                       \
+    X(drawIndirectFirstInstance)               \
+    X(depthClamp)                              \
+    X(depthBiasClamp)                          \
+    X(depthBounds)                             \
+    X(fillModeNonSolid)                        \
+    X(wideLines)                               \
+    X(largePoints)                             \
+    X(alphaToOne)                              \
+    X(occlusionQueryPrecise)                   \
+    X(pipelineStatisticsQuery)                 \
+    X(vertexPipelineStoresAndAtomics)          \
+    X(fragmentStoresAndAtomics)                \
+    X(shaderImageGatherExtended)               \
+    X(shaderStorageImageExtendedFormats)       \
+    X(shaderStorageImageReadWithoutFormat)     \
+    X(shaderStorageImageWriteWithoutFormat)    \
+    X(shaderUniformBufferArrayDynamicIndexing) \
+    X(shaderSampledImageArrayDynamicIndexing)  \
+    X(shaderStorageBufferArrayDynamicIndexing) \
+    X(shaderStorageImageArrayDynamicIndexing)  \
+    X(shaderClipDistance)                      \
+    X(shaderCullDistance)                      \
     X(inheritedQueries)
 
 // The members of the structures that extensions bring, and whether they are supported.
-#define VERNIER_EXTENSION_FEATURES(X)                                                       \
-    X(VkPhysicalDeviceTimelineSemaphoreFeatures, timelineSemaphore, true)                   \
-    X(VkPhysicalDeviceDepthClipEnableFeaturesEXT, depthClipEnable, true)                    \
-    X(VkPhysicalDeviceProvokingVertexFeaturesEXT, provokingVertexLast, true)                \
+#define VERNIER_EXTENSION_FEATURES(X)                                        \
+    X(VkPhysicalDeviceTimelineSemaphoreFeatures, timelineSemaphore, true)    \
+    X(VkPhysicalDeviceDepthClipEnableFeaturesEXT, depthClipEnable, true)     \
+    X(VkPhysicalDeviceProvokingVertexFeaturesEXT, provokingVertexLast, true) \
     X(VkPhysicalDeviceProvokingVertexFeaturesEXT, transformFeedbackPreservesProvokingVertex, false)
 
 // VkPhysicalDeviceFeatures is nothing but VkBool32 members.
@@ -85,8 +87,8 @@ VkResult checkFeatures(const VkDeviceCreateInfo& info, const char*& missing) {
             if (want[i] != VK_FALSE && have[i] == VK_FALSE) missing = kFeatureNames[i];
         }
     }
-#define VERNIER_CHECK_FEATURE(type, member, supported)                       \
-    if (const auto* structure = findInChain<type>(info.pNext)) {             \
+#define VERNIER_CHECK_FEATURE(type, member, supported)                        \
+    if (const auto* structure = findInChain<type>(info.pNext)) {              \
         if (structure->member != VK_FALSE && !(supported)) missing = #member; \
     }
     VERNIER_EXTENSION_FEATURES(VERNIER_CHECK_FEATURE)

@@ -1,5 +1,5 @@
-// Which C++ object stands behind each Vulkan handle. A handle is the object's address. The objects of dispatchable handles
-// start with a word that belongs to the loader.
+// Which C++ object stands behind each Vulkan handle. A handle is the object's address. The objects of
+// dispatchable handles start with a word that belongs to the loader.
 #pragma once
 
 #include <vulkan/vk_icd.h>

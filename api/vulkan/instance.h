@@ -10,7 +10,8 @@
 namespace vernier::vulkan {
 
 struct Instance : Dispatchable {
-    explicit Instance(const Configuration& settings) : configuration(settings), physicalDevice(*this, settings) {}
+    explicit Instance(const Configuration& settings)
+        : configuration(settings), physicalDevice(*this, settings) {}
 
     Configuration configuration;
     ExtensionSet extensions = 0;

@@ -1,9 +1,11 @@
-// The limits of the device, in the order of the specification's table "Required Limits", and the properties of extensions.
+// The limits of the device, in the order of the specification's table "Required Limits", and the properties
+// of extensions.
 #include <algorithm>
 
 #include "api/vulkan/chain.h"
 #include "api/vulkan/physical_device.h"
 #include "api/vulkan/resource_limits.h"
+#include "runtime/geometry/primitive_setup.h"
 #include "runtime/limits.h"
 #include "runtime/resource/memory.h"
 #include "runtime/texture/texture.h"
@@ -119,8 +121,13 @@ VkPhysicalDeviceLimits deviceLimits(const VkPhysicalDeviceFeatures& features, co
     limits.maxCullDistances = features.shaderCullDistance ? kMaxClipDistances : 0;
     limits.maxCombinedClipAndCullDistances = std::max(limits.maxClipDistances, limits.maxCullDistances);
     limits.discreteQueuePriorities = 2;
-    limits.pointSizeRange[0] = limits.pointSizeRange[1] = 1;
-    limits.lineWidthRange[0] = limits.lineWidthRange[1] = 1;
+    limits.pointSizeRange[0] = kMinPointSize;
+    limits.pointSizeRange[1] = kMaxPointSize;
+    limits.lineWidthRange[0] = 1;
+    limits.lineWidthRange[1] = kMaxLineWidth;
+    limits.pointSizeGranularity = limits.lineWidthGranularity =
+        1.0f / static_cast<float>(1u << accuracy.subPixelBits);
+    limits.strictLines = VK_TRUE;
     limits.standardSampleLocations = VK_TRUE;
     return limits;
 }

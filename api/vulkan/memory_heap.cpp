@@ -43,7 +43,7 @@ VkDeviceSize controlGroupLimit() {
 }  // namespace
 
 VkDeviceSize heapSize() {
-    struct sysinfo info{};
+    struct sysinfo info {};
     VkDeviceSize total = VkDeviceSize{1} << 30;
     if (sysinfo(&info) == 0) total = VkDeviceSize{info.totalram} * info.mem_unit;
     return std::min(total, controlGroupLimit()) / 4 * 3;

@@ -34,18 +34,31 @@ std::string nameOrNumber(Enum value) {
 
 }  // namespace
 
-std::string nameOf(VkResult value) { return nameOrNumber(value); }
-std::string nameOf(VkFormat value) { return nameOrNumber(value); }
-std::string nameOf(VkDescriptorType value) { return nameOrNumber(value); }
-std::string nameOf(VkObjectType value) { return nameOrNumber(value); }
+std::string nameOf(VkResult value) {
+    return nameOrNumber(value);
+}
+std::string nameOf(VkFormat value) {
+    return nameOrNumber(value);
+}
+std::string nameOf(VkDescriptorType value) {
+    return nameOrNumber(value);
+}
+std::string nameOf(VkObjectType value) {
+    return nameOrNumber(value);
+}
 
 VkResult resultOf(const Error& error) {
     switch (error.code) {
-        case ErrorCode::outOfHostMemory: return VK_ERROR_OUT_OF_HOST_MEMORY;
-        case ErrorCode::outOfDeviceMemory: return VK_ERROR_OUT_OF_DEVICE_MEMORY;
-        case ErrorCode::deviceLost: return VK_ERROR_DEVICE_LOST;
-        case ErrorCode::unsupported: return VK_ERROR_FEATURE_NOT_PRESENT;
-        case ErrorCode::invalidArgument: break;
+        case ErrorCode::outOfHostMemory:
+            return VK_ERROR_OUT_OF_HOST_MEMORY;
+        case ErrorCode::outOfDeviceMemory:
+            return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+        case ErrorCode::deviceLost:
+            return VK_ERROR_DEVICE_LOST;
+        case ErrorCode::unsupported:
+            return VK_ERROR_FEATURE_NOT_PRESENT;
+        case ErrorCode::invalidArgument:
+            break;
     }
     return VK_ERROR_UNKNOWN;
 }
@@ -94,10 +107,9 @@ void Messages::error(const char* command, MessageObject about, std::string_view 
     send(VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT, VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT, data);
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL CreateDebugUtilsMessengerEXT(VkInstance instance,
-                                                            const VkDebugUtilsMessengerCreateInfoEXT* pCreateInfo,
-                                                            const VkAllocationCallbacks* pAllocator,
-                                                            VkDebugUtilsMessengerEXT* pMessenger) {
+VKAPI_ATTR VkResult VKAPI_CALL
+CreateDebugUtilsMessengerEXT(VkInstance instance, const VkDebugUtilsMessengerCreateInfoEXT* pCreateInfo,
+                             const VkAllocationCallbacks* pAllocator, VkDebugUtilsMessengerEXT* pMessenger) {
     const VkResult result = createHandle(pAllocator, pMessenger, *pCreateInfo);
     if (result != VK_SUCCESS) return result;
     return guarded([&] {
@@ -106,23 +118,24 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateDebugUtilsMessengerEXT(VkInstance instance,
     });
 }
 
-VKAPI_ATTR void VKAPI_CALL DestroyDebugUtilsMessengerEXT(VkInstance instance, VkDebugUtilsMessengerEXT messenger,
+VKAPI_ATTR void VKAPI_CALL DestroyDebugUtilsMessengerEXT(VkInstance instance,
+                                                         VkDebugUtilsMessengerEXT messenger,
                                                          const VkAllocationCallbacks* pAllocator) {
     object(instance)->messages.remove(object(messenger));
     destroyHandle(pAllocator, messenger);
 }
 
-VKAPI_ATTR void VKAPI_CALL SubmitDebugUtilsMessageEXT(VkInstance instance,
-                                                      VkDebugUtilsMessageSeverityFlagBitsEXT messageSeverity,
-                                                      VkDebugUtilsMessageTypeFlagsEXT messageTypes,
-                                                      const VkDebugUtilsMessengerCallbackDataEXT* pCallbackData) {
+VKAPI_ATTR void VKAPI_CALL SubmitDebugUtilsMessageEXT(
+    VkInstance instance, VkDebugUtilsMessageSeverityFlagBitsEXT messageSeverity,
+    VkDebugUtilsMessageTypeFlagsEXT messageTypes, const VkDebugUtilsMessengerCallbackDataEXT* pCallbackData) {
     (void)guarded([&] {
         object(instance)->messages.send(messageSeverity, messageTypes, *pCallbackData);
         return VK_SUCCESS;
     });
 }
 
-// Names, tags and labels are for tools that show them; the driver keeps none (VK_EXT_debug_utils leaves that to it).
+// Names, tags and labels are for tools that show them; the driver keeps none (VK_EXT_debug_utils leaves that
+// to it).
 
 VKAPI_ATTR VkResult VKAPI_CALL SetDebugUtilsObjectNameEXT(VkDevice, const VkDebugUtilsObjectNameInfoEXT*) {
     return VK_SUCCESS;

@@ -1,4 +1,5 @@
-// Telling the application what went wrong in words: through VK_EXT_debug_utils messengers, and to stderr with VERNIER_LOG.
+// Telling the application what went wrong in words: through VK_EXT_debug_utils messengers, and to stderr with
+// VERNIER_LOG.
 #pragma once
 
 #include <vulkan/vulkan_core.h>

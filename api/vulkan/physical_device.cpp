@@ -15,8 +15,8 @@
 namespace vernier::vulkan {
 namespace {
 
-/// Pipeline caches may travel between processes when this is the same: it names the version of the driver and everything
-/// that could change what it computes.
+/// Pipeline caches may travel between processes when this is the same: it names the version of the driver and
+/// everything that could change what it computes.
 void fillCacheUuid(const PhysicalDevice& device, uint8_t (&uuid)[VK_UUID_SIZE]) {
     const char name[VK_UUID_SIZE + 1] = "Vernier";
     std::memcpy(uuid, name, VK_UUID_SIZE);
@@ -38,7 +38,8 @@ VkPhysicalDeviceMemoryProperties oneHeap(VkDeviceSize size) {
 }
 
 /// One queue, in order. No compute bit: there are no compute pipelines.
-constexpr VkQueueFamilyProperties kQueueFamily{VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_TRANSFER_BIT, 1, 64, {1, 1, 1}};
+constexpr VkQueueFamilyProperties kQueueFamily{
+    VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_TRANSFER_BIT, 1, 64, {1, 1, 1}};
 
 }  // namespace
 
@@ -51,8 +52,8 @@ PhysicalDevice::PhysicalDevice(Instance& owner, const Configuration& settings)
       properties{},
       memory(oneHeap(heapSize())) {
     properties.apiVersion = kApiVersion;
-    properties.driverVersion = VK_MAKE_API_VERSION(0, VERNIER_VERSION_MAJOR, VERNIER_VERSION_MINOR,
-                                                   VERNIER_VERSION_PATCH);
+    properties.driverVersion =
+        VK_MAKE_API_VERSION(0, VERNIER_VERSION_MAJOR, VERNIER_VERSION_MINOR, VERNIER_VERSION_PATCH);
     properties.vendorID = kVendorId;
     properties.deviceID = 1;
     properties.deviceType = settings.deviceType;
@@ -84,8 +85,8 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceProperties2(VkPhysicalDevice physica
     fillPropertyChain(pProperties->pNext);
 }
 
-VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceQueueFamilyProperties(VkPhysicalDevice, uint32_t* pQueueFamilyPropertyCount,
-                                                                  VkQueueFamilyProperties* pQueueFamilyProperties) {
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceQueueFamilyProperties(
+    VkPhysicalDevice, uint32_t* pQueueFamilyPropertyCount, VkQueueFamilyProperties* pQueueFamilyProperties) {
     OutputArray<VkQueueFamilyProperties> output(pQueueFamilyPropertyCount, pQueueFamilyProperties);
     output.add(kQueueFamily);
     (void)output.result();
@@ -98,13 +99,13 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceQueueFamilyProperties2(
     (void)output.result();
 }
 
-VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceMemoryProperties(VkPhysicalDevice physicalDevice,
-                                                             VkPhysicalDeviceMemoryProperties* pMemoryProperties) {
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceMemoryProperties(
+    VkPhysicalDevice physicalDevice, VkPhysicalDeviceMemoryProperties* pMemoryProperties) {
     *pMemoryProperties = object(physicalDevice)->memory;
 }
 
-VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceMemoryProperties2(VkPhysicalDevice physicalDevice,
-                                                              VkPhysicalDeviceMemoryProperties2* pMemoryProperties) {
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceMemoryProperties2(
+    VkPhysicalDevice physicalDevice, VkPhysicalDeviceMemoryProperties2* pMemoryProperties) {
     pMemoryProperties->memoryProperties = object(physicalDevice)->memory;
 }
 

@@ -1,4 +1,5 @@
-// What the device is and can do, as the vkGetPhysicalDevice* queries tell it. Features and limits are computed once.
+// What the device is and can do, as the vkGetPhysicalDevice* queries tell it. Features and limits are
+// computed once.
 #pragma once
 
 #include <vulkan/vulkan_core.h>
@@ -28,7 +29,8 @@ struct PhysicalDevice : Dispatchable {
 VkPhysicalDeviceFeatures supportedFeatures();
 /// Fills every feature structure of the chain that the driver knows (features.cpp).
 void fillFeatureChain(void* chain);
-/// VK_ERROR_FEATURE_NOT_PRESENT when something is wanted that is not there; `missing` names it (features.cpp).
+/// VK_ERROR_FEATURE_NOT_PRESENT when something is wanted that is not there; `missing` names it
+/// (features.cpp).
 VkResult checkFeatures(const VkDeviceCreateInfo& info, const char*& missing);
 
 /// The limits of the specification's table "Required Limits" (limits.cpp).

@@ -41,27 +41,39 @@ Status checkResources(const ir::Program* program) {
     for (const ir::Resource& resource : program->resources) {
         const char* what = nullptr;
         switch (resource.kind) {
-            case ir::ResourceKind::inputAttachment: what = "an input attachment"; break;
+            case ir::ResourceKind::inputAttachment:
+                what = "an input attachment";
+                break;
             case ir::ResourceKind::uniformTexelBuffer:
-            case ir::ResourceKind::storageTexelBuffer: what = "a texel buffer"; break;
-            default: continue;
+            case ir::ResourceKind::storageTexelBuffer:
+                what = "a texel buffer";
+                break;
+            default:
+                continue;
         }
-        return unsupported("set " + std::to_string(resource.set) + ", binding " + std::to_string(resource.binding) +
-                           ": the shader reads " + what + ", which is not supported");
+        return unsupported("set " + std::to_string(resource.set) + ", binding " +
+                           std::to_string(resource.binding) + ": the shader reads " + what +
+                           ", which is not supported");
     }
     return {};
 }
 
-Result<std::shared_ptr<const ShaderProgram>> loadProgram(const Device& device, const VkGraphicsPipelineCreateInfo& info,
+Result<std::shared_ptr<const ShaderProgram>> loadProgram(const Device& device,
+                                                         const VkGraphicsPipelineCreateInfo& info,
                                                          bool rasterizerDiscard) {
     const VkPipelineShaderStageCreateInfo* vertexStage = nullptr;
     const VkPipelineShaderStageCreateInfo* fragmentStage = nullptr;
     for (uint32_t i = 0; i < info.stageCount; ++i) {
         const VkPipelineShaderStageCreateInfo& stage = info.pStages[i];
         switch (stage.stage) {
-            case VK_SHADER_STAGE_VERTEX_BIT: vertexStage = &stage; break;
-            case VK_SHADER_STAGE_FRAGMENT_BIT: fragmentStage = &stage; break;
-            default: return unsupported("shader stage " + std::to_string(stage.stage) + " is not supported");
+            case VK_SHADER_STAGE_VERTEX_BIT:
+                vertexStage = &stage;
+                break;
+            case VK_SHADER_STAGE_FRAGMENT_BIT:
+                fragmentStage = &stage;
+                break;
+            default:
+                return unsupported("shader stage " + std::to_string(stage.stage) + " is not supported");
         }
     }
     if (vertexStage == nullptr) return invalidArgument("there is no vertex stage");
@@ -100,11 +112,13 @@ VkResult createOne(const Device& device, const VkGraphicsPipelineCreateInfo& inf
 
 }  // namespace
 
-VKAPI_ATTR VkResult VKAPI_CALL CreateShaderModule(VkDevice device, const VkShaderModuleCreateInfo* pCreateInfo,
+VKAPI_ATTR VkResult VKAPI_CALL CreateShaderModule(VkDevice device,
+                                                  const VkShaderModuleCreateInfo* pCreateInfo,
                                                   const VkAllocationCallbacks* pAllocator,
                                                   VkShaderModule* pShaderModule) {
     return guarded([&] {
-        std::vector<uint32_t> words(pCreateInfo->pCode, pCreateInfo->pCode + pCreateInfo->codeSize / sizeof(uint32_t));
+        std::vector<uint32_t> words(pCreateInfo->pCode,
+                                    pCreateInfo->pCode + pCreateInfo->codeSize / sizeof(uint32_t));
         if (const Status status = checkModule(words); !status) {
             return object(device)->report("vkCreateShaderModule", status.error());
         }
@@ -128,7 +142,8 @@ VKAPI_ATTR void VKAPI_CALL DestroyPipelineCache(VkDevice, VkPipelineCache pipeli
     destroyHandle(pAllocator, pipelineCache);
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL GetPipelineCacheData(VkDevice device, VkPipelineCache, size_t* pDataSize, void* pData) {
+VKAPI_ATTR VkResult VKAPI_CALL GetPipelineCacheData(VkDevice device, VkPipelineCache, size_t* pDataSize,
+                                                    void* pData) {
     const VkPhysicalDeviceProperties& properties = object(device)->physicalDevice.properties;
     VkPipelineCacheHeaderVersionOne header{};
     header.headerSize = sizeof header;
@@ -149,11 +164,13 @@ VKAPI_ATTR VkResult VKAPI_CALL GetPipelineCacheData(VkDevice device, VkPipelineC
     return VK_SUCCESS;
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL MergePipelineCaches(VkDevice, VkPipelineCache, uint32_t, const VkPipelineCache*) {
+VKAPI_ATTR VkResult VKAPI_CALL MergePipelineCaches(VkDevice, VkPipelineCache, uint32_t,
+                                                   const VkPipelineCache*) {
     return VK_SUCCESS;
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL CreateGraphicsPipelines(VkDevice device, VkPipelineCache, uint32_t createInfoCount,
+VKAPI_ATTR VkResult VKAPI_CALL CreateGraphicsPipelines(VkDevice device, VkPipelineCache,
+                                                       uint32_t createInfoCount,
                                                        const VkGraphicsPipelineCreateInfo* pCreateInfos,
                                                        const VkAllocationCallbacks* pAllocator,
                                                        VkPipeline* pPipelines) {
@@ -167,7 +184,8 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateGraphicsPipelines(VkDevice device, VkPipeli
     return result;
 }
 
-VKAPI_ATTR void VKAPI_CALL DestroyPipeline(VkDevice, VkPipeline pipeline, const VkAllocationCallbacks* pAllocator) {
+VKAPI_ATTR void VKAPI_CALL DestroyPipeline(VkDevice, VkPipeline pipeline,
+                                           const VkAllocationCallbacks* pAllocator) {
     destroyHandle(pAllocator, pipeline);
 }
 

@@ -1,5 +1,5 @@
-// From VkGraphicsPipelineCreateInfo to the runtime's state. Parts that the specification says are ignored (without
-// rasterisation, without attachments) are not looked at: their pointers may be anything.
+// From VkGraphicsPipelineCreateInfo to the runtime's state. Parts that the specification says are ignored
+// (without rasterisation, without attachments) are not looked at: their pointers may be anything.
 #include <algorithm>
 #include <string>
 
@@ -17,7 +17,9 @@ Error aboveLimit(const char* field, uint32_t value, uint32_t limit) {
                            std::to_string(limit));
 }
 
-bool isDynamic(const PipelineState& result, VkDynamicState state) { return (result.dynamicMask >> state & 1u) != 0; }
+bool isDynamic(const PipelineState& result, VkDynamicState state) {
+    return (result.dynamicMask >> state & 1u) != 0;
+}
 
 Status readDynamicStates(const VkPipelineDynamicStateCreateInfo* info, PipelineState& result) {
     for (uint32_t i = 0; info != nullptr && i < info->dynamicStateCount; ++i) {
@@ -38,7 +40,8 @@ Status readVertexInput(const VkGraphicsPipelineCreateInfo& info, GraphicsState& 
     }
     for (uint32_t i = 0; i < input->vertexBindingDescriptionCount; ++i) {
         const VkVertexInputBindingDescription& binding = input->pVertexBindingDescriptions[i];
-        if (binding.binding >= kMaxVertexBindings) return aboveLimit("vertex binding", binding.binding, kMaxVertexBindings - 1);
+        if (binding.binding >= kMaxVertexBindings)
+            return aboveLimit("vertex binding", binding.binding, kMaxVertexBindings - 1);
         if (binding.stride > kMaxVertexBindingStride) {
             return aboveLimit("vertex binding stride", binding.stride, kMaxVertexBindingStride);
         }
@@ -59,7 +62,7 @@ Status readVertexInput(const VkGraphicsPipelineCreateInfo& info, GraphicsState& 
     return {};
 }
 
-Status readRasterization(const VkPipelineRasterizationStateCreateInfo& info, PipelineState& result) {
+void readRasterization(const VkPipelineRasterizationStateCreateInfo& info, PipelineState& result) {
     GraphicsState& state = result.state;
     state.depthClampEnable = info.depthClampEnable != VK_FALSE;
     state.depthClipEnable = !state.depthClampEnable;
@@ -71,23 +74,22 @@ Status readRasterization(const VkPipelineRasterizationStateCreateInfo& info, Pip
     state.cullMode = info.cullMode;
     state.frontFace = info.frontFace;
     state.depthBiasEnable = info.depthBiasEnable != VK_FALSE;
-    if (const auto* vertex = findInChain<VkPipelineRasterizationProvokingVertexStateCreateInfoEXT>(info.pNext)) {
+    if (const auto* vertex =
+            findInChain<VkPipelineRasterizationProvokingVertexStateCreateInfoEXT>(info.pNext)) {
         state.provokingVertexLast = vertex->provokingVertexMode == VK_PROVOKING_VERTEX_MODE_LAST_VERTEX_EXT;
     }
     result.fixed.lineWidth = info.lineWidth;
     result.fixed.depthBiasConstant = info.depthBiasConstantFactor;
     result.fixed.depthBiasClamp = info.depthBiasClamp;
     result.fixed.depthBiasSlope = info.depthBiasSlopeFactor;
-    if (!isDynamic(result, VK_DYNAMIC_STATE_LINE_WIDTH) && info.lineWidth != 1.0f) {
-        return unsupported("lineWidth is " + std::to_string(info.lineWidth) + "; wideLines is not supported");
-    }
-    return {};
 }
 
 Status readViewports(const VkPipelineViewportStateCreateInfo* info, PipelineState& result) {
     if (info == nullptr) return invalidArgument("pViewportState must be given");
-    if (info->viewportCount > kMaxViewports) return aboveLimit("viewportCount", info->viewportCount, kMaxViewports);
-    if (info->scissorCount > kMaxViewports) return aboveLimit("scissorCount", info->scissorCount, kMaxViewports);
+    if (info->viewportCount > kMaxViewports)
+        return aboveLimit("viewportCount", info->viewportCount, kMaxViewports);
+    if (info->scissorCount > kMaxViewports)
+        return aboveLimit("scissorCount", info->scissorCount, kMaxViewports);
     result.fixed.viewportCount = std::max(1u, info->viewportCount);
     if (!isDynamic(result, VK_DYNAMIC_STATE_VIEWPORT) && info->pViewports != nullptr) {
         std::copy_n(info->pViewports, info->viewportCount, result.fixed.viewports.begin());
@@ -102,7 +104,8 @@ Status readMultisample(const VkPipelineMultisampleStateCreateInfo* info, Graphic
     if (info == nullptr) return invalidArgument("pMultisampleState must be given");
     state.samples = static_cast<uint32_t>(info->rasterizationSamples);
     if (state.samples != 1 && state.samples != kMaxSamples) {
-        return unsupported("rasterizationSamples is " + std::to_string(state.samples) + "; supported are 1 and 4");
+        return unsupported("rasterizationSamples is " + std::to_string(state.samples) +
+                           "; supported are 1 and 4");
     }
     state.sampleMask = info->pSampleMask != nullptr ? info->pSampleMask[0] : ~0u;
     state.sampleShading = info->sampleShadingEnable != VK_FALSE;
@@ -117,7 +120,8 @@ DynamicState::StencilFace stencilFace(const VkStencilOpState& from) {
 }
 
 Status readDepthStencil(const VkPipelineDepthStencilStateCreateInfo* info, PipelineState& result) {
-    if (info == nullptr) return invalidArgument("pDepthStencilState must be given: the subpass has such an attachment");
+    if (info == nullptr)
+        return invalidArgument("pDepthStencilState must be given: the subpass has such an attachment");
     GraphicsState& state = result.state;
     state.depthTest = info->depthTestEnable != VK_FALSE;
     state.depthWrite = info->depthWriteEnable != VK_FALSE;
@@ -133,16 +137,20 @@ Status readDepthStencil(const VkPipelineDepthStencilStateCreateInfo* info, Pipel
     return {};
 }
 
-Status readBlend(const VkPipelineColorBlendStateCreateInfo* info, const SubpassFormats& formats, PipelineState& result) {
-    if (info == nullptr) return invalidArgument("pColorBlendState must be given: the subpass has colour attachments");
+Status readBlend(const VkPipelineColorBlendStateCreateInfo* info, const SubpassFormats& formats,
+                 PipelineState& result) {
+    if (info == nullptr)
+        return invalidArgument("pColorBlendState must be given: the subpass has colour attachments");
     if (info->attachmentCount != formats.colorCount) {
-        return invalidArgument("pColorBlendState->attachmentCount is " + std::to_string(info->attachmentCount) +
-                               "; the subpass has " + std::to_string(formats.colorCount));
+        return invalidArgument("pColorBlendState->attachmentCount is " +
+                               std::to_string(info->attachmentCount) + "; the subpass has " +
+                               std::to_string(formats.colorCount));
     }
     result.state.logicOpEnable = info->logicOpEnable != VK_FALSE;
     result.state.logicOp = info->logicOp;
     std::copy_n(info->pAttachments, info->attachmentCount, result.state.blend.begin());
-    std::copy_n(info->blendConstants, result.fixed.blendConstants.size(), result.fixed.blendConstants.begin());
+    std::copy_n(info->blendConstants, result.fixed.blendConstants.size(),
+                result.fixed.blendConstants.begin());
     return {};
 }
 
@@ -164,7 +172,7 @@ Result<PipelineState> pipelineState(const VkGraphicsPipelineCreateInfo& info) {
     setFormats(formats, result.state);
     if (Status s = readDynamicStates(info.pDynamicState, result); !s) return s.error();
     if (Status s = readVertexInput(info, result.state); !s) return s.error();
-    if (Status s = readRasterization(*info.pRasterizationState, result); !s) return s.error();
+    readRasterization(*info.pRasterizationState, result);
     if (result.state.rasterizerDiscard) {
         if (formats.samples != 0) result.state.samples = formats.samples;
         return result;

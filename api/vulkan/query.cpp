@@ -10,19 +10,21 @@
 namespace vernier::vulkan {
 namespace {
 
-/// How long a wait for results goes on when nothing is submitted that could bring them; after that the device is called
-/// lost ("vkGetQueryPoolResults ... in finite time").
+/// How long a wait for results goes on when nothing is submitted that could bring them; after that the device
+/// is called lost ("vkGetQueryPoolResults ... in finite time").
 constexpr std::chrono::seconds kPatience{10};
 
 }  // namespace
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateQueryPool(VkDevice device, const VkQueryPoolCreateInfo* pCreateInfo,
-                                               const VkAllocationCallbacks* pAllocator, VkQueryPool* pQueryPool) {
+                                               const VkAllocationCallbacks* pAllocator,
+                                               VkQueryPool* pQueryPool) {
     return guarded([&] {
         switch (pCreateInfo->queryType) {
             case VK_QUERY_TYPE_OCCLUSION:
             case VK_QUERY_TYPE_PIPELINE_STATISTICS:
-            case VK_QUERY_TYPE_TIMESTAMP: break;
+            case VK_QUERY_TYPE_TIMESTAMP:
+                break;
             default:
                 return object(device)->report("vkCreateQueryPool", VK_ERROR_FEATURE_NOT_PRESENT,
                                               "queryType is not supported");
@@ -33,18 +35,21 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateQueryPool(VkDevice device, const VkQueryPoo
     });
 }
 
-VKAPI_ATTR void VKAPI_CALL DestroyQueryPool(VkDevice, VkQueryPool queryPool, const VkAllocationCallbacks* pAllocator) {
+VKAPI_ATTR void VKAPI_CALL DestroyQueryPool(VkDevice, VkQueryPool queryPool,
+                                            const VkAllocationCallbacks* pAllocator) {
     destroyHandle(pAllocator, queryPool);
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL GetQueryPoolResults(VkDevice device, VkQueryPool queryPool, uint32_t firstQuery,
-                                                   uint32_t queryCount, size_t dataSize, void* pData,
-                                                   VkDeviceSize stride, VkQueryResultFlags flags) {
+VKAPI_ATTR VkResult VKAPI_CALL GetQueryPoolResults(VkDevice device, VkQueryPool queryPool,
+                                                   uint32_t firstQuery, uint32_t queryCount, size_t dataSize,
+                                                   void* pData, VkDeviceSize stride,
+                                                   VkQueryResultFlags flags) {
     return guarded([&] {
         const Device& owner = *object(device);
         const QueryPool& pool = *object(queryPool);
         if (firstQuery > pool.count() || queryCount > pool.count() - firstQuery) {
-            return owner.report("vkGetQueryPoolResults", VK_ERROR_UNKNOWN, "the queries are outside the pool");
+            return owner.report("vkGetQueryPoolResults", VK_ERROR_UNKNOWN,
+                                "the queries are outside the pool");
         }
         auto* data = static_cast<std::byte*>(pData);
         const auto read = [&] { return pool.results(firstQuery, queryCount, data, dataSize, stride, flags); };

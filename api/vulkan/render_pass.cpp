@@ -17,11 +17,13 @@ std::vector<uint32_t> indices(uint32_t count, const VkAttachmentReference* refer
     return result;
 }
 
-Status checkReferences(const char* what, uint32_t subpass, const std::vector<uint32_t>& references, size_t count) {
+Status checkReferences(const char* what, uint32_t subpass, const std::vector<uint32_t>& references,
+                       size_t count) {
     for (const uint32_t index : references) {
         if (index == VK_ATTACHMENT_UNUSED || index < count) continue;
-        return invalidArgument("subpass " + std::to_string(subpass) + ": " + what + " " + std::to_string(index) +
-                               " does not exist; there are " + std::to_string(count) + " attachments");
+        return invalidArgument("subpass " + std::to_string(subpass) + ": " + what + " " +
+                               std::to_string(index) + " does not exist; there are " + std::to_string(count) +
+                               " attachments");
     }
     return {};
 }
@@ -39,7 +41,8 @@ void markUses(RenderPassObject& pass) {
     }
 }
 
-/// A clear happens when a rendering begins, so that an attachment to be cleared cannot be read before it is drawn to.
+/// A clear happens when a rendering begins, so that an attachment to be cleared cannot be read before it is
+/// drawn to.
 Status checkInputs(const RenderPassObject& pass) {
     for (uint32_t i = 0; i < pass.subpasses.size(); ++i) {
         for (const uint32_t index : pass.subpasses[i].inputs) {
@@ -47,7 +50,8 @@ Status checkInputs(const RenderPassObject& pass) {
             const VkAttachmentDescription& description = pass.attachments[index].description;
             if (description.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR ||
                 description.stencilLoadOp == VK_ATTACHMENT_LOAD_OP_CLEAR) {
-                return unsupported("subpass " + std::to_string(i) + " reads attachment " + std::to_string(index) +
+                return unsupported("subpass " + std::to_string(i) + " reads attachment " +
+                                   std::to_string(index) +
                                    ", which is to be cleared, before any subpass draws to it");
             }
         }
@@ -65,18 +69,21 @@ Result<RenderPassObject> makeRenderPass(const VkRenderPassCreateInfo& info) {
         }
         if (from.colorAttachmentCount > kMaxColorAttachments) {
             return invalidArgument("subpass " + std::to_string(i) + ": colorAttachmentCount " +
-                                   std::to_string(from.colorAttachmentCount) + " is above maxColorAttachments");
+                                   std::to_string(from.colorAttachmentCount) +
+                                   " is above maxColorAttachments");
         }
         Subpass& to = pass.subpasses.emplace_back();
         to.colors = indices(from.colorAttachmentCount, from.pColorAttachments);
         to.resolves = indices(from.colorAttachmentCount, from.pResolveAttachments);
         to.inputs = indices(from.inputAttachmentCount, from.pInputAttachments);
-        if (from.pDepthStencilAttachment != nullptr) to.depthStencil = from.pDepthStencilAttachment->attachment;
+        if (from.pDepthStencilAttachment != nullptr)
+            to.depthStencil = from.pDepthStencilAttachment->attachment;
         const size_t count = pass.attachments.size();
         if (Status s = checkReferences("colour attachment", i, to.colors, count); !s) return s.error();
         if (Status s = checkReferences("resolve attachment", i, to.resolves, count); !s) return s.error();
         if (Status s = checkReferences("input attachment", i, to.inputs, count); !s) return s.error();
-        if (Status s = checkReferences("depth-stencil attachment", i, {to.depthStencil}, count); !s) return s.error();
+        if (Status s = checkReferences("depth-stencil attachment", i, {to.depthStencil}, count); !s)
+            return s.error();
     }
     markUses(pass);
     if (Status s = checkInputs(pass); !s) return s.error();
@@ -101,8 +108,8 @@ Status checkFramebuffer(const RenderPassObject& pass, const VkFramebufferCreateI
         }
         const VkAttachmentDescription& description = pass.attachments[i].description;
         if (view->info().format != description.format) {
-            return invalidArgument(name + " has the format " + nameOf(view->info().format) + "; the render pass says " +
-                                   nameOf(description.format));
+            return invalidArgument(name + " has the format " + nameOf(view->info().format) +
+                                   "; the render pass says " + nameOf(description.format));
         }
         if (view->image().info().samples != static_cast<uint32_t>(description.samples)) {
             return invalidArgument(name + " has another sample count than the render pass says");
@@ -127,8 +134,9 @@ SubpassFormats RenderPassObject::formats(uint32_t subpass) const {
     return result;
 }
 
-command::BeginRendering renderingOf(const RenderPassObject& pass, const Framebuffer& framebuffer, uint32_t subpass,
-                                    const VkRect2D& area, const std::vector<VkClearValue>& clears) {
+command::BeginRendering renderingOf(const RenderPassObject& pass, const Framebuffer& framebuffer,
+                                    uint32_t subpass, const VkRect2D& area,
+                                    const std::vector<VkClearValue>& clears) {
     const Subpass& from = pass.subpasses[subpass];
     const auto attach = [&](uint32_t index) {
         RenderingAttachment result;
@@ -140,7 +148,8 @@ command::BeginRendering renderingOf(const RenderPassObject& pass, const Framebuf
             result.loadOp = attachment.description.loadOp;
             result.stencilLoadOp = attachment.description.stencilLoadOp;
         }
-        // A later subpass may read what was stored as an input attachment, so only the attachment's end may drop it.
+        // A later subpass may read what was stored as an input attachment, so only the attachment's end may
+        // drop it.
         if (attachment.lastUse == subpass && subpass + 1 == pass.subpasses.size()) {
             result.storeOp = attachment.description.storeOp;
             result.stencilStoreOp = attachment.description.stencilStoreOp;
@@ -151,7 +160,8 @@ command::BeginRendering renderingOf(const RenderPassObject& pass, const Framebuf
     rendering.colorCount = static_cast<uint32_t>(from.colors.size());
     for (uint32_t i = 0; i < rendering.colorCount; ++i) {
         rendering.colors[i] = attach(from.colors[i]);
-        if (i < from.resolves.size() && from.resolves[i] != VK_ATTACHMENT_UNUSED && rendering.colors[i].view != nullptr) {
+        if (i < from.resolves.size() && from.resolves[i] != VK_ATTACHMENT_UNUSED &&
+            rendering.colors[i].view != nullptr) {
             rendering.colors[i].resolve = framebuffer.views[from.resolves[i]];
         }
     }
@@ -163,7 +173,8 @@ command::BeginRendering renderingOf(const RenderPassObject& pass, const Framebuf
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateRenderPass(VkDevice device, const VkRenderPassCreateInfo* pCreateInfo,
-                                                const VkAllocationCallbacks* pAllocator, VkRenderPass* pRenderPass) {
+                                                const VkAllocationCallbacks* pAllocator,
+                                                VkRenderPass* pRenderPass) {
     return guarded([&] {
         Result<RenderPassObject> pass = makeRenderPass(*pCreateInfo);
         if (!pass) return object(device)->report("vkCreateRenderPass", pass.error());

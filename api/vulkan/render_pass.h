@@ -1,5 +1,5 @@
-// Render passes and framebuffers. A subpass becomes one rendering of the runtime: an attachment is loaded as its
-// description says in the first subpass that uses it and kept from then on.
+// Render passes and framebuffers. A subpass becomes one rendering of the runtime: an attachment is loaded as
+// its description says in the first subpass that uses it and kept from then on.
 #pragma once
 
 #include <vector>
@@ -46,7 +46,8 @@ struct Framebuffer {
 };
 
 /// The rendering that a subpass is. `clears` has an entry for each attachment, zeros where none was given.
-command::BeginRendering renderingOf(const RenderPassObject& pass, const Framebuffer& framebuffer, uint32_t subpass,
-                                    const VkRect2D& area, const std::vector<VkClearValue>& clears);
+command::BeginRendering renderingOf(const RenderPassObject& pass, const Framebuffer& framebuffer,
+                                    uint32_t subpass, const VkRect2D& area,
+                                    const std::vector<VkClearValue>& clears);
 
 }  // namespace vernier::vulkan

@@ -1,5 +1,5 @@
-// Nanoseconds per sample: filters, formats and instruction sets, on a 256x256 texture that stays in cache, walked the way
-// a fragment batch does (128 lanes of 2x2 quads, about one texel per pixel).
+// Nanoseconds per sample: filters, formats and instruction sets, on a 256x256 texture that stays in cache,
+// walked the way a fragment batch does (128 lanes of 2x2 quads, about one texel per pixel).
 #include <benchmark/benchmark.h>
 
 #include <random>
@@ -39,13 +39,14 @@ enum class Filter { nearest, bilinear, trilinear };
 SamplerState samplerFor(Filter filter, VkSamplerAddressMode mode) {
     SamplerState sampler;
     sampler.magFilter = sampler.minFilter = filter == Filter::nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
-    sampler.mipmapMode = filter == Filter::trilinear ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
+    sampler.mipmapMode =
+        filter == Filter::trilinear ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
     for (VkSamplerAddressMode& m : sampler.addressMode) m = mode;
     return sampler;
 }
 
-void sample(benchmark::State& state, VkFormat format, VkImageAspectFlags aspect, Filter filter, VkSamplerAddressMode mode,
-            bool compare, Isa isa) {
+void sample(benchmark::State& state, VkFormat format, VkImageAspectFlags aspect, Filter filter,
+            VkSamplerAddressMode mode, bool compare, Isa isa) {
     Texture texture(format, aspect, isa);
     if (filter != Filter::trilinear) texture.view.levelCount = 1;
     SamplerState sampler = samplerFor(filter, mode);
@@ -55,7 +56,8 @@ void sample(benchmark::State& state, VkFormat format, VkImageAspectFlags aspect,
         state.SkipWithError("refused");
         return;
     }
-    const float step = filter == Filter::trilinear ? 1.4f / kSize : 0.7f / kSize;  // lambda about 0.5 when there are levels
+    const float step =
+        filter == Filter::trilinear ? 1.4f / kSize : 0.7f / kSize;  // lambda about 0.5 when there are levels
     std::vector<float> s(kLanes * kBatches), t(s.size()), dref(s.size(), 0.5f), out(kLanes * 4);
     for (uint32_t i = 0; i < s.size(); ++i) {
         const uint32_t quad = i / 4, x = quad % 64 * 2 + i % 2, y = quad / 64 * 2 + i / 2 % 2;
@@ -75,8 +77,9 @@ void sample(benchmark::State& state, VkFormat format, VkImageAspectFlags aspect,
         }
         benchmark::ClobberMemory();
     }
-    state.counters["ns/sample"] = benchmark::Counter(static_cast<double>(state.iterations()) * kBatches * kLanes * 1e-9,
-                                                     benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    state.counters["ns/sample"] =
+        benchmark::Counter(static_cast<double>(state.iterations()) * kBatches * kLanes * 1e-9,
+                           benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
 void registerAll() {
@@ -104,8 +107,10 @@ void registerAll() {
         for (const Kind& kind : kKinds) {
             for (const auto& [filterName, filter] : kFilters) {
                 for (const auto& [modeName, mode] : kModes) {
-                    if (mode != VK_SAMPLER_ADDRESS_MODE_REPEAT && kind.format != VK_FORMAT_R8G8B8A8_UNORM) continue;
-                    const std::string name = std::string(isaName(isa)) + "/" + kind.name + "/" + filterName + "/" + modeName;
+                    if (mode != VK_SAMPLER_ADDRESS_MODE_REPEAT && kind.format != VK_FORMAT_R8G8B8A8_UNORM)
+                        continue;
+                    const std::string name =
+                        std::string(isaName(isa)) + "/" + kind.name + "/" + filterName + "/" + modeName;
                     benchmark::RegisterBenchmark(name.c_str(), sample, kind.format, kind.aspect, filter, mode,
                                                  kind.compare, isa);
                 }

@@ -197,8 +197,9 @@ std::vector<GridTriangle> sliverAndNeighbours() {
     const GridPoint a{965334 + 128, 9134 + 128}, b{1857265 + 128, 1515506 + 128},
         c{1515249 + 128, 937879 + 128};
     const GridPoint left{965334 - 300000, 1515506}, right{1857265, 9134 + 200000};
-    const GridPoint far = exact::edgeFunction(a, b, c) > 0 ? right : left;  // on c's side of a-b
-    const GridPoint near = far == right ? left : right;
+    const bool leftIsFar = (exact::edgeFunction(a, b, c) > 0) == (exact::edgeFunction(a, b, left) > 0);
+    const GridPoint far = leftIsFar ? left : right,
+                    near = leftIsFar ? right : left;  // far: on c's side of a-b
     return {{a, b, c}, {a, b, near}, {a, c, far}, {c, b, far}};
 }
 

@@ -1,9 +1,10 @@
 #include "conformance/oracle/fragment_shader.h"
 
+#include "conformance/oracle/shader_runs.h"
+
 #include <spirv/unified1/GLSL.std.450.h>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 namespace vernier::conformance::exact {
@@ -11,11 +12,6 @@ namespace vernier::conformance::exact {
 namespace {
 
 using reference::InterfaceVariable;
-
-// Interpolation in the spec-legal sense: "each operation good to about 1 part in 10^5".
-constexpr double kInterpolationError = 1e-5;
-constexpr double kFloatError = 0x1p-22;
-constexpr double kRoundingFactor = 8;
 
 struct ModuleTraits {
     bool derivatives = false;
@@ -73,73 +69,6 @@ ModuleTraits scan(const std::vector<uint32_t>& words) {
     return traits;
 }
 
-// The nominal number of an output component and what other runs made of it.
-class Spread {
-  public:
-    explicit Spread(double nominal) : nominal_(nominal) {}
-
-    /// Deviations of one kind, given as the extremes seen so far in this kind.
-    void see(double other) {
-        below_ = std::max(below_, nominal_ - other);
-        above_ = std::max(above_, other - nominal_);
-        varies_ = varies_ || (open_ && other != nominal_);
-        if (std::isnan(other)) below_ = above_ = HUGE_VAL;
-    }
-    void endKind(double factor = 1, bool symmetric = false) {
-        if (symmetric) below_ = above_ = std::max(below_, above_);
-        totalBelow_ += below_ * factor;
-        totalAbove_ += above_ * factor;
-        below_ = above_ = 0;
-    }
-    /// Kinds seen later (rounding alone) do not count as variation with the inputs.
-    void closeVariation() { open_ = false; }
-    bool varies() const { return varies_; }
-    Interval range(double slack) const {
-        return {nominal_, nominal_ - totalBelow_ - slack, nominal_ + totalAbove_ + slack};
-    }
-
-  private:
-    double nominal_;
-    double below_ = 0, above_ = 0, totalBelow_ = 0, totalAbove_ = 0;
-    bool varies_ = false, open_ = true;
-};
-
-struct Runs {
-    std::array<reference::Outcome<double>, 4> nominal;
-    std::vector<std::array<reference::Outcome<double>, 4>> shifted, filtered, coarse, rounded;
-};
-
-template <class Read>
-std::optional<Spread> spreadOf(const Runs& runs, size_t lane, Read read) {
-    const std::optional<double> nominal = read(runs.nominal[lane].outputs);
-    if (!nominal) return std::nullopt;
-    Spread spread(*nominal);
-    const auto kind = [&](const auto& list, double factor, bool symmetric) {
-        for (const auto& run : list) {
-            if (run[lane].discarded != runs.nominal[lane].discarded) continue;
-            spread.see(read(run[lane].outputs).value_or(*nominal));
-        }
-        spread.endKind(factor, symmetric);
-    };
-    kind(runs.shifted, 1, false);
-    kind(runs.filtered, 1, false);
-    kind(runs.coarse, 1, true);
-    spread.closeVariation();
-    kind(runs.rounded, kRoundingFactor, true);
-    return spread;
-}
-
-bool isInteger(const InterfaceVariable& v) {
-    return v.kind != reference::ScalarKind::float32 && v.kind != reference::ScalarKind::float64;
-}
-
-double numberOf(const reference::Scalar<double>& scalar, const InterfaceVariable& variable) {
-    if (!isInteger(variable)) return scalar.number;
-    const auto bits = static_cast<uint32_t>(scalar.bits);
-    return variable.kind == reference::ScalarKind::int32 ? static_cast<double>(static_cast<int32_t>(bits))
-                                                         : static_cast<double>(bits);
-}
-
 }  // namespace
 
 Result<FragmentShader> FragmentShader::create(const Scene& scene, const ScenePipeline& pipeline) {
@@ -178,7 +107,7 @@ Result<FragmentShader> FragmentShader::create(const Scene& scene, const ScenePip
                                    "' asks for per-sample or centroid shading");
             }
             const bool interpolated =
-                v.isBuiltin ? v.builtin == spv::BuiltInFragCoord : !v.flat && !isInteger(v);
+                v.isBuiltin ? v.builtin == spv::BuiltInFragCoord : !v.flat && !isIntegerVariable(v);
             result.variesWithPosition_ = result.variesWithPosition_ || interpolated;
             result.inputs_.push_back(v);
         }
@@ -198,7 +127,7 @@ void FragmentShader::setVariable(const InterfaceVariable& variable, const Fragme
         reference::Texel<double>& texel = values.locations[location];
         for (size_t c = variable.component; c < std::min<size_t>(4, variable.component + variable.components);
              ++c) {
-            if (variable.flat || isInteger(variable)) {
+            if (variable.flat || isIntegerVariable(variable)) {
                 texel[c] = at[0][c];
                 continue;
             }
@@ -247,7 +176,7 @@ Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSou
                                                                uint32_t y, const std::array<bool, 4>& covered,
                                                                const OutputState& output,
                                                                ShaderResources& resources) const {
-    Runs runs;
+    ShaderRuns runs;
     std::array<bool, 4> helper;
     for (size_t i = 0; i < 4; ++i) helper[i] = !covered[i];
     const auto run = [&](const Interpreter& shader, const std::array<Values, 4>& inputs) {
@@ -289,67 +218,10 @@ Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSou
     if (Status s = add(runs.rounded, rounded_, inputs); !s) return s.error();
     if (resources.wrote) return unsupported("oracle: the fragment shader uses storage buffers or images");
 
-    const uint8_t flags = resources.flags;
     std::array<FragmentResult, 4> results;
     for (size_t lane = 0; lane < 4; ++lane) {
-        FragmentResult& result = results[lane];
-        result.discarded = runs.nominal[lane].discarded;
-        for (const auto* list : {&runs.shifted, &runs.filtered, &runs.coarse, &runs.rounded}) {
-            for (const auto& other : *list)
-                result.discardOpen = result.discardOpen || other[lane].discarded != result.discarded;
-        }
-        // A nominally discarded fragment that others keep: take the outputs of one that kept it.
-        if (result.discarded && result.discardOpen) {
-            for (const auto* list : {&runs.shifted, &runs.filtered, &runs.coarse, &runs.rounded}) {
-                for (const auto& other : *list) {
-                    if (!other[lane].discarded) runs.nominal[lane].outputs = other[lane].outputs;
-                }
-            }
-        }
-        const auto range = [&](const InterfaceVariable& v, auto read) -> std::optional<Interval> {
-            const auto spread = spreadOf(runs, lane, read);
-            if (!spread) return std::nullopt;
-            const double nominalNumber = std::abs(spread->range(0).value);
-            if (isInteger(v)) return spread->range(0);
-            const double relative = imprecision_ + (spread->varies() ? kInterpolationError : kFloatError);
-            return spread->range(relative *
-                                 std::max(1.0, std::isfinite(nominalNumber) ? nominalNumber : 1.0));
-        };
-        std::array<bool, kMaxColorAttachments> written{};
-        for (const InterfaceVariable& v : outputs_) {
-            if (v.isBuiltin) {
-                if (v.builtin != spv::BuiltInFragDepth) continue;
-                result.depth = range(v, [](const Values& values) -> std::optional<double> {
-                    const auto found = values.builtins.find(spv::BuiltInFragDepth);
-                    if (found == values.builtins.end() || found->second.empty()) return std::nullopt;
-                    return found->second[0].number;
-                });
-                continue;
-            }
-            for (uint32_t k = 0; k < v.locations; ++k) {
-                const size_t target = v.location + k;
-                if (target >= output.colorCount) continue;
-                Color color{};
-                for (size_t c = v.component; c < std::min<size_t>(4, v.component + v.components); ++c) {
-                    const auto component = range(v, [&](const Values& values) -> std::optional<double> {
-                        const auto found = values.locations.find({v.location + k, v.index});
-                        if (found == values.locations.end()) return std::nullopt;
-                        return numberOf(found->second[c], v);
-                    });
-                    if (!component) continue;
-                    color[c] = *component;
-                    if (v.index == 0) written[target] = true;
-                }
-                if (v.index == 1) {
-                    result.source1 = color;
-                } else {
-                    for (size_t c = v.component; c < 4; ++c) result.colors[target][c] = color[c];
-                }
-            }
-        }
-        for (size_t i = 0; i < output.colorCount; ++i) {
-            result.colorFlags[i] = static_cast<uint8_t>(flags | (written[i] ? 0 : kOracleUnknown));
-        }
+        results[lane] = combineRuns(runs, lane, outputs_, imprecision_, output.colorCount);
+        for (uint8_t& flags : results[lane].colorFlags) flags |= resources.flags;
     }
     return results;
 }

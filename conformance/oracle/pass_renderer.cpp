@@ -285,6 +285,8 @@ class PassRenderer {
                     shader->evaluate(t.source, static_cast<uint32_t>(qx), row, covered, output, resources);
                 if (!shaded) return shaded.error();
                 fragments = std::move(*shaded);
+            } else {
+                for (FragmentResult& fragment : fragments) fragment.colorFlags.fill(kOracleUnknown);
             }
             for (size_t lane = 0; lane < 4; ++lane) {
                 if (!covered[lane]) continue;

@@ -81,7 +81,7 @@ Interval quantise(const Component& component, const Interval& number) {
         }
         case Encoding::uint:
         case Encoding::sint:
-            return number;
+            return number.isNan() ? Interval(0.0) : number;
         default:
             break;
     }

@@ -42,7 +42,7 @@ using Sample = std::vector<SampleState>;
 /// What the fragment shader left for one fragment.
 struct FragmentResult {
     std::array<Color, kMaxColorAttachments> colors{};
-    std::array<uint8_t, kMaxColorAttachments> colorFlags{};  // of OracleFlag; kOracleUnknown when not written
+    std::array<uint8_t, kMaxColorAttachments> colorFlags{};  // of OracleFlag
     std::optional<Color> source1;                            // dual-source blending
     std::optional<Interval> depth;                           // FragDepth
     bool discarded = false, discardOpen = false;

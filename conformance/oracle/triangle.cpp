@@ -60,18 +60,17 @@ std::optional<Triangle> Triangle::create(const Setup& setup) {
     }
     Triangle t{HomogeneousTriangle<double>(v)};
 
+    const auto& p = setup.position;
+    std::vector<std::array<double, 3>> planes(setup.clipDistances);
     if (setup.depthClip) {
-        t.cuts_.push_back({setup.position[0][2], setup.position[1][2], setup.position[2][2]});
-        t.cuts_.push_back({setup.position[0][3] - setup.position[0][2],
-                           setup.position[1][3] - setup.position[1][2],
-                           setup.position[2][3] - setup.position[2][2]});
+        planes.push_back({p[0][2], p[1][2], p[2][2]});
+        planes.push_back({p[0][3] - p[0][2], p[1][3] - p[1][2], p[2][3] - p[2][2]});
     }
-    t.cuts_.insert(t.cuts_.end(), setup.clipDistances.begin(), setup.clipDistances.end());
-    for (const auto& cut : t.cuts_) {
-        if (std::ranges::all_of(cut, [](double d) { return d < 0; })) return std::nullopt;
+    for (const auto& plane : planes) {
+        const auto outside = std::ranges::count_if(plane, [](double d) { return d < 0; });
+        if (outside == 3) return std::nullopt;
+        if (outside != 0) t.cuts_.push_back(plane);
     }
-    std::erase_if(t.cuts_,
-                  [](const auto& cut) { return std::ranges::all_of(cut, [](double d) { return d >= 0; }); });
 
     t.freedom_ = kSubUnit;
     t.snapped_ = inFront;
@@ -104,7 +103,6 @@ std::optional<Triangle> Triangle::create(const Setup& setup) {
             onGrid = onGrid && w[0] == std::nearbyint(w[0] / kSubUnit) * kSubUnit &&
                      w[1] == std::nearbyint(w[1] / kSubUnit) * kSubUnit;
         }
-        const auto& p = setup.position;
         if (area == 0 && (onGrid || p[0] == p[1] || p[1] == p[2] || p[2] == p[0])) return std::nullopt;
     } else if (determinant == 0) {
         return std::nullopt;
@@ -118,7 +116,7 @@ std::optional<Triangle> Triangle::create(const Setup& setup) {
         t.edgeKey_[i] = hashNumbers(first, std::max(a, b).data(), 4);
     }
     t.identity_ = setup.context;
-    for (const Clip<double>& p : setup.position) t.identity_ = hashNumbers(t.identity_, p.data(), 4);
+    for (const Clip<double>& position : p) t.identity_ = hashNumbers(t.identity_, position.data(), 4);
 
     bool constantDepth = true;
     double largest = 0;

@@ -71,7 +71,7 @@ ChildResult runChild(const std::vector<std::string>& arguments, const std::files
         const int signal = WTERMSIG(status);
         return {false, "signal " + std::to_string(signal) + " (" + strsignal(signal) + ")" + lastWords(log)};
     }
-    if (const std::string words = ownWords(log); !words.empty()) return {false, words};
+    if (const std::string said = ownWords(log); !said.empty()) return {false, said};
     return {false, "exit code " + std::to_string(WEXITSTATUS(status)) + lastWords(log)};
 }
 

@@ -1,4 +1,5 @@
-// Conversions of vectors of components; the same bits as convert.h. Included once per target (see base/simd.h).
+// Conversions of vectors of components; the same bits as convert.h. Included once per target (see
+// base/simd.h).
 #if defined(VERNIER_FORMAT_CONVERT_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef VERNIER_FORMAT_CONVERT_INL_H
 #undef VERNIER_FORMAT_CONVERT_INL_H
@@ -27,16 +28,24 @@ using VF = hn::Vec<F32>;
 using VU = hn::Vec<U32>;
 using VI = hn::Vec<I32>;
 
-HWY_INLINE VU bitsOf(VF x) { return hn::BitCast(U32(), x); }
-HWY_INLINE VF floatOf(VU x) { return hn::BitCast(F32(), x); }
-HWY_INLINE VU splatBits(uint32_t x) { return hn::Set(U32(), x); }
-HWY_INLINE VF splatFloat(float x) { return hn::Set(F32(), x); }
+HWY_INLINE VU bitsOf(VF x) {
+    return hn::BitCast(U32(), x);
+}
+HWY_INLINE VF floatOf(VU x) {
+    return hn::BitCast(F32(), x);
+}
+HWY_INLINE VU splatBits(uint32_t x) {
+    return hn::Set(U32(), x);
+}
+HWY_INLINE VF splatFloat(float x) {
+    return hn::Set(F32(), x);
+}
 
-/// n / d correctly rounded, for d = 2^k - 1 (k <= 24) with the correctly rounded `reciprocal`, and n zero or far from
-/// overflow and underflow. The first quotient is within 2 units in the last place, so its remainder is exact (a multiple of
-/// the quotient's last place, below 2^26 of them), and the corrected quotient is off by less than 2^-22 of a unit before
-/// it is rounded. n / d comes no closer than that to the middle of two floats when k <= 16, and for k = 24 and integers n the
-/// tests run through all n.
+/// n / d correctly rounded, for d = 2^k - 1 (k <= 24) with the correctly rounded `reciprocal`, and n zero or
+/// far from overflow and underflow. The first quotient is within 2 units in the last place, so its remainder
+/// is exact (a multiple of the quotient's last place, below 2^26 of them), and the corrected quotient is off
+/// by less than 2^-22 of a unit before it is rounded. n / d comes no closer than that to the middle of two
+/// floats when k <= 16, and for k = 24 and integers n the tests run through all n.
 HWY_INLINE VF divideExact(VF n, VF d, VF reciprocal) {
 #if HWY_TARGET == HWY_SSE4
     (void)reciprocal;
@@ -50,9 +59,13 @@ HWY_INLINE VF divideExact(VF n, VF d, VF reciprocal) {
 HWY_INLINE VF clampOrLowV(VF x, VF low, VF high) {
     return hn::Min(hn::IfThenElse(hn::Gt(x, low), x, low), high);
 }
-HWY_INLINE VF zeroIfNaN(VF x) { return hn::IfThenElseZero(hn::Eq(x, x), x); }
+HWY_INLINE VF zeroIfNaN(VF x) {
+    return hn::IfThenElseZero(hn::Eq(x, x), x);
+}
 
-HWY_INLINE VF toFloatV(VU code) { return hn::ConvertTo(F32(), hn::BitCast(I32(), code)); }
+HWY_INLINE VF toFloatV(VU code) {
+    return hn::ConvertTo(F32(), hn::BitCast(I32(), code));
+}
 HWY_INLINE VI signExtendV(VU code, int bits) {
     return hn::ShiftRightSame(hn::BitCast(I32(), hn::ShiftLeftSame(code, 32 - bits)), 32 - bits);
 }
@@ -62,8 +75,8 @@ HWY_INLINE VF decodeUnormV(VU code, int bits) {
     return divideExact(toFloatV(code), splatFloat(max), splatFloat(1.0f / max));
 }
 
-/// x * scale rounded to the nearest integer, ties to even, for |x * scale| <= 2^22: a fused multiply-add to a number whose
-/// last bit is worth 1 rounds the exact product once.
+/// x * scale rounded to the nearest integer, ties to even, for |x * scale| <= 2^22: a fused multiply-add to a
+/// number whose last bit is worth 1 rounds the exact product once.
 HWY_INLINE VI roundProduct(VF x, float scale) {
     constexpr float kMagic = 0x1.8p23f;
     const VF sum = fusedMulAdd(F32(), x, splatFloat(scale), splatFloat(kMagic));
@@ -74,7 +87,8 @@ HWY_INLINE VU encodeUnormV(VF x, int bits) {
     const VF clamped = clampOrLowV(x, hn::Zero(F32()), splatFloat(1.0f));
     const auto max = static_cast<float>(lowBits(static_cast<uint32_t>(bits)));
     if (bits < 23) return hn::BitCast(U32(), roundProduct(clamped, max));
-    // 24 bits. Products of 2^23 and above are rounded to integers by the multiplication itself, smaller ones by adding 2^23.
+    // 24 bits. Products of 2^23 and above are rounded to integers by the multiplication itself, smaller ones
+    // by adding 2^23.
     const VF magic = splatFloat(0x1p23f);
     const VI small = hn::Sub(hn::BitCast(I32(), fusedMulAdd(F32(), clamped, splatFloat(max), magic)),
                              hn::BitCast(I32(), magic));
@@ -91,13 +105,15 @@ HWY_INLINE VF decodeSnormV(VU code, int bits) {
 
 HWY_INLINE VU encodeSnormV(VF x, int bits) {
     const VF clamped = clampOrLowV(zeroIfNaN(x), splatFloat(-1.0f), splatFloat(1.0f));
-    return hn::BitCast(U32(), roundProduct(clamped, static_cast<float>(lowBits(static_cast<uint32_t>(bits - 1)))));
+    return hn::BitCast(U32(),
+                       roundProduct(clamped, static_cast<float>(lowBits(static_cast<uint32_t>(bits - 1)))));
 }
 
 /// Floats with 5 exponent bits over kMantissa bits, no sign.
 template <int kMantissa>
 HWY_INLINE VF decodeSmallFloatV(VU code) {
-    // Read with the wrong bias and corrected by a power of two, which denormals survive; infinity and NaN get their exponent.
+    // Read with the wrong bias and corrected by a power of two, which denormals survive; infinity and NaN get
+    // their exponent.
     const VF scaled = hn::Mul(floatOf(hn::ShiftLeft<23 - kMantissa>(code)), splatFloat(0x1p112f));
     const auto special = hn::Gt(hn::BitCast(I32(), code), hn::Set(I32(), (31 << kMantissa) - 1));
     const VU exponent = hn::IfThenElseZero(hn::RebindMask(U32(), special), splatBits(0x7f800000u));
@@ -111,11 +127,14 @@ HWY_INLINE VU encodeSmallFloatV(VU bits) {  // of a positive float
     const I32 di;
     const VI ordered = hn::BitCast(di, bits);
     constexpr uint32_t kMagic = (127u + 9u - kMantissa) << 23;
-    const VU denormal = hn::Sub(bitsOf(hn::Add(floatOf(bits), floatOf(splatBits(kMagic)))), splatBits(kMagic));
+    const VU denormal =
+        hn::Sub(bitsOf(hn::Add(floatOf(bits), floatOf(splatBits(kMagic)))), splatBits(kMagic));
     const VU odd = hn::And(hn::ShiftRight<kShift>(bits), splatBits(1));
     const VU biased = hn::Add(hn::Sub(bits, splatBits((112u << 23) - lowBits(kShift - 1))), odd);
-    const VU rounded = hn::Min(hn::ShiftRight<kShift>(biased), splatBits(kOverflowToInfinity ? kInfinity : kInfinity - 1));
-    VU result = hn::IfThenElse(hn::RebindMask(U32(), hn::Lt(ordered, hn::Set(di, 113 << 23))), denormal, rounded);
+    const VU rounded =
+        hn::Min(hn::ShiftRight<kShift>(biased), splatBits(kOverflowToInfinity ? kInfinity : kInfinity - 1));
+    VU result =
+        hn::IfThenElse(hn::RebindMask(U32(), hn::Lt(ordered, hn::Set(di, 113 << 23))), denormal, rounded);
     const VU fraction = hn::And(hn::ShiftRight<kShift>(bits), splatBits(lowBits(kMantissa)));
     const VU nan = hn::Or(fraction, splatBits(kInfinity | 1u << (kMantissa - 1)));
     result = hn::IfThenElse(hn::RebindMask(U32(), hn::Gt(ordered, hn::Set(di, 0x7f800000))), nan, result);
@@ -145,7 +164,9 @@ HWY_INLINE VU encodeUfloatV(VF x, int bits) {
 }
 
 /// `code` < 256 in every lane.
-HWY_INLINE VF decodeSrgbV(VU code) { return hn::GatherIndex(F32(), kSrgbToLinear.data(), hn::BitCast(I32(), code)); }
+HWY_INLINE VF decodeSrgbV(VU code) {
+    return hn::GatherIndex(F32(), kSrgbToLinear.data(), hn::BitCast(I32(), code));
+}
 
 HWY_INLINE VU encodeSrgbV(VF x) {
     const VF clamped = clampOrLowV(x, floatOf(splatBits(kSrgbFirstBits)), splatFloat(1.0f));
@@ -164,7 +185,8 @@ HWY_INLINE VU decodeV(VU code, int bits) {
     if constexpr (kKind == ComponentKind::unorm) return bitsOf(decodeUnormV(code, bits));
     if constexpr (kKind == ComponentKind::snorm) return bitsOf(decodeSnormV(code, bits));
     if constexpr (kKind == ComponentKind::uscaled) return bitsOf(toFloatV(code));
-    if constexpr (kKind == ComponentKind::sscaled) return bitsOf(hn::ConvertTo(F32(), signExtendV(code, bits)));
+    if constexpr (kKind == ComponentKind::sscaled)
+        return bitsOf(hn::ConvertTo(F32(), signExtendV(code, bits)));
     if constexpr (kKind == ComponentKind::uint) return code;
     if constexpr (kKind == ComponentKind::sint) return hn::BitCast(U32(), signExtendV(code, bits));
     if constexpr (kKind == ComponentKind::ufloat) return bitsOf(decodeUfloatV(code, bits));
@@ -190,7 +212,8 @@ HWY_INLINE VU encodeV(VU value, int bits) {
     if constexpr (kKind == ComponentKind::uint) return hn::Min(value, splatBits(max));
     if constexpr (kKind == ComponentKind::sint) {
         const auto high = static_cast<int32_t>(max >> 1);
-        const VI clamped = hn::Min(hn::Max(hn::BitCast(I32(), value), hn::Set(I32(), -high - 1)), hn::Set(I32(), high));
+        const VI clamped =
+            hn::Min(hn::Max(hn::BitCast(I32(), value), hn::Set(I32(), -high - 1)), hn::Set(I32(), high));
         return hn::BitCast(U32(), clamped);
     }
     if constexpr (kKind == ComponentKind::ufloat) return encodeUfloatV(floatOf(value), bits);

@@ -1,5 +1,6 @@
-// Conversions of single components, exact; the definition that the SIMD versions (convert-inl.h) are tested against. The
-// rules are stated in format.h. Rounding relies on the default floating-point environment (round to nearest even).
+// Conversions of single components, exact; the definition that the SIMD versions (convert-inl.h) are tested
+// against. The rules are stated in format.h. Rounding relies on the default floating-point environment (round
+// to nearest even).
 #pragma once
 
 #include <bit>
@@ -9,7 +10,9 @@
 
 namespace vernier {
 
-constexpr uint32_t lowBits(uint32_t bits) { return bits >= 32 ? ~0u : (1u << bits) - 1; }
+constexpr uint32_t lowBits(uint32_t bits) {
+    return bits >= 32 ? ~0u : (1u << bits) - 1;
+}
 
 constexpr int32_t signExtend(uint32_t value, uint32_t bits) {
     return static_cast<int32_t>(value << (32 - bits)) >> (32 - bits);
@@ -22,7 +25,9 @@ inline double roundToEven(double x) {
 }
 
 /// NaN gives `low`.
-inline float clampOrLow(float x, float low, float high) { return x > low ? (x < high ? x : high) : low; }
+inline float clampOrLow(float x, float low, float high) {
+    return x > low ? (x < high ? x : high) : low;
+}
 
 inline float decodeUnorm(uint32_t code, uint32_t bits) {
     return static_cast<float>(code) / static_cast<float>(lowBits(bits));
@@ -44,7 +49,9 @@ inline uint32_t encodeSnorm(float x, uint32_t bits) {
     return static_cast<uint32_t>(static_cast<int32_t>(roundToEven(product))) & lowBits(bits);
 }
 
-inline uint32_t encodeUint(uint32_t value, uint32_t bits) { return value < lowBits(bits) ? value : lowBits(bits); }
+inline uint32_t encodeUint(uint32_t value, uint32_t bits) {
+    return value < lowBits(bits) ? value : lowBits(bits);
+}
 
 inline uint32_t encodeSint(int32_t value, uint32_t bits) {
     const auto high = static_cast<int32_t>(lowBits(bits - 1)), low = -high - 1;
@@ -58,7 +65,8 @@ inline uint32_t encodeUscaled(float x, uint32_t bits) {
 inline uint32_t encodeSscaled(float x, uint32_t bits) {
     if (x != x) return 0;
     const auto high = static_cast<float>(lowBits(bits - 1));
-    return static_cast<uint32_t>(static_cast<int32_t>(roundToEven(clampOrLow(x, -high - 1, high)))) & lowBits(bits);
+    return static_cast<uint32_t>(static_cast<int32_t>(roundToEven(clampOrLow(x, -high - 1, high)))) &
+           lowBits(bits);
 }
 
 // Small floats: 5 bits of exponent (bias 15) over `mantissa` bits; 10 with a sign for half, 6 and 5 without.
@@ -96,7 +104,9 @@ inline uint32_t encodeHalf(float x) {
     return (bits >> 16 & 0x8000u) | encodeSmallFloat(std::bit_cast<float>(bits & 0x7fffffffu), 10, true);
 }
 
-inline float decodeUfloat(uint32_t code, uint32_t bits) { return decodeSmallFloat(code, bits - 5); }
+inline float decodeUfloat(uint32_t code, uint32_t bits) {
+    return decodeSmallFloat(code, bits - 5);
+}
 
 inline uint32_t encodeUfloat(float x, uint32_t bits) {
     const uint32_t magnitude = std::bit_cast<uint32_t>(x) & 0x7fffffffu;

@@ -1,22 +1,27 @@
-// Pixel formats: what a VkFormat is made of, what can be done with it, and how its texels become values and back.
+// Pixel formats: what a VkFormat is made of, what can be done with it, and how its texels become values and
+// back.
 //
-// One table (format_table.cpp) drives everything here. Images are stored as rows of texels in the bytes the Vulkan
-// specification gives for the format; a combined depth-stencil texel, which it leaves open, is stored as
+// One table (format_table.cpp) drives everything here. Images are stored as rows of texels in the bytes the
+// Vulkan specification gives for the format; a combined depth-stencil texel, which it leaves open, is stored
+// as
 //   D24_UNORM_S8_UINT   one little-endian uint32: depth in bits 0..23, stencil in bits 24..31
 //   D32_SFLOAT_S8_UINT  eight bytes: depth as a float, stencil in byte 4, three bytes of padding
 //
-// Values travel as VkClearColorValue for one texel, and as four planes (R, G, B, A; one 32-bit value per texel) for many.
-// The depth aspect is a format with R = depth, the stencil aspect one with R = stencil (uint). Components that a format
-// lacks read as 0, A as 1.
+// Values travel as VkClearColorValue for one texel, and as four planes (R, G, B, A; one 32-bit value per
+// texel) for many. The depth aspect is a format with R = depth, the stencil aspect one with R = stencil
+// (uint). Components that a format lacks read as 0, A as 1.
 //
 // Conversions are exact and the same on every instruction set:
-//   unorm, snorm   decoded to the float nearest to c / max; encoded by clamping and rounding the exact product to the
-//                  nearest integer, ties to even; NaN encodes as 0; the most negative snorm code decodes as -1
-//   srgb           decoded to the nearest float; encoded to the nearest code of the exact curve; A is plain unorm
-//   sfloat 16      encoded by rounding to nearest even, overflow to infinity; NaN stays NaN (quiet)
+//   unorm, snorm   decoded to the float nearest to c / max; encoded by clamping and rounding the exact
+//   product to the
+//                  nearest integer, ties to even; NaN encodes as 0; the most negative snorm code decodes as
+//                  -1
+//   srgb           decoded to the nearest float; encoded to the nearest code of the exact curve; A is plain
+//   unorm sfloat 16      encoded by rounding to nearest even, overflow to infinity; NaN stays NaN (quiet)
 //   ufloat 11, 10  as above, but negative values encode as 0 and finite overflow as the largest finite value
 //   E5B9G9R9       by the specification's algorithm ("Conversion from RGB to shared exponent")
-//   uint, sint     clamped to the range of the component; u/sscaled likewise, from floats rounded to nearest even
+//   uint, sint     clamped to the range of the component; u/sscaled likewise, from floats rounded to nearest
+//   even
 #pragma once
 
 #include <vulkan/vulkan_core.h>
@@ -30,14 +35,16 @@ namespace vernier {
 
 enum class ComponentKind : uint8_t { none, unorm, snorm, uscaled, sscaled, uint, sint, ufloat, sfloat, srgb };
 
-/// A bit field of a texel seen as one little-endian integer: bits offset .. offset + bits - 1. bits == 0: absent.
+/// A bit field of a texel seen as one little-endian integer: bits offset .. offset + bits - 1. bits == 0:
+/// absent.
 struct Component {
     uint8_t bits = 0;
     uint8_t offset = 0;
     ComponentKind kind = ComponentKind::none;
 };
 
-/// What a texel is in a shader: the member of VkClearColorValue, and the meaning of the planes' 32-bit values.
+/// What a texel is in a shader: the member of VkClearColorValue, and the meaning of the planes' 32-bit
+/// values.
 enum class ValueType : uint8_t { floating, uint, sint };
 
 /// One aspect of a format, ready for conversion.
@@ -53,12 +60,12 @@ struct FormatInfo {
     VkFormat format;
     const char* name;  // without VK_FORMAT_
     uint8_t bytesPerTexel;
-    uint8_t componentCount;     // colour components, or depth + stencil
-    bool packed;                // a *_PACK8/16/32 format
-    VkImageAspectFlags aspects; // COLOR, DEPTH, STENCIL
-    TexelLayout color;          // meaningful when aspects has COLOR
-    TexelLayout depth;          // ... DEPTH
-    TexelLayout stencil;        // ... STENCIL
+    uint8_t componentCount;      // colour components, or depth + stencil
+    bool packed;                 // a *_PACK8/16/32 format
+    VkImageAspectFlags aspects;  // COLOR, DEPTH, STENCIL
+    TexelLayout color;           // meaningful when aspects has COLOR
+    TexelLayout depth;           // ... DEPTH
+    TexelLayout stencil;         // ... STENCIL
     // As vkGetPhysicalDeviceFormatProperties reports them.
     VkFormatFeatureFlags optimalTilingFeatures;
     VkFormatFeatureFlags linearTilingFeatures;
@@ -66,7 +73,9 @@ struct FormatInfo {
 
     /// `aspect` is one bit of `aspects`.
     const TexelLayout& layout(VkImageAspectFlags aspect) const {
-        return aspect == VK_IMAGE_ASPECT_STENCIL_BIT ? stencil : aspect == VK_IMAGE_ASPECT_DEPTH_BIT ? depth : color;
+        return aspect == VK_IMAGE_ASPECT_STENCIL_BIT ? stencil
+               : aspect == VK_IMAGE_ASPECT_DEPTH_BIT ? depth
+                                                     : color;
     }
 };
 
@@ -93,13 +102,14 @@ void packTexel(const TexelLayout& layout, const VkClearColorValue& value, void* 
 /// A VkClearValue for the given aspects of a texel: colour, or depth and/or stencil.
 void packClear(const FormatInfo& info, VkImageAspectFlags aspects, const VkClearValue& value, void* texel);
 
-/// Sets to 1 the bits of a texel that the components of `mask` occupy, the rest to 0: for merging a packed texel into
-/// memory under a colour write mask. `bits` has bytesPerTexel bytes.
+/// Sets to 1 the bits of a texel that the components of `mask` occupy, the rest to 0: for merging a packed
+/// texel into memory under a colour write mask. `bits` has bytesPerTexel bytes.
 void componentBits(const FormatInfo& info, VkColorComponentFlags mask, void* bits);
 
 // --- Many texels: the same bits, faster.
 
-/// Conversions between n texels in memory and planes of n values. Plain data, valid forever; no alignment is required.
+/// Conversions between n texels in memory and planes of n values. Plain data, valid forever; no alignment is
+/// required.
 struct FormatOps {
     using UnpackFn = void (*)(const TexelLayout&, const void* texels, size_t n, void* const planes[4]);
     using PackFn = void (*)(const TexelLayout&, const void* const planes[4], size_t n, void* texels);
@@ -109,10 +119,14 @@ struct FormatOps {
     PackFn packFn = nullptr;
 
     /// planes[c] receives n floats, uint32s or int32s (layout.type); a null plane is skipped.
-    void unpack(const void* texels, size_t n, void* const planes[4]) const { unpackFn(layout, texels, n, planes); }
-    /// Planes of components that the format lacks may be null and are not read. A layout with keepOtherBits reads and
-    /// rewrites the texels' other bits.
-    void pack(const void* const planes[4], size_t n, void* texels) const { packFn(layout, planes, n, texels); }
+    void unpack(const void* texels, size_t n, void* const planes[4]) const {
+        unpackFn(layout, texels, n, planes);
+    }
+    /// Planes of components that the format lacks may be null and are not read. A layout with keepOtherBits
+    /// reads and rewrites the texels' other bits.
+    void pack(const void* const planes[4], size_t n, void* texels) const {
+        packFn(layout, planes, n, texels);
+    }
     /// As unpack, from one pointer per texel: vertices with a stride, texels of a footprint.
     void unpackEach(const std::byte* const* texels, size_t n, void* const planes[4]) const;
     /// Depth or stencil of n texels: the R plane alone.
@@ -133,11 +147,13 @@ FormatOps formatOps(VkFormat format, Isa isa);
 
 // --- Copies between images and buffers (vkCmdCopyBufferToImage: "depth/stencil aspects").
 
-/// Bytes per texel in a buffer that receives one aspect: colour as in the image, D16 2, D24 4 (depth in the low 24 bits,
-/// the rest zero), D32 4, stencil 1.
+/// Bytes per texel in a buffer that receives one aspect: colour as in the image, D16 2, D24 4 (depth in the
+/// low 24 bits, the rest zero), D32 4, stencil 1.
 uint32_t bufferTexelBytes(const FormatInfo& info, VkImageAspectFlags aspect);
-void copyTexelsToBuffer(const FormatInfo& info, VkImageAspectFlags aspect, const void* texels, size_t n, void* buffer);
+void copyTexelsToBuffer(const FormatInfo& info, VkImageAspectFlags aspect, const void* texels, size_t n,
+                        void* buffer);
 /// Leaves the other aspect of the texels alone.
-void copyTexelsFromBuffer(const FormatInfo& info, VkImageAspectFlags aspect, const void* buffer, size_t n, void* texels);
+void copyTexelsFromBuffer(const FormatInfo& info, VkImageAspectFlags aspect, const void* buffer, size_t n,
+                          void* texels);
 
 }  // namespace vernier

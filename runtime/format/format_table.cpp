@@ -1,5 +1,5 @@
-// The table of formats: the tables of "Required Format Support" in the Vulkan specification without the block-compressed
-// formats, plus what comes for free with the general conversions.
+// The table of formats: the tables of "Required Format Support" in the Vulkan specification without the
+// block-compressed formats, plus what comes for free with the general conversions.
 #include <array>
 
 #include "runtime/format/format.h"
@@ -48,9 +48,11 @@ struct Uses {
     VkFormatFeatureFlags image, buffer;
 };
 
-constexpr VkFormatFeatureFlags kReadable = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_BLIT_SRC_BIT |
-                                           VK_FORMAT_FEATURE_TRANSFER_SRC_BIT | VK_FORMAT_FEATURE_TRANSFER_DST_BIT;
-constexpr VkFormatFeatureFlags kTarget = VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT | VK_FORMAT_FEATURE_BLIT_DST_BIT;
+constexpr VkFormatFeatureFlags kReadable =
+    VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_BLIT_SRC_BIT |
+    VK_FORMAT_FEATURE_TRANSFER_SRC_BIT | VK_FORMAT_FEATURE_TRANSFER_DST_BIT;
+constexpr VkFormatFeatureFlags kTarget =
+    VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT | VK_FORMAT_FEATURE_BLIT_DST_BIT;
 constexpr VkFormatFeatureFlags kFiltered = VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
 constexpr VkFormatFeatureFlags kBlend = VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT;
 constexpr VkFormatFeatureFlags kStorage = VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
@@ -76,7 +78,8 @@ constexpr ValueType valueType(ComponentKind kind) {
     return kind == uint ? ValueType::uint : kind == sint ? ValueType::sint : ValueType::floating;
 }
 
-constexpr FormatInfo colorFormat(VkFormat format, const char* name, const Shape& shape, ComponentKind kind, Uses uses) {
+constexpr FormatInfo colorFormat(VkFormat format, const char* name, const Shape& shape, ComponentKind kind,
+                                 Uses uses) {
     FormatInfo info{};
     info.format = format;
     info.name = name;
@@ -121,15 +124,17 @@ constexpr FormatInfo depthStencilFormat(VkFormat format, const char* name, uint8
 }
 
 #define COLOR(NAME, SHAPE, KIND, USES) colorFormat(VK_FORMAT_##NAME, #NAME, SHAPE, KIND, USES)
-#define SCALED(NAME, SHAPE, SUFFIX)                              \
-    COLOR(NAME##_USCALED##SUFFIX, SHAPE, uscaled, kVertexOnly),  \
+#define SCALED(NAME, SHAPE, SUFFIX)                             \
+    COLOR(NAME##_USCALED##SUFFIX, SHAPE, uscaled, kVertexOnly), \
         COLOR(NAME##_SSCALED##SUFFIX, SHAPE, sscaled, kVertexOnly)
-#define NORM(NAME, SHAPE, SUFFIX, UNORM_USES, SNORM_USES)     \
-    COLOR(NAME##_UNORM##SUFFIX, SHAPE, unorm, UNORM_USES),    \
+#define NORM(NAME, SHAPE, SUFFIX, UNORM_USES, SNORM_USES)  \
+    COLOR(NAME##_UNORM##SUFFIX, SHAPE, unorm, UNORM_USES), \
         COLOR(NAME##_SNORM##SUFFIX, SHAPE, snorm, SNORM_USES), SCALED(NAME, SHAPE, SUFFIX)
 #define INT(NAME, SHAPE, SUFFIX, USES) \
     COLOR(NAME##_UINT##SUFFIX, SHAPE, uint, USES), COLOR(NAME##_SINT##SUFFIX, SHAPE, sint, USES)
-constexpr Component part(uint8_t bits, uint8_t offset, ComponentKind kind) { return {bits, offset, kind}; }
+constexpr Component part(uint8_t bits, uint8_t offset, ComponentKind kind) {
+    return {bits, offset, kind};
+}
 constexpr Component kNoPart{};
 
 #define DEPTH_STENCIL(NAME, BYTES, DEPTH, STENCIL, PACKED) \
@@ -211,7 +216,9 @@ const FormatInfo* findFormat(VkFormat format) {
     return &kFormats[kIndex[number] - 1u];
 }
 
-FormatRange allFormats() { return {kFormats.data(), kFormats.data() + kFormats.size()}; }
+FormatRange allFormats() {
+    return {kFormats.data(), kFormats.data() + kFormats.size()};
+}
 
 VkImageAspectFlags defaultAspect(const FormatInfo& info) {
     if ((info.aspects & VK_IMAGE_ASPECT_DEPTH_BIT) != 0) return VK_IMAGE_ASPECT_DEPTH_BIT;

@@ -16,7 +16,8 @@ HWY_BEFORE_NAMESPACE();
 namespace vernier {
 namespace HWY_NAMESPACE {
 
-/// How texels of kBytes lie in memory while they are converted: words 32-bit words each, 3- and 6-byte texels widened.
+/// How texels of kBytes lie in memory while they are converted: words 32-bit words each, 3- and 6-byte texels
+/// widened.
 template <int kBytes>
 struct Memory {
     static constexpr int kPaddedBytes = kBytes == 3 ? 4 : kBytes == 6 ? 8 : kBytes;
@@ -37,7 +38,8 @@ HWY_INLINE void loadWords(const uint8_t* texels, VU (&words)[4]) {
         words[0] = hn::PromoteTo(d, hn::LoadU(hn::Rebind<uint8_t, U32>(), texels));
     } else if constexpr (kBytes == 2) {
         const hn::Rebind<uint16_t, U32> d16;
-        words[0] = hn::PromoteTo(d, hn::BitCast(d16, hn::LoadU(hn::Repartition<uint8_t, decltype(d16)>(), texels)));
+        words[0] =
+            hn::PromoteTo(d, hn::BitCast(d16, hn::LoadU(hn::Repartition<uint8_t, decltype(d16)>(), texels)));
     } else {
         const auto* const source = reinterpret_cast<const uint32_t*>(texels);
         if constexpr (kBytes == 4) words[0] = hn::LoadU(d, source);
@@ -74,11 +76,12 @@ HWY_INLINE void storeWords(const VU (&words)[4], uint8_t* texels) {
 /// sRGB formats keep A linear.
 template <ComponentKind kKind, int kComponent>
 inline constexpr ComponentKind kKindOf =
-    kKind == ComponentKind::srgb && kComponent == 3 ? ComponentKind::unorm : kKind;
+    kKind == ComponentKind::srgb&& kComponent == 3 ? ComponentKind::unorm : kKind;
 
 /// One vector of texels. `offset` counts values in the planes.
 template <ComponentKind kKind, int kBytes, bool kShared>
-HWY_INLINE void unpackVector(const TexelLayout& layout, const uint8_t* texels, void* const planes[4], size_t offset) {
+HWY_INLINE void unpackVector(const TexelLayout& layout, const uint8_t* texels, void* const planes[4],
+                             size_t offset) {
     VU words[4];
     loadWords<kBytes>(texels, words);
     const auto component = [&]<int kC>(std::integral_constant<int, kC>) {
@@ -86,8 +89,9 @@ HWY_INLINE void unpackVector(const TexelLayout& layout, const uint8_t* texels, v
         const Component& part = layout.rgba[kC];
         VU value = hn::Zero(U32());
         if (part.bits != 0) {
-            const VU code = hn::And(hn::ShiftRightSame(words[part.offset / 32 % Memory<kBytes>::kWords], part.offset % 32),
-                                    splatBits(lowBits(part.bits)));
+            const VU code = hn::And(
+                hn::ShiftRightSame(words[part.offset / 32 % Memory<kBytes>::kWords], part.offset % 32),
+                splatBits(lowBits(part.bits)));
             if constexpr (kShared) {
                 // fraction * 2^(exponent - 24), both factors exact.
                 const VU exponent = hn::Add(hn::ShiftRight<27>(words[0]), splatBits(127 - 24));
@@ -121,12 +125,14 @@ void unpackRow(const TexelLayout& layout, const void* texels, size_t n, void* co
     unpackVector<kKind, kBytes, kShared>(layout, rest, valuePlanes, 0);
     for (int c = 0; c < 4; ++c) {
         if (planes[c] == nullptr) continue;
-        std::memcpy(static_cast<uint8_t*>(planes[c]) + i * sizeof(uint32_t), values[c], (n - i) * sizeof(uint32_t));
+        std::memcpy(static_cast<uint8_t*>(planes[c]) + i * sizeof(uint32_t), values[c],
+                    (n - i) * sizeof(uint32_t));
     }
 }
 
 template <ComponentKind kKind, int kBytes>
-HWY_INLINE void packVector(const TexelLayout& layout, const void* const planes[4], size_t offset, uint8_t* texels) {
+HWY_INLINE void packVector(const TexelLayout& layout, const void* const planes[4], size_t offset,
+                           uint8_t* texels) {
     VU words[4] = {hn::Zero(U32()), hn::Zero(U32()), hn::Zero(U32()), hn::Zero(U32())};
     if (layout.keepOtherBits) {
         loadWords<kBytes>(texels, words);
@@ -160,7 +166,8 @@ void packRow(const TexelLayout& layout, const void* const planes[4], size_t n, v
     const void* const valuePlanes[4] = {values[0], values[1], values[2], values[3]};
     for (int c = 0; c < 4; ++c) {
         if (layout.rgba[c].bits == 0) continue;
-        std::memcpy(values[c], static_cast<const uint8_t*>(planes[c]) + i * sizeof(uint32_t), (n - i) * sizeof(uint32_t));
+        std::memcpy(values[c], static_cast<const uint8_t*>(planes[c]) + i * sizeof(uint32_t),
+                    (n - i) * sizeof(uint32_t));
     }
     if (layout.keepOtherBits) std::memcpy(rest, target + i * kBytes, (n - i) * kBytes);
     packVector<kKind, kBytes>(layout, valuePlanes, 0, rest);
@@ -172,7 +179,8 @@ void packSharedExponentRow(const TexelLayout& layout, const void* const planes[4
     for (size_t i = 0; i < n; ++i) {
         VkClearColorValue value{};
         for (int c = 0; c < 3; ++c) {
-            std::memcpy(&value.uint32[c], static_cast<const uint8_t*>(planes[c]) + i * sizeof(uint32_t), sizeof(uint32_t));
+            std::memcpy(&value.uint32[c], static_cast<const uint8_t*>(planes[c]) + i * sizeof(uint32_t),
+                        sizeof(uint32_t));
         }
         packTexel(layout, value, static_cast<uint8_t*>(texels) + i * layout.bytes);
     }
@@ -190,14 +198,30 @@ void choose(FormatOps& ops) {
 
 void selectRows(FormatOps& ops) {
     switch (ops.layout.rgba[0].kind) {
-        case ComponentKind::unorm: choose<ComponentKind::unorm, 1, 2, 3, 4, 6, 8>(ops); break;
-        case ComponentKind::snorm: choose<ComponentKind::snorm, 1, 2, 3, 4, 6, 8>(ops); break;
-        case ComponentKind::uscaled: choose<ComponentKind::uscaled, 1, 2, 3, 4, 6, 8>(ops); break;
-        case ComponentKind::sscaled: choose<ComponentKind::sscaled, 1, 2, 3, 4, 6, 8>(ops); break;
-        case ComponentKind::uint: choose<ComponentKind::uint, 1, 2, 3, 4, 6, 8, 12, 16>(ops); break;
-        case ComponentKind::sint: choose<ComponentKind::sint, 1, 2, 3, 4, 6, 8, 12, 16>(ops); break;
-        case ComponentKind::sfloat: choose<ComponentKind::sfloat, 2, 4, 6, 8, 12, 16>(ops); break;
-        case ComponentKind::srgb: choose<ComponentKind::srgb, 1, 2, 4>(ops); break;
+        case ComponentKind::unorm:
+            choose<ComponentKind::unorm, 1, 2, 3, 4, 6, 8>(ops);
+            break;
+        case ComponentKind::snorm:
+            choose<ComponentKind::snorm, 1, 2, 3, 4, 6, 8>(ops);
+            break;
+        case ComponentKind::uscaled:
+            choose<ComponentKind::uscaled, 1, 2, 3, 4, 6, 8>(ops);
+            break;
+        case ComponentKind::sscaled:
+            choose<ComponentKind::sscaled, 1, 2, 3, 4, 6, 8>(ops);
+            break;
+        case ComponentKind::uint:
+            choose<ComponentKind::uint, 1, 2, 3, 4, 6, 8, 12, 16>(ops);
+            break;
+        case ComponentKind::sint:
+            choose<ComponentKind::sint, 1, 2, 3, 4, 6, 8, 12, 16>(ops);
+            break;
+        case ComponentKind::sfloat:
+            choose<ComponentKind::sfloat, 2, 4, 6, 8, 12, 16>(ops);
+            break;
+        case ComponentKind::srgb:
+            choose<ComponentKind::srgb, 1, 2, 4>(ops);
+            break;
         case ComponentKind::ufloat:
             choose<ComponentKind::ufloat, 4>(ops);
             if (ops.layout.sharedExponent) {
@@ -205,7 +229,8 @@ void selectRows(FormatOps& ops) {
                 ops.packFn = packSharedExponentRow;
             }
             break;
-        case ComponentKind::none: break;
+        case ComponentKind::none:
+            break;
     }
 }
 
@@ -217,7 +242,9 @@ HWY_AFTER_NAMESPACE();
 namespace vernier {
 namespace {
 
-auto rowSelector(Isa isa) { VERNIER_SELECT_ISA(isa, selectRows) }
+auto rowSelector(Isa isa) {
+    VERNIER_SELECT_ISA(isa, selectRows)
+}
 
 }  // namespace
 
@@ -228,7 +255,9 @@ FormatOps formatOps(VkFormat format, VkImageAspectFlags aspect, Isa isa) {
     return ops;
 }
 
-FormatOps formatOps(VkFormat format, Isa isa) { return formatOps(format, defaultAspect(*findFormat(format)), isa); }
+FormatOps formatOps(VkFormat format, Isa isa) {
+    return formatOps(format, defaultAspect(*findFormat(format)), isa);
+}
 
 }  // namespace vernier
 #endif

@@ -13,7 +13,8 @@
 namespace vernier {
 namespace {
 
-/// Unsigned integers below 2^448, enough for the products above: 5 * 25 + 162 bits on the left, 162 + 5 * 39 on the right.
+/// Unsigned integers below 2^448, enough for the products above: 5 * 25 + 162 bits on the left, 162 + 5 * 39
+/// on the right.
 struct BigUint {
     std::array<uint32_t, 14> limb{};
 
@@ -43,7 +44,9 @@ constexpr BigUint power(uint32_t base, int exponent) {
     return result;
 }
 
-constexpr bool isLinear(uint32_t h) { return h * 100000 <= 4045 * 510; }  // h / 510 <= 0.04045
+constexpr bool isLinear(uint32_t h) {
+    return h * 100000 <= 4045 * 510;
+}  // h / 510 <= 0.04045
 
 /// m * 2^-e <= the curve's value at h / 510, for one h and e.
 struct AtMostCurve {
@@ -103,10 +106,13 @@ constexpr Truncated truncateCurve(uint32_t h) {
     return {m, e};
 }
 
-constexpr float toFloat(uint32_t m, int e) { return static_cast<float>(m) / static_cast<float>(uint64_t{1} << e); }
+constexpr float toFloat(uint32_t m, int e) {
+    return static_cast<float>(m) / static_cast<float>(uint64_t{1} << e);
+}
 
-/// The curve crosses no float and no middle between floats inside (0, 1): 12/5 powers of these rationals are irrational or
-/// not dyadic. So rounding to nearest has no ties, and a threshold lies strictly between two floats.
+/// The curve crosses no float and no middle between floats inside (0, 1): 12/5 powers of these rationals are
+/// irrational or not dyadic. So rounding to nearest has no ties, and a threshold lies strictly between two
+/// floats.
 template <uint32_t kCode>
 constexpr float kDecoded = [] {
     if (kCode == 0 || kCode == 255) return static_cast<float>(kCode / 255);

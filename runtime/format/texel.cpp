@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <type_traits>
 
 #include "runtime/format/convert.h"
 #include "runtime/format/format.h"
@@ -33,16 +34,26 @@ void insert(Words& words, const Component& component, uint32_t code) {
 uint32_t decode(const Component& component, uint32_t code) {
     const uint32_t bits = component.bits;
     switch (component.kind) {
-        case ComponentKind::unorm: return std::bit_cast<uint32_t>(decodeUnorm(code, bits));
-        case ComponentKind::snorm: return std::bit_cast<uint32_t>(decodeSnorm(code, bits));
-        case ComponentKind::uscaled: return std::bit_cast<uint32_t>(static_cast<float>(code));
-        case ComponentKind::sscaled: return std::bit_cast<uint32_t>(static_cast<float>(signExtend(code, bits)));
-        case ComponentKind::uint: return code;
-        case ComponentKind::sint: return static_cast<uint32_t>(signExtend(code, bits));
-        case ComponentKind::ufloat: return std::bit_cast<uint32_t>(decodeUfloat(code, bits));
-        case ComponentKind::sfloat: return bits == 32 ? code : std::bit_cast<uint32_t>(decodeHalf(code));
-        case ComponentKind::srgb: return std::bit_cast<uint32_t>(kSrgbToLinear[code]);
-        case ComponentKind::none: break;
+        case ComponentKind::unorm:
+            return std::bit_cast<uint32_t>(decodeUnorm(code, bits));
+        case ComponentKind::snorm:
+            return std::bit_cast<uint32_t>(decodeSnorm(code, bits));
+        case ComponentKind::uscaled:
+            return std::bit_cast<uint32_t>(static_cast<float>(code));
+        case ComponentKind::sscaled:
+            return std::bit_cast<uint32_t>(static_cast<float>(signExtend(code, bits)));
+        case ComponentKind::uint:
+            return code;
+        case ComponentKind::sint:
+            return static_cast<uint32_t>(signExtend(code, bits));
+        case ComponentKind::ufloat:
+            return std::bit_cast<uint32_t>(decodeUfloat(code, bits));
+        case ComponentKind::sfloat:
+            return bits == 32 ? code : std::bit_cast<uint32_t>(decodeHalf(code));
+        case ComponentKind::srgb:
+            return std::bit_cast<uint32_t>(kSrgbToLinear[code]);
+        case ComponentKind::none:
+            break;
     }
     return 0;
 }
@@ -51,16 +62,26 @@ uint32_t encode(const Component& component, uint32_t value) {
     const uint32_t bits = component.bits;
     const auto real = std::bit_cast<float>(value);
     switch (component.kind) {
-        case ComponentKind::unorm: return encodeUnorm(real, bits);
-        case ComponentKind::snorm: return encodeSnorm(real, bits);
-        case ComponentKind::uscaled: return encodeUscaled(real, bits);
-        case ComponentKind::sscaled: return encodeSscaled(real, bits);
-        case ComponentKind::uint: return encodeUint(value, bits);
-        case ComponentKind::sint: return encodeSint(static_cast<int32_t>(value), bits);
-        case ComponentKind::ufloat: return encodeUfloat(real, bits);
-        case ComponentKind::sfloat: return bits == 32 ? value : encodeHalf(real);
-        case ComponentKind::srgb: return encodeSrgb8(real);
-        case ComponentKind::none: break;
+        case ComponentKind::unorm:
+            return encodeUnorm(real, bits);
+        case ComponentKind::snorm:
+            return encodeSnorm(real, bits);
+        case ComponentKind::uscaled:
+            return encodeUscaled(real, bits);
+        case ComponentKind::sscaled:
+            return encodeSscaled(real, bits);
+        case ComponentKind::uint:
+            return encodeUint(value, bits);
+        case ComponentKind::sint:
+            return encodeSint(static_cast<int32_t>(value), bits);
+        case ComponentKind::ufloat:
+            return encodeUfloat(real, bits);
+        case ComponentKind::sfloat:
+            return bits == 32 ? value : encodeHalf(real);
+        case ComponentKind::srgb:
+            return encodeSrgb8(real);
+        case ComponentKind::none:
+            break;
     }
     return 0;
 }
@@ -70,17 +91,21 @@ constexpr int kSharedMantissa = 9, kSharedBias = 15;
 constexpr float kSharedMax = 65408.0f;  // (2^N - 1) / 2^N * 2^(31 - B)
 
 /// 2^exponent for exponents of normal floats.
-float exp2i(int exponent) { return std::bit_cast<float>(static_cast<uint32_t>(exponent + 127) << 23); }
+float exp2i(int exponent) {
+    return std::bit_cast<float>(static_cast<uint32_t>(exponent + 127) << 23);
+}
 
 uint32_t encodeSharedExponent(const float (&rgb)[4]) {
     float clamped[3];
     for (int c = 0; c < 3; ++c) clamped[c] = clampOrLow(rgb[c], 0.0f, kSharedMax);
     const float largest = std::max({clamped[0], clamped[1], clamped[2]});
-    const int log2Floor = static_cast<int>(std::bit_cast<uint32_t>(largest) >> 23) - 127;  // denormals end far below
+    const int log2Floor =
+        static_cast<int>(std::bit_cast<uint32_t>(largest) >> 23) - 127;  // denormals end far below
     int exponent = std::max(-kSharedBias - 1, log2Floor) + 1 + kSharedBias;
     // floor(x / 2^(exponent - B - N) + 0.5), exact in double; the cast truncates.
     const auto scaled = [&](float x) {
-        return static_cast<uint32_t>(double{x} * double{exp2i(kSharedBias + kSharedMantissa - exponent)} + 0.5);
+        return static_cast<uint32_t>(double{x} * double{exp2i(kSharedBias + kSharedMantissa - exponent)} +
+                                     0.5);
     };
     if (scaled(largest) == 1u << kSharedMantissa) ++exponent;
     return scaled(clamped[0]) | scaled(clamped[1]) << 9 | scaled(clamped[2]) << 18 |
@@ -161,18 +186,35 @@ void FormatOps::unpackEach(const std::byte* const* texels, size_t n, void* const
             for (size_t i = 0; i < count; ++i) std::memcpy(packed + i * kBytes, texels[first + i], kBytes);
         };
         switch (bytes) {
-            case 1: collect(std::integral_constant<size_t, 1>{}); break;
-            case 2: collect(std::integral_constant<size_t, 2>{}); break;
-            case 3: collect(std::integral_constant<size_t, 3>{}); break;
-            case 4: collect(std::integral_constant<size_t, 4>{}); break;
-            case 6: collect(std::integral_constant<size_t, 6>{}); break;
-            case 8: collect(std::integral_constant<size_t, 8>{}); break;
-            case 12: collect(std::integral_constant<size_t, 12>{}); break;
-            default: collect(std::integral_constant<size_t, 16>{}); break;
+            case 1:
+                collect(std::integral_constant<size_t, 1>{});
+                break;
+            case 2:
+                collect(std::integral_constant<size_t, 2>{});
+                break;
+            case 3:
+                collect(std::integral_constant<size_t, 3>{});
+                break;
+            case 4:
+                collect(std::integral_constant<size_t, 4>{});
+                break;
+            case 6:
+                collect(std::integral_constant<size_t, 6>{});
+                break;
+            case 8:
+                collect(std::integral_constant<size_t, 8>{});
+                break;
+            case 12:
+                collect(std::integral_constant<size_t, 12>{});
+                break;
+            default:
+                collect(std::integral_constant<size_t, 16>{});
+                break;
         }
         void* part[4];
         for (int c = 0; c < 4; ++c) {
-            part[c] = planes[c] == nullptr ? nullptr : static_cast<std::byte*>(planes[c]) + first * sizeof(uint32_t);
+            part[c] = planes[c] == nullptr ? nullptr
+                                           : static_cast<std::byte*>(planes[c]) + first * sizeof(uint32_t);
         }
         unpack(packed, count, part);
     }
@@ -184,7 +226,8 @@ uint32_t bufferTexelBytes(const FormatInfo& info, VkImageAspectFlags aspect) {
     return info.bytesPerTexel;
 }
 
-void copyTexelsToBuffer(const FormatInfo& info, VkImageAspectFlags aspect, const void* texels, size_t n, void* buffer) {
+void copyTexelsToBuffer(const FormatInfo& info, VkImageAspectFlags aspect, const void* texels, size_t n,
+                        void* buffer) {
     const TexelLayout& layout = info.layout(aspect);
     const uint32_t bufferBytes = bufferTexelBytes(info, aspect);
     const bool partOfTexel = layout.keepOtherBits || info.format == VK_FORMAT_X8_D24_UNORM_PACK32;
@@ -193,13 +236,14 @@ void copyTexelsToBuffer(const FormatInfo& info, VkImageAspectFlags aspect, const
         return;
     }
     for (size_t i = 0; i < n; ++i) {
-        const uint32_t code =
-            extract(loadWords(layout, static_cast<const std::byte*>(texels) + i * layout.bytes), layout.rgba[0]);
+        const uint32_t code = extract(
+            loadWords(layout, static_cast<const std::byte*>(texels) + i * layout.bytes), layout.rgba[0]);
         std::memcpy(static_cast<std::byte*>(buffer) + i * bufferBytes, &code, bufferBytes);
     }
 }
 
-void copyTexelsFromBuffer(const FormatInfo& info, VkImageAspectFlags aspect, const void* buffer, size_t n, void* texels) {
+void copyTexelsFromBuffer(const FormatInfo& info, VkImageAspectFlags aspect, const void* buffer, size_t n,
+                          void* texels) {
     const TexelLayout& layout = info.layout(aspect);
     const uint32_t bufferBytes = bufferTexelBytes(info, aspect);
     if (!layout.keepOtherBits) {

@@ -68,7 +68,7 @@ void vertexFlags(const ProjectionInput& in, const ProjectionOutput& out) {
         flags = hn::Or(flags, flagInt(beyond, kOutsideGuard));
         // v - v is 0 for finite v and NaN for the others.
         const auto sum = hn::Add(hn::Add(hn::Sub(x, x), hn::Sub(y, y)), hn::Add(hn::Sub(z, z), hn::Sub(w, w)));
-        flags = hn::Or(flags, flag(hn::Ne(sum, zero), kNotFinite));
+        flags = hn::Or(flags, flag(hn::Not(hn::Eq(sum, zero)), kNotFinite));
         hn::StoreU(hn::BitCast(hn::RebindToUnsigned<decltype(f)>(), flags), hn::RebindToUnsigned<decltype(f)>(),
                    out.flags + n);
     }

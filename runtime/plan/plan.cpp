@@ -199,6 +199,9 @@ void planFragments(const GraphicsState& state, const ir::Program& fragment, Isa 
     const bool decidesTests = (plan.depth.any() || plan.depth.write) && !plan.depth.early;
     plan.runsFragments = !plan.colors.empty() || fragment.hasSideEffects || decidesTests || fragment.canDiscard;
     plan.usesQuads = fragment.usesQuads;
+    plan.keepsCoverage = !fragment.canDiscard && plan.sampleMaskSlot == kNoSlot && !plan.alphaToCoverage && !decidesTests;
+    for (const BuiltinSlot& builtin : plan.fragmentBuiltins)
+        plan.usesFragCoord |= builtin.builtin == ir::Builtin::fragCoord;
     plan.ordered = decidesTests ||
                    std::any_of(plan.colors.begin(), plan.colors.end(), [](const ColorPlan& c) { return c.readsDestination; });
 }

@@ -108,6 +108,8 @@ struct Plan {
     bool needsCentroid = false;   // some input is evaluated inside the covered part of the pixel
     bool ordered = false;         // a batch holds each pixel once: blending or a late depth test
     bool preciseInterpolation = false;  // double
+    bool keepsCoverage = true;    // nothing after the early tests drops a sample
+    bool usesFragCoord = false;
     uint32_t samples = 1;
     uint32_t sampleMask = ~0u;
     bool alphaToCoverage = false, alphaToOne = false;

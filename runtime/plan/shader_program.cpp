@@ -3,6 +3,18 @@
 #include "spirv_interp/ir/link.h"
 
 namespace vernier {
+namespace {
+
+/// Stands in where there is no fragment stage: nobody reads the varyings, so that linking drops them all.
+ir::Program emptyFragment() {
+    ir::Program program;
+    program.stage = ir::Stage::fragment;
+    program.blocks.emplace_back();
+    program.blocks[0].insts.emplace_back().op = ir::Op::ret;
+    return program;
+}
+
+}  // namespace
 
 Result<std::shared_ptr<const ShaderProgram>> ShaderProgram::create(const ShaderProgramDesc& desc) {
     const std::shared_ptr<ShaderProgram> program(new ShaderProgram);
@@ -11,9 +23,7 @@ Result<std::shared_ptr<const ShaderProgram>> ShaderProgram::create(const ShaderP
     program->vertexIr_ = *desc.vertex;
     const bool hasFragment = desc.fragment != nullptr;
     if (hasFragment) program->fragmentIr_ = *desc.fragment;
-    // Without a fragment stage nobody reads the varyings: an empty one links them all away.
-    ir::Program none;
-    none.stage = ir::Stage::fragment;
+    ir::Program none = emptyFragment();
     const size_t outputs = program->vertexIr_.outputs.size();
     if (Status status = ir::linkStages(program->vertexIr_, hasFragment ? program->fragmentIr_ : none); !status)
         return status.error();

@@ -5,21 +5,43 @@
 namespace vernier {
 namespace {
 
-std::byte* texelAddress(const ColorOutputInput& in, uint32_t lane) {
-    return in.target->data + static_cast<size_t>(in.batch->y[lane]) * in.target->rowPitch +
-           static_cast<size_t>(in.batch->x[lane]) * in.plan->texelBytes + in.sample * in.target->samplePitch;
+std::byte* texelAddress(const ColorOutputInput& in, const FragmentSpan& span) {
+    return in.target->data + static_cast<size_t>(span.y) * in.target->rowPitch +
+           static_cast<size_t>(span.x) * in.plan->texelBytes + in.sample * in.target->samplePitch;
 }
 
-/// One texel size known at compile time makes each copy a single move.
+// One texel size, and for whole rows of a block one length, known at compile time make each copy a few moves.
+
+template <uint32_t kBytes>
+void copyTexels(std::byte* to, const std::byte* from, uint32_t count) {
+    if (count == static_cast<uint32_t>(kBlockSize)) {
+        std::memcpy(to, from, kBytes * kBlockSize);
+    } else {
+        for (uint32_t n = 0; n < count; ++n) std::memcpy(to + n * kBytes, from + n * kBytes, kBytes);
+    }
+}
+
 template <uint32_t kBytes>
 void gather(const ColorOutputInput& in, std::byte* texels) {
-    for (uint32_t n = 0; n < in.batch->count; ++n) std::memcpy(texels + n * kBytes, texelAddress(in, n), kBytes);
+    for (uint32_t s = 0; s < in.batch->spanCount; ++s) {
+        const FragmentSpan& span = in.batch->spans[s];
+        copyTexels<kBytes>(texels + span.first * kBytes, texelAddress(in, span), span.count);
+    }
 }
 
 template <uint32_t kBytes>
 void scatter(const ColorOutputInput& in, const std::byte* texels) {
-    for (uint32_t n = 0; n < in.batch->count; ++n)
-        if (in.mask[n] != 0) std::memcpy(texelAddress(in, n), texels + n * kBytes, kBytes);
+    for (uint32_t s = 0; s < in.batch->spanCount; ++s) {
+        const FragmentSpan& span = in.batch->spans[s];
+        std::byte* place = texelAddress(in, span);
+        const std::byte* from = texels + span.first * kBytes;
+        if (in.mask == nullptr) {
+            copyTexels<kBytes>(place, from, span.count);
+            continue;
+        }
+        for (uint32_t n = 0; n < span.count; ++n)
+            if (in.mask[span.first + n] != 0) std::memcpy(place + n * kBytes, from + n * kBytes, kBytes);
+    }
 }
 
 template <class Function>
@@ -69,7 +91,8 @@ uint32_t outputColors(const ColorOutputInput& in, ColorScratch& scratch) {
     uint32_t reads = 0;
     if (plan.readsDestination) {
         withTexelSize(plan.texelBytes, [&](auto bytes) { gather<bytes()>(in, scratch.before.data()); });
-        for (uint32_t n = 0; n < count; ++n) reads += in.mask[n] & 1;
+        reads = count;
+        for (uint32_t n = 0; in.mask != nullptr && n < count; ++n) reads -= 1 - (in.mask[n] & 1);
     }
     if (plan.path == ColorPath::blend) {
         BlendInput blend{};

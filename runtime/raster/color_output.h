@@ -26,7 +26,7 @@ struct ColorOutputInput {
     const float* constants;     // of blending
     const float* source[4];     // planes of kLaneRoom lanes
     const float* second[4];     // nullptr: no second source
-    const uint32_t* mask;       // per lane: written
+    const uint32_t* mask;       // per lane: written; nullptr: all are
     uint32_t sample;
 };
 

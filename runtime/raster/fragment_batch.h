@@ -18,14 +18,22 @@ struct FragmentSegment {
     uint32_t first = 0, count = 0;
 };
 
+/// Consecutive lanes that are neighbours on the screen, left to right: they are read and written together.
+struct FragmentSpan {
+    int32_t x = 0, y = 0;
+    uint32_t first = 0, count = 0;
+};
+
 struct FragmentBatch {
     uint32_t count = 0;
     alignas(64) std::array<int32_t, kLaneRoom> x, y;         // pixels
     alignas(64) std::array<uint32_t, kLaneRoom> execute;     // ~0: the lane runs, as a helper perhaps
     alignas(64) std::array<uint32_t, kLaneRoom> store;       // ~0: its effects count
     alignas(64) std::array<float, kLaneRoom> offsetX, offsetY;  // place inside the pixel, when it is not the centre
-    std::array<uint8_t, kLaneRoom> coverage;                 // samples the lane stands for
-    std::array<uint8_t, kLaneRoom> sample;                   // when run per sample
+    alignas(64) std::array<uint32_t, kLaneRoom> coverage;    // samples the lane stands for
+    alignas(64) std::array<uint32_t, kLaneRoom> sample;      // when run per sample
+    uint32_t spanCount = 0;
+    std::array<FragmentSpan, kMaxFragmentLanes> spans;
     uint32_t segmentCount = 0;
     std::array<FragmentSegment, kMaxFragmentLanes> segments;
     // Slot planesCount - 1 belongs to the primitive being added.

@@ -8,6 +8,17 @@
 
 namespace vernier {
 
+namespace {
+
+/// The samples of one pixel of a block.
+uint32_t coverageOf(const BlockCoverage& block, uint32_t bit, uint32_t samples) {
+    uint32_t coverage = 0;
+    for (uint32_t s = 0; s < samples; ++s) coverage |= static_cast<uint32_t>(block.masks[s] >> bit & 1) << s;
+    return coverage;
+}
+
+}  // namespace
+
 FragmentStage::FragmentStage() {
     // Integers and floats alike: 0, and 1.0 for an alpha that the program does not write.
     zeros_.fill(0);
@@ -71,6 +82,8 @@ void FragmentStage::bind(const PreparedDraw& draw, uint64_t token) {
     }
     context_ = &entry.context;
     capacity_ = std::min(program->lanes(), kMaxFragmentLanes);
+    varyingPlanes_.clear();
+    for (const Varying& varying : plan_->varyings) varyingPlanes_.push_back(context_->input(varying.fragmentSlot));
 }
 
 TrianglePlanes& FragmentStage::startPrimitive() {
@@ -82,24 +95,22 @@ TrianglePlanes& FragmentStage::startPrimitive() {
     return batch_.planes[batch_.planesCount - 1];
 }
 
-FragmentSegment& FragmentStage::segment() {
-    const uint32_t planes = batch_.planesCount - 1;
-    if (batch_.segmentCount == 0 || batch_.segments[batch_.segmentCount - 1].planes != planes)
-        batch_.segments[batch_.segmentCount++] = {planes, batch_.count, 0};
-    return batch_.segments[batch_.segmentCount - 1];
-}
-
 void FragmentStage::reserve(uint32_t lanes) {
     if (batch_.count + lanes > capacity_) flush();
 }
 
-uint32_t FragmentStage::appendLane(int32_t x, int32_t y) {
-    const uint32_t lane = batch_.count++;
-    ++segment().count;
-    batch_.x[lane] = x;
-    batch_.y[lane] = y;
-    batch_.execute[lane] = batch_.store[lane] = ~0u;
-    return lane;
+/// Up to 8 pixels of a row; returns the first lane. Writes whole vectors of 8: what is too much, the next span overwrites.
+uint32_t FragmentStage::appendSpan(int32_t x, int32_t y, uint32_t lanes) {
+    const uint32_t planes = batch_.planesCount - 1, first = batch_.count;
+    if (batch_.segmentCount == 0 || batch_.segments[batch_.segmentCount - 1].planes != planes)
+        batch_.segments[batch_.segmentCount++] = {planes, first, 0};
+    batch_.segments[batch_.segmentCount - 1].count += lanes;
+    batch_.spans[batch_.spanCount++] = {x, y, first, lanes};
+    for (int32_t n = 0; n < kBlockSize; ++n) batch_.x[first + static_cast<uint32_t>(n)] = x + n;
+    for (uint32_t n = 0; n < kBlockSize; ++n) batch_.y[first + n] = y;
+    for (uint32_t n = 0; n < kBlockSize; ++n) batch_.coverage[first + n] = 1;
+    batch_.count += lanes;
+    return first;
 }
 
 void FragmentStage::add(const BlockCoverage& block) {
@@ -124,22 +135,18 @@ void FragmentStage::add(const BlockCoverage& block) {
 }
 
 void FragmentStage::addPixels(const BlockCoverage& block, uint64_t any) {
-    const int32_t x = tileX_ + block.x, y = tileY_ + block.y;
     while (any != 0) {
         if (batch_.count == capacity_) flush();
-        FragmentSegment& part = segment();
-        uint32_t lane = batch_.count;
-        for (; any != 0 && lane < capacity_; any &= any - 1, ++lane) {
-            const int bit = std::countr_zero(any);
-            batch_.x[lane] = x + (bit & 7);
-            batch_.y[lane] = y + (bit >> 3);
-            batch_.execute[lane] = batch_.store[lane] = ~0u;
-            uint32_t coverage = 0;
-            for (uint32_t s = 0; s < samples_; ++s) coverage |= static_cast<uint32_t>(block.masks[s] >> bit & 1) << s;
-            batch_.coverage[lane] = static_cast<uint8_t>(coverage);
-        }
-        part.count += lane - batch_.count;
-        batch_.count = lane;
+        // A run of pixels in the first row that has any.
+        const auto bit = static_cast<uint32_t>(std::countr_zero(any));
+        const uint32_t row = static_cast<uint32_t>(any >> (bit & ~7u)) & 0xFF;
+        const auto run = static_cast<uint32_t>(std::countr_zero(~(row >> (bit & 7))));
+        const uint32_t lanes = std::min(run, capacity_ - batch_.count);
+        const uint32_t first = appendSpan(tileX_ + block.x + static_cast<int32_t>(bit & 7),
+                                          tileY_ + block.y + static_cast<int32_t>(bit >> 3), lanes);
+        any &= ~(((uint64_t{1} << lanes) - 1) << bit);
+        if (samples_ == 1) continue;
+        for (uint32_t n = 0; n < lanes; ++n) batch_.coverage[first + n] = coverageOf(block, bit + n, samples_);
     }
 }
 
@@ -148,9 +155,9 @@ void FragmentStage::addSamples(const BlockCoverage& block, uint32_t sample) {
     for (uint64_t mask = block.masks[sample]; mask != 0; mask &= mask - 1) {
         reserve(1);
         const int bit = std::countr_zero(mask);
-        const uint32_t lane = appendLane(tileX_ + block.x + (bit & 7), tileY_ + block.y + (bit >> 3));
-        batch_.coverage[lane] = static_cast<uint8_t>(1u << sample);
-        batch_.sample[lane] = static_cast<uint8_t>(sample);
+        const uint32_t lane = appendSpan(tileX_ + block.x + (bit & 7), tileY_ + block.y + (bit >> 3), 1);
+        batch_.coverage[lane] = 1u << sample;
+        batch_.sample[lane] = sample;
         batch_.offsetX[lane] = position.x();
         batch_.offsetY[lane] = position.y();
     }
@@ -162,20 +169,20 @@ void FragmentStage::addQuads(const BlockCoverage& block, uint64_t any, uint32_t 
     uint64_t quads = any | any >> 1;
     quads = (quads | quads >> 8) & kQuadOrigins;
     const SamplePosition position = samplePositions(samples_)[sample];
+    const uint32_t wanted = ((1u << samples) - 1) << sample;
     for (; quads != 0; quads &= quads - 1) {
         reserve(4);
-        const int origin = std::countr_zero(quads);
-        for (const int bit : {origin, origin + 1, origin + 8, origin + 9}) {
-            const uint32_t lane = appendLane(tileX_ + block.x + (bit & 7), tileY_ + block.y + (bit >> 3));
-            uint32_t coverage = 0;
-            for (uint32_t s = sample; s < sample + samples; ++s)
-                coverage |= static_cast<uint32_t>(block.masks[s] >> bit & 1) << s;
-            batch_.coverage[lane] = static_cast<uint8_t>(coverage);
-            batch_.store[lane] = coverage != 0 ? ~0u : 0u;
-            if (!plan_->perSample) continue;
-            batch_.sample[lane] = static_cast<uint8_t>(sample);
-            batch_.offsetX[lane] = position.x();
-            batch_.offsetY[lane] = position.y();
+        const auto origin = static_cast<uint32_t>(std::countr_zero(quads));
+        for (const uint32_t bit : {origin, origin + 8}) {
+            const uint32_t first = appendSpan(tileX_ + block.x + static_cast<int32_t>(bit & 7),
+                                              tileY_ + block.y + static_cast<int32_t>(bit >> 3), 2);
+            for (uint32_t n = 0; n < 2; ++n) {
+                batch_.coverage[first + n] = coverageOf(block, bit + n, samples_) & wanted;
+                batch_.store[first + n] = batch_.coverage[first + n] != 0 ? ~0u : 0u;
+                batch_.sample[first + n] = sample;
+                batch_.offsetX[first + n] = position.x();
+                batch_.offsetY[first + n] = position.y();
+            }
         }
     }
 }
@@ -185,7 +192,8 @@ void FragmentStage::flush() {
         run();
         batch_.count = 0;
         batch_.segmentCount = 0;
-        inBatch_.fill(0);
+        batch_.spanCount = 0;
+        if (plan_->ordered) inBatch_.fill(0);
         // The primitive being added goes on in the next batch.
         if (batch_.planesCount > 1) batch_.planes[0] = batch_.planes[batch_.planesCount - 1];
     }
@@ -193,32 +201,34 @@ void FragmentStage::flush() {
 }
 
 void FragmentStage::run() {
-    const uint32_t lanes = (batch_.count + 3) / 4 * 4;
-    for (uint32_t lane = batch_.count; lane < capacity_; ++lane) {
-        batch_.execute[lane] = batch_.store[lane] = 0;
-        batch_.coverage[lane] = 0;
-    }
+    const uint32_t count = batch_.count, lanes = (count + 3) / 4 * 4;
+    std::fill_n(batch_.execute.begin(), count, ~0u);
+    if (!plan_->usesQuads) std::fill_n(batch_.store.begin(), count, ~0u);
+    for (uint32_t lane = count; lane < capacity_; ++lane) batch_.execute[lane] = batch_.store[lane] = 0;
     fillInputs();
     if (!context_->run(lanes, batch_.execute.data(), batch_.store.data())) outOfBudget_ = true;
     ++statistics_.batches;
-    for (uint32_t lane = 0; lane < batch_.count; ++lane) {
-        const uint32_t stored = batch_.store[lane] & 1;
-        statistics_.fragmentInvocations += stored;
-        statistics_.helperInvocations += 1 - stored;
+    uint32_t stored = count;
+    if (plan_->usesQuads)
+        for (uint32_t lane = 0; lane < count; ++lane) stored -= 1 - (batch_.store[lane] & 1);
+    statistics_.fragmentInvocations += stored;
+    statistics_.helperInvocations += count - stored;
+    if (!plan_->keepsCoverage) {
+        const uint32_t* live = context_->liveMask();
+        for (uint32_t lane = 0; lane < count; ++lane) batch_.coverage[lane] &= live[lane];
+        reduceCoverage();
+        if (!plan_->depth.early && plan_->depth.any()) testLate();
     }
-    const uint32_t* live = context_->liveMask();
-    for (uint32_t lane = 0; lane < batch_.count; ++lane)
-        if (live[lane] == 0) batch_.coverage[lane] = 0;
-    reduceCoverage();
-    if (!plan_->depth.early && plan_->depth.any()) testLate();
-    for (uint32_t lane = 0; lane < batch_.count; ++lane)
-        statistics_.samplesPassed += static_cast<uint32_t>(std::popcount(batch_.coverage[lane]));
+    for (uint32_t s = 0; s < samples_; ++s) {
+        uint32_t passed = 0;
+        for (uint32_t lane = 0; lane < count; ++lane) passed += batch_.coverage[lane] >> s & 1;
+        statistics_.samplesPassed += passed;
+    }
     writeColors();
 }
 
 void FragmentStage::fillInputs() {
-    const bool wantsFragCoord = std::any_of(plan_->fragmentBuiltins.begin(), plan_->fragmentBuiltins.end(),
-                                            [](const BuiltinSlot& b) { return b.builtin == ir::Builtin::fragCoord; });
+    const bool wantsFragCoord = plan_->usesFragCoord;
     if (plan_->needsBarycentrics || wantsFragCoord) {
         WeightsInput input{&batch_, nullptr, nullptr, plan_->smoothCount > 0, plan_->preciseInterpolation};
         if (plan_->perSample) {
@@ -255,7 +265,7 @@ void FragmentStage::centroidOffsets() {
 void FragmentStage::fillVaryings() {
     for (uint32_t k = 0; k < plan_->varyings.size(); ++k) {
         const Varying& varying = plan_->varyings[k];
-        float* plane = context_->input(varying.fragmentSlot);
+        float* plane = varyingPlanes_[k];
         if (plane == nullptr) continue;
         if (varying.interpolation == ir::Interpolation::flat) {
             copyFlat(batch_, k, plane);
@@ -311,12 +321,12 @@ void FragmentStage::fillBuiltin(const BuiltinSlot& builtin, float* plane) {
             return;
         case ir::Builtin::frontFacing: eachSegment([](const Primitive& p) { return p.front ? ~0u : 0u; }); return;
         case ir::Builtin::primitiveId: eachSegment([](const Primitive& p) { return p.primitiveId; }); return;
-        case ir::Builtin::sampleId: eachLane([&](uint32_t n) { return uint32_t{batch_.sample[n]}; }); return;
+        case ir::Builtin::sampleId: eachLane([&](uint32_t n) { return batch_.sample[n]; }); return;
         case ir::Builtin::samplePosition:
             eachLane([&](uint32_t n) { return c == 0 ? batch_.offsetX[n] : batch_.offsetY[n]; });
             return;
         case ir::Builtin::sampleMaskIn:
-            eachLane([&](uint32_t n) { return c == 0 ? uint32_t{batch_.coverage[n]} : 0u; });
+            eachLane([&](uint32_t n) { return c == 0 ? batch_.coverage[n] : 0u; });
             return;
         case ir::Builtin::helperInvocation: eachLane([&](uint32_t n) { return ~batch_.store[n]; }); return;
         case ir::Builtin::pointCoord:
@@ -340,7 +350,7 @@ void FragmentStage::reduceCoverage() {
     if (plan_->sampleMaskSlot != kNoSlot) {
         const float* plane = context_->output(plan_->sampleMaskSlot);
         for (uint32_t lane = 0; lane < batch_.count; ++lane)
-            batch_.coverage[lane] &= static_cast<uint8_t>(std::bit_cast<uint32_t>(plane[lane]));
+            batch_.coverage[lane] &= std::bit_cast<uint32_t>(plane[lane]);
     }
     if (plan_->alphaToCoverage && plan_->alphaSlot != kNoSlot) {
         const float* alpha = context_->output(plan_->alphaSlot);
@@ -348,7 +358,7 @@ void FragmentStage::reduceCoverage() {
         for (uint32_t lane = 0; lane < batch_.count; ++lane) {
             const float a = alpha[lane] > 0 ? std::min(alpha[lane], 1.0f) : 0.0f;
             const auto count = static_cast<uint32_t>(a * samples + 0.5f);
-            batch_.coverage[lane] &= static_cast<uint8_t>((1u << count) - 1);
+            batch_.coverage[lane] &= (1u << count) - 1;
         }
     }
 }
@@ -372,7 +382,7 @@ void FragmentStage::testLate() {
                 ++statistics_.depthReads;
                 if (testSample(depthState_, texel, z, planes.primitive->front)) passed |= 1u << sample;
             }
-            batch_.coverage[lane] = static_cast<uint8_t>(passed);
+            batch_.coverage[lane] = passed;
         }
     }
 }
@@ -394,6 +404,10 @@ void FragmentStage::writeColors() {
         for (uint32_t c = 0; c < 4; ++c) {
             input.source[c] = outputPlane(plan.slots[c], c);
             input.second[c] = outputPlane(plan.dualSlots[c], c);
+        }
+        if (samples_ == 1 && plan_->keepsCoverage && !plan_->usesQuads) {
+            statistics_.destinationReads += outputColors(input, colors_);
+            continue;
         }
         input.mask = mask_.data();
         for (uint32_t s = 0; s < samples_; ++s) {

@@ -36,8 +36,7 @@ class FragmentStage {
     ContextCache& contexts() { return contexts_; }
 
   private:
-    uint32_t appendLane(int32_t x, int32_t y);
-    FragmentSegment& segment();
+    uint32_t appendSpan(int32_t x, int32_t y, uint32_t lanes);
     void reserve(uint32_t lanes);
     void addPixels(const BlockCoverage& block, uint64_t any);
     void addQuads(const BlockCoverage& block, uint64_t any, uint32_t samples, uint32_t sample);
@@ -65,6 +64,7 @@ class FragmentStage {
     BatchContext* context_ = nullptr;
     uint32_t capacity_ = 0;
     uint32_t samples_ = 1;
+    std::vector<float*> varyingPlanes_;  // inputs of the program, by varying
     Interpolation interpolation_{};
     BlendFn blend_ = nullptr;
     DepthStencilState depthState_;

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "runtime/raster/attachment_ops.h"
+#include "runtime/raster/bits.h"
 #include "runtime/raster/depth_test.h"
 #include "runtime/raster/sample_positions.h"
 
@@ -52,7 +53,7 @@ uint32_t maskSamples(uint32_t mask, uint32_t samples, BlockCoverage* blocks, uin
 uint64_t countSamples(const BlockCoverage* blocks, uint32_t count, uint32_t samples) {
     uint64_t total = 0;
     for (uint32_t b = 0; b < count; ++b)
-        for (uint32_t s = 0; s < samples; ++s) total += static_cast<uint64_t>(std::popcount(blocks[b].masks[s]));
+        for (uint32_t s = 0; s < samples; ++s) total += countBits(blocks[b].masks[s]);
     return total;
 }
 

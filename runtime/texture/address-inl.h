@@ -1,5 +1,5 @@
-// From coordinates to texel indices, one axis at a time ("Wrapping Operation" and "Texel Filtering" of the Vulkan
-// specification). Included once per target (see base/simd.h).
+// From coordinates to texel indices, one axis at a time ("Wrapping Operation" and "Texel Filtering" of the
+// Vulkan specification). Included once per target (see base/simd.h).
 #if defined(VERNIER_TEXTURE_ADDRESS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef VERNIER_TEXTURE_ADDRESS_INL_H
 #undef VERNIER_TEXTURE_ADDRESS_INL_H
@@ -7,12 +7,29 @@
 #define VERNIER_TEXTURE_ADDRESS_INL_H
 #endif
 
+#include <type_traits>
+
 #include "runtime/format/convert-inl.h"
 #include "runtime/texture/texture.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vernier {
 namespace HWY_NAMESPACE {
+
+#ifndef VERNIER_INLINE_LAMBDA
+#define VERNIER_INLINE_LAMBDA HWY_ATTR __attribute__((always_inline))
+#endif
+
+/// step(0), ..., step(kCount - 1), the arguments compile-time constants: arrays of vectors indexed by them
+/// stay in registers, which they do not in loops (GCC copies vectors in memory piecemeal, and reloading them
+/// whole stalls).
+template <int kCount, int kFirst = 0, class Step>
+HWY_INLINE void unrolled(const Step& step) {
+    if constexpr (kFirst < kCount) {
+        step(std::integral_constant<int, kFirst>());
+        unrolled<kCount, kFirst + 1>(step);
+    }
+}
 
 /// What is known about both address modes when a routine is compiled.
 enum class Wrap { repeat, clampToEdge, any };
@@ -32,12 +49,14 @@ struct Axis {
     bool normalized;
 };
 
-// Coordinates are cut to this range (in texels) where the address mode keeps more distant ones at the edge or outside: wide
-// enough for every size and offset, far inside int32.
+// Coordinates are cut to this range (in texels) where the address mode keeps more distant ones at the edge or
+// outside: wide enough for every size and offset, far inside int32.
 constexpr float kFarTexel = 65536.0f;
 constexpr float kBelowOne = 0x1.fffffep-1f;
 
-HWY_INLINE VI splatInt(int32_t x) { return hn::Set(I32(), x); }
+HWY_INLINE VI splatInt(int32_t x) {
+    return hn::Set(I32(), x);
+}
 
 /// i mod n, at least 0. |i| < 2^18: the quotient of floats is never wrong by a whole number.
 HWY_INLINE VI moduloV(VI i, int32_t n) {
@@ -46,7 +65,9 @@ HWY_INLINE VI moduloV(VI i, int32_t n) {
     return hn::Sub(i, hn::Mul(hn::ConvertTo(I32(), quotient), splatInt(n)));
 }
 
-HWY_INLINE VI clampIndex(VI i, int32_t size) { return hn::Min(hn::Max(i, hn::Zero(I32())), splatInt(size - 1)); }
+HWY_INLINE VI clampIndex(VI i, int32_t size) {
+    return hn::Min(hn::Max(i, hn::Zero(I32())), splatInt(size - 1));
+}
 
 /// The coordinate in texels, in a range that converts to int safely; NaN becomes some coordinate in it.
 template <Wrap kWrap>
@@ -54,7 +75,8 @@ HWY_INLINE VF texelCoordinate(VF s, const Axis& axis) {
     const auto size = static_cast<float>(axis.size);
     const VF zero = hn::Zero(F32());
     const auto repeat = [&] {
-        // Exact for s >= 0. Just below a whole number the difference may round up to 1: stay inside the last texel.
+        // Exact for s >= 0. Just below a whole number the difference may round up to 1: stay inside the last
+        // texel.
         const VF fraction = hn::Sub(s, hn::Floor(s));
         return hn::Mul(clampOrLowV(fraction, zero, splatFloat(kBelowOne)), splatFloat(size));
     };
@@ -65,12 +87,15 @@ HWY_INLINE VF texelCoordinate(VF s, const Axis& axis) {
     if constexpr (kWrap == Wrap::repeat) return repeat();
     if constexpr (kWrap == Wrap::clampToEdge) return keep();
     switch (axis.mode) {
-        case VK_SAMPLER_ADDRESS_MODE_REPEAT: return repeat();
+        case VK_SAMPLER_ADDRESS_MODE_REPEAT:
+            return repeat();
         case VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT: {
-            const VF fraction = hn::NegMulAdd(splatFloat(2.0f), hn::Floor(hn::Mul(s, splatFloat(0.5f))), s);  // exact product
+            const VF fraction =
+                hn::NegMulAdd(splatFloat(2.0f), hn::Floor(hn::Mul(s, splatFloat(0.5f))), s);  // exact product
             return hn::Mul(clampOrLowV(fraction, zero, splatFloat(2.0f)), splatFloat(size));
         }
-        default: return keep();
+        default:
+            return keep();
     }
 }
 
@@ -88,7 +113,8 @@ HWY_INLINE VI wrapIndex(VI i, const Axis& axis, VI& inside) {
     if constexpr (kWrap == Wrap::clampToEdge) return clampIndex(i, axis.size);
     inside = hn::Set(I32(), -1);
     switch (axis.mode) {
-        case VK_SAMPLER_ADDRESS_MODE_REPEAT: return repeat();
+        case VK_SAMPLER_ADDRESS_MODE_REPEAT:
+            return repeat();
         case VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT: {
             const VI n = moduloV(i, 2 * axis.size);
             return hn::Min(n, hn::Sub(splatInt(2 * axis.size - 1), n));
@@ -98,7 +124,8 @@ HWY_INLINE VI wrapIndex(VI i, const Axis& axis, VI& inside) {
         case VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER:
             inside = hn::VecFromMask(I32(), hn::And(hn::Gt(i, splatInt(-1)), hn::Lt(i, size)));
             break;
-        default: break;
+        default:
+            break;
     }
     return clampIndex(i, axis.size);
 }

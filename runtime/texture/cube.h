@@ -1,4 +1,5 @@
-// Texels beyond the edge of a cube face ("Cube Map Edge Handling" of the Vulkan specification), in exact integers.
+// Texels beyond the edge of a cube face ("Cube Map Edge Handling" of the Vulkan specification), in exact
+// integers.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +10,8 @@ struct CubeTexel {
     int32_t face, x, y;
 };
 
-/// Axis and sign of the face's s coordinate, t coordinate and major axis in (x, y, z), by "Cube Map Face Selection".
+/// Axis and sign of the face's s coordinate, t coordinate and major axis in (x, y, z), by "Cube Map Face
+/// Selection".
 struct CubeFace {
     int8_t sAxis, sSign, tAxis, tSign, majorAxis, majorSign;
 };
@@ -20,8 +22,9 @@ inline constexpr CubeFace kCubeFaces[6] = {
     {0, +1, 1, -1, 2, +1}, {0, -1, 1, -1, 2, -1},  // +Z, -Z
 };
 
-/// The texel one step beyond an edge: exactly one of x and y is -1 or `size`, the other inside. Works on the cube of edge
-/// 2 * size centred on the origin, where texel centres have odd coordinates on a face: the texel is folded over the edge.
+/// The texel one step beyond an edge: exactly one of x and y is -1 or `size`, the other inside. Works on the
+/// cube of edge 2 * size centred on the origin, where texel centres have odd coordinates on a face: the texel
+/// is folded over the edge.
 constexpr CubeTexel foldOverEdge(CubeTexel texel, int32_t size) {
     const CubeFace& from = kCubeFaces[texel.face];
     int32_t s = 2 * texel.x + 1 - size, t = 2 * texel.y + 1 - size, major = size;
@@ -39,7 +42,8 @@ constexpr CubeTexel foldOverEdge(CubeTexel texel, int32_t size) {
     for (int32_t face = 0; face < 6; ++face) {
         const CubeFace& to = kCubeFaces[face];
         if (point[to.majorAxis] * to.majorSign != size) continue;
-        return {face, (point[to.sAxis] * to.sSign + size - 1) / 2, (point[to.tAxis] * to.tSign + size - 1) / 2};
+        return {face, (point[to.sAxis] * to.sSign + size - 1) / 2,
+                (point[to.tAxis] * to.tSign + size - 1) / 2};
     }
     return texel;
 }

@@ -17,11 +17,16 @@ struct FetchShape {
 
 FetchShape shapeOf(VkImageViewType type) {
     switch (type) {
-        case VK_IMAGE_VIEW_TYPE_1D: return {false, false, false};
-        case VK_IMAGE_VIEW_TYPE_1D_ARRAY: return {false, false, true};
-        case VK_IMAGE_VIEW_TYPE_2D: return {true, false, false};
-        case VK_IMAGE_VIEW_TYPE_3D: return {true, true, false};
-        default: return {true, false, true};
+        case VK_IMAGE_VIEW_TYPE_1D:
+            return {false, false, false};
+        case VK_IMAGE_VIEW_TYPE_1D_ARRAY:
+            return {false, false, true};
+        case VK_IMAGE_VIEW_TYPE_2D:
+            return {true, false, false};
+        case VK_IMAGE_VIEW_TYPE_3D:
+            return {true, true, false};
+        default:
+            return {true, false, true};
     }
 }
 
@@ -73,6 +78,8 @@ void fetch(const TextureView& view, const FetchRequest& request) {
 }  // namespace
 
 // The conversion in view.ops is the part that depends on the instruction set.
-FetchFn selectFetch(const TextureView&, Isa) { return fetch; }
+FetchFn selectFetch(const TextureView&, Isa) {
+    return fetch;
+}
 
 }  // namespace vernier

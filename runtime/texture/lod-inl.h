@@ -1,5 +1,5 @@
-// Level of detail ("Level of Detail Operation" and "Image Level(s) Selection" of the Vulkan specification) and the choice
-// of cube faces. Included once per target (see base/simd.h).
+// Level of detail ("Level of Detail Operation" and "Image Level(s) Selection" of the Vulkan specification)
+// and the choice of cube faces. Included once per target (see base/simd.h).
 #if defined(VERNIER_TEXTURE_LOD_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef VERNIER_TEXTURE_LOD_INL_H
 #undef VERNIER_TEXTURE_LOD_INL_H
@@ -15,12 +15,14 @@ HWY_BEFORE_NAMESPACE();
 namespace vernier {
 namespace HWY_NAMESPACE {
 
-/// log2 of a number that is not negative, within 2^-18 + 2^-24 |log2 x|; exact for powers of two. Zero and denormals give -127
-/// or a little more, infinity and NaN finite values of at least 128: every result is a usable level of detail.
+/// log2 of a number that is not negative, within 2^-18 + 2^-24 |log2 x|; exact for powers of two. Zero and
+/// denormals give -127 or a little more, infinity and NaN finite values of at least 128: every result is a
+/// usable level of detail.
 HWY_INLINE VF log2V(VF x) {
     const I32 di;
     const F32 df;
-    // x = 2^e m with m from sqrt(1/2) to sqrt(2); then log2 m = 2/ln 2 (s + s^3/3 + s^5/5 + ...), s = (m - 1) / (m + 1).
+    // x = 2^e m with m from sqrt(1/2) to sqrt(2); then log2 m = 2/ln 2 (s + s^3/3 + s^5/5 + ...), s = (m - 1)
+    // / (m + 1).
     constexpr int32_t kSqrtHalf = 0x3f3504f3;
     const VI bits = hn::And(hn::BitCast(di, x), splatInt(0x7fffffff));
     const VI e = hn::ShiftRight<23>(hn::Sub(bits, splatInt(kSqrtHalf)));
@@ -55,10 +57,14 @@ HWY_INLINE void storeLanes(VU value, float* plane, uint32_t first, uint32_t coun
     std::memcpy(plane + first, part, count * sizeof(float));
 }
 
-/// The horizontal and vertical difference over each quad, in all its lanes. A vector holds whole quads, one per block of 128
-/// bits.
-HWY_INLINE VF quadDx(VF x) { return hn::Sub(hn::Broadcast<1>(x), hn::Broadcast<0>(x)); }
-HWY_INLINE VF quadDy(VF x) { return hn::Sub(hn::Broadcast<2>(x), hn::Broadcast<0>(x)); }
+/// The horizontal and vertical difference over each quad, in all its lanes. A vector holds whole quads, one
+/// per block of 128 bits.
+HWY_INLINE VF quadDx(VF x) {
+    return hn::Sub(hn::Broadcast<1>(x), hn::Broadcast<0>(x));
+}
+HWY_INLINE VF quadDy(VF x) {
+    return hn::Sub(hn::Broadcast<2>(x), hn::Broadcast<0>(x));
+}
 
 /// A direction seen from its cube face.
 struct FaceVector {
@@ -79,13 +85,14 @@ HWY_INLINE FaceChoice chooseFace(VF x, VF y, VF z) {
     const VF major = hn::IfThenElse(choice.z, z, hn::IfThenElse(choice.y, y, x));
     choice.negative = hn::Lt(major, hn::Zero(F32()));
     const auto whole = [](hn::Mask<F32> m) { return hn::RebindMask(I32(), m); };
-    const VI axis = hn::IfThenElse(whole(choice.z), splatInt(4), hn::IfThenElseZero(whole(choice.y), splatInt(2)));
+    const VI axis =
+        hn::IfThenElse(whole(choice.z), splatInt(4), hn::IfThenElseZero(whole(choice.y), splatInt(2)));
     choice.face = hn::Add(axis, hn::IfThenElseZero(whole(choice.negative), splatInt(1)));
     return choice;
 }
 
-/// The vector in the chosen face's axes ("Cube Map Face Selection": s, t, and the major axis made positive). Linear, so
-/// that it maps derivatives too.
+/// The vector in the chosen face's axes ("Cube Map Face Selection": s, t, and the major axis made positive).
+/// Linear, so that it maps derivatives too.
 HWY_INLINE FaceVector onFace(const FaceChoice& choice, VF x, VF y, VF z) {
     const VF nx = hn::Neg(x), ny = hn::Neg(y), nz = hn::Neg(z);
     const auto negative = choice.negative;
@@ -113,21 +120,28 @@ struct LevelChoice {
     VF lambda;     // after the clamp: decides between magnification and minification
 };
 
-/// lambda prime: lambda from `request` (through `implicitLambda` where derivatives are asked for) plus the biases.
+/// lambda prime: lambda from `request` (through `implicitLambda` where derivatives are asked for) plus the
+/// biases.
 template <class Lambda>
-HWY_INLINE VF biasedLambda(const SamplerState& sampler, const SampleRequest& request, uint32_t first, uint32_t count,
-                           Lambda implicitLambda) {
+HWY_INLINE VF biasedLambda(const SamplerState& sampler, const SampleRequest& request, uint32_t first,
+                           uint32_t count, Lambda implicitLambda) {
     VF lambda = hn::Zero(F32()), bias = splatFloat(sampler.mipLodBias);
     switch (request.lodMode) {
         case LodMode::implicitLod:
             lambda = implicitLambda();
             bias = hn::Add(bias, loadLanes(request.lod, first, count));
             break;
-        case LodMode::gradients: lambda = implicitLambda(); break;
-        case LodMode::explicitLod: lambda = loadLanes(request.lod, first, count); break;
-        case LodMode::base: break;
+        case LodMode::gradients:
+            lambda = implicitLambda();
+            break;
+        case LodMode::explicitLod:
+            lambda = loadLanes(request.lod, first, count);
+            break;
+        case LodMode::base:
+            break;
     }
-    return hn::Add(lambda, clampOrLowV(bias, splatFloat(-kMaxSamplerLodBias), splatFloat(kMaxSamplerLodBias)));
+    return hn::Add(lambda,
+                   clampOrLowV(bias, splatFloat(-kMaxSamplerLodBias), splatFloat(kMaxSamplerLodBias)));
 }
 
 HWY_INLINE LevelChoice chooseLevels(const TextureView& view, const SamplerState& sampler, VF lambdaPrime) {

@@ -15,13 +15,20 @@ enum class Route : uint8_t { r, g, b, a, zero, one };
 inline Route routeOf(const VkComponentMapping& swizzle, uint32_t output) {
     const VkComponentSwizzle all[4] = {swizzle.r, swizzle.g, swizzle.b, swizzle.a};
     switch (all[output]) {
-        case VK_COMPONENT_SWIZZLE_ZERO: return Route::zero;
-        case VK_COMPONENT_SWIZZLE_ONE: return Route::one;
-        case VK_COMPONENT_SWIZZLE_R: return Route::r;
-        case VK_COMPONENT_SWIZZLE_G: return Route::g;
-        case VK_COMPONENT_SWIZZLE_B: return Route::b;
-        case VK_COMPONENT_SWIZZLE_A: return Route::a;
-        default: return static_cast<Route>(output);
+        case VK_COMPONENT_SWIZZLE_ZERO:
+            return Route::zero;
+        case VK_COMPONENT_SWIZZLE_ONE:
+            return Route::one;
+        case VK_COMPONENT_SWIZZLE_R:
+            return Route::r;
+        case VK_COMPONENT_SWIZZLE_G:
+            return Route::g;
+        case VK_COMPONENT_SWIZZLE_B:
+            return Route::b;
+        case VK_COMPONENT_SWIZZLE_A:
+            return Route::a;
+        default:
+            return static_cast<Route>(output);
     }
 }
 

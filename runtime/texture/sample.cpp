@@ -1,4 +1,5 @@
-// The sampling routines: one per kind of texel, shape of image and pair of address modes.
+// Which sampling routine a view and a sampler get: one per kind of texel, shape of image and pair of address
+// modes.
 #include "runtime/texture/texture.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -10,454 +11,11 @@
 
 #include <limits>
 
-#include "runtime/texture/cube.h"
-#include "runtime/texture/texels-inl.h"
+#include "runtime/texture/sampler-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vernier {
 namespace HWY_NAMESPACE {
-
-enum class Shape { flat, volume, cube };  // 1D and 2D, 3D, cube; with or without layers
-
-/// The coordinates of one vector of lanes, free of the level of detail.
-struct Coordinates {
-    VF s, t, r;    // of a cube: s and t on the face
-    VI slice;      // array layer or face; z of a volume comes from r
-    VF dref;
-};
-
-/// Everything of one call that does not change from vector to vector.
-template <class Source, Shape kShape, Wrap kWrap>
-class Sampler {
-  public:
-    Sampler(const TextureView& view, const SamplerState& sampler, const SampleRequest& request)
-        : view_(view), sampler_(sampler), request_(request), source_(view), compare_(sampler.compareEnable) {
-        source_.borderPlanes(sampler.borderColor, border_);
-        neededComponents_ = compare_ ? 1 : 0;
-        for (uint32_t c = 0; c < 4; ++c) {
-            const Route route = compare_ ? Route::r : routeOf(view.swizzle, c);
-            if (request.out[c] == nullptr || (compare_ && c != 0)) continue;
-            Output& output = outputs_[outputCount_++];
-            output.target = request.out[c];
-            if (route <= Route::a) {
-                output.plane = source_.planeOf[static_cast<uint32_t>(route)];
-                neededComponents_ |= 1u << static_cast<uint32_t>(route);
-            } else {
-                output.plane = kConstantPlane;
-                output.constant = constantBits(view.ops.layout, route == Route::one);
-            }
-        }
-        fixedPointDepth_ = view.ops.layout.rgba[0].kind == ComponentKind::unorm;
-    }
-
-    void sample() const {
-        forEachVector([&](uint32_t first, uint32_t count) HWY_ATTR { sampleVector(first, count); });
-    }
-
-    void gather() const {
-        forEachVector([&](uint32_t first, uint32_t count) HWY_ATTR { gatherVector(first, count); });
-    }
-
-    void queryLod() const {
-        forEachVector([&](uint32_t first, uint32_t count) HWY_ATTR {
-            const VF lambdaPrime = lambda(first, count);
-            const LevelChoice choice = chooseLevels(view_, sampler_, lambdaPrime);
-            const VF level = hn::Add(hn::ConvertTo(F32(), choice.high), choice.weight);
-            if (request_.out[0] != nullptr) storeLanes(bitsOf(level), request_.out[0], first, count);
-            if (request_.out[1] != nullptr) storeLanes(bitsOf(lambdaPrime), request_.out[1], first, count);
-        });
-    }
-
-  private:
-    using Mask = hn::Mask<F32>;
-
-    template <class Step>
-    HWY_INLINE void forEachVector(Step step) const {
-        for (uint32_t first = 0; first < request_.lanes; first += kVectorLanes) {
-            const uint32_t count = request_.lanes - first;
-            if (request_.mask != nullptr) {
-                const VU active = loadLanes(request_.mask, first, count);
-                if (hn::AllTrue(U32(), hn::Eq(active, hn::Zero(U32())))) continue;
-            }
-            step(first, count);
-        }
-    }
-
-    HWY_INLINE VF coordinate(int axis, uint32_t first, uint32_t count) const {
-        return loadLanes(request_.coord[axis], first, count);
-    }
-
-    HWY_INLINE Coordinates coordinates(uint32_t first, uint32_t count) const {
-        Coordinates at;
-        at.s = coordinate(0, first, count);
-        // A 1D image is one row, met in the middle.
-        const bool oneDimensional = view_.type == VK_IMAGE_VIEW_TYPE_1D || view_.type == VK_IMAGE_VIEW_TYPE_1D_ARRAY;
-        at.t = oneDimensional ? splatFloat(0.5f) : coordinate(1, first, count);
-        at.r = kShape == Shape::flat ? hn::Zero(F32()) : coordinate(2, first, count);
-        at.slice = hn::Zero(I32());
-        at.dref = hn::Zero(F32());
-        if (view_.layerCount > 1 && kShape != Shape::volume) {
-            const uint32_t layers = kShape == Shape::cube ? view_.layerCount / 6 : view_.layerCount;
-            const VF layer = clampOrLowV(coordinate(3, first, count), hn::Zero(F32()),
-                                         splatFloat(static_cast<float>(layers - 1)));
-            at.slice = hn::NearestInt(layer);
-        }
-        if constexpr (kShape == Shape::cube) {
-            const FaceChoice choice = chooseFace(at.s, at.t, at.r);
-            const FaceVector v = onFace(choice, at.s, at.t, at.r);
-            const VF half = splatFloat(0.5f);
-            at.s = hn::Add(hn::Mul(half, hn::Div(v.s, v.major)), half);
-            at.t = hn::Add(hn::Mul(half, hn::Div(v.t, v.major)), half);
-            at.slice = hn::Add(hn::Mul(at.slice, splatInt(6)), choice.face);
-        }
-        if (compare_) {
-            at.dref = loadLanes(request_.dref, first, count);
-            if (fixedPointDepth_) at.dref = clampOrLowV(at.dref, hn::Zero(F32()), splatFloat(1.0f));
-        }
-        return at;
-    }
-
-    // --- Level of detail
-
-    /// Squared length of a gradient in texels of the base level.
-    HWY_INLINE VF gradientLength2(VF ds, VF dt, VF dr) const {
-        const TextureLevel& base = view_.levels[0];
-        const VF u = hn::Mul(ds, splatFloat(static_cast<float>(base.width)));
-        const VF v = hn::Mul(dt, splatFloat(static_cast<float>(base.height)));
-        VF sum = hn::Add(hn::Mul(u, u), hn::Mul(v, v));
-        if constexpr (kShape == Shape::volume) {
-            const VF w = hn::Mul(dr, splatFloat(static_cast<float>(base.depth)));
-            sum = hn::Add(sum, hn::Mul(w, w));
-        }
-        return sum;
-    }
-
-    HWY_NOINLINE VF derivativeLambda(uint32_t first, uint32_t count) const {
-        VF at[3], dx[3], dy[3];
-        for (int i = 0; i < 3; ++i) {
-            const bool gradients = request_.lodMode == LodMode::gradients;
-            at[i] = coordinate(i, first, count);
-            dx[i] = gradients ? loadLanes(request_.gradX[i], first, count) : quadDx(at[i]);
-            dy[i] = gradients ? loadLanes(request_.gradY[i], first, count) : quadDy(at[i]);
-        }
-        if (view_.levels[0].height == 1 && view_.type != VK_IMAGE_VIEW_TYPE_2D &&
-            view_.type != VK_IMAGE_VIEW_TYPE_2D_ARRAY && kShape == Shape::flat) {
-            dx[1] = dy[1] = hn::Zero(F32());
-        }
-        if constexpr (kShape == Shape::cube) {
-            const FaceChoice choice = chooseFace(at[0], at[1], at[2]);
-            const FaceVector v = onFace(choice, at[0], at[1], at[2]);
-            projectDerivative(v, onFace(choice, dx[0], dx[1], dx[2]), dx[0], dx[1]);
-            projectDerivative(v, onFace(choice, dy[0], dy[1], dy[2]), dy[0], dy[1]);
-        }
-        const VF x2 = gradientLength2(dx[0], dx[1], dx[2]), y2 = gradientLength2(dy[0], dy[1], dy[2]);
-        const VF rho2 = hn::IfThenElse(hn::Gt(x2, y2), x2, y2);
-        return hn::Mul(log2V(rho2), splatFloat(0.5f));
-    }
-
-    HWY_INLINE VF lambda(uint32_t first, uint32_t count) const {
-        if (sampler_.unnormalizedCoordinates) return hn::Zero(F32());
-        return biasedLambda(sampler_, request_, first, count,
-                            [&]() HWY_ATTR { return derivativeLambda(first, count); });
-    }
-
-    // --- Texels
-
-    Axis axis(int index, uint32_t size) const {
-        return {sampler_.addressMode[index], static_cast<int32_t>(size), request_.offset[index],
-                !sampler_.unnormalizedCoordinates};
-    }
-
-    template <int kTaps>
-    HWY_INLINE void load(const TextureLevel& level, const TexelPosition (&at)[kTaps], const VI (&inside)[kTaps],
-                         VF dref, Texel (&texels)[kTaps]) const {
-        source_.load(view_, level, at, neededComponents_, texels);
-        if constexpr (kWrap == Wrap::any && kShape != Shape::cube) {
-            for (int t = 0; t < kTaps; ++t) {
-                const auto isInside = hn::MaskFromVec(hn::BitCast(U32(), inside[t]));
-                for (int p = 0; p < 4; ++p) texels[t][p] = hn::IfThenElse(isInside, texels[t][p], splatBits(border_[p]));
-            }
-        }
-        if constexpr (!Source::kFinite) {
-            if (!compare_) return;
-            for (int t = 0; t < kTaps; ++t) texels[t][0] = compareTexel(dref, floatOf(texels[t][0]));
-        }
-    }
-
-    HWY_INLINE VU compareTexel(VF dref, VF texel) const {
-        Mask pass;
-        switch (sampler_.compareOp) {
-            case VK_COMPARE_OP_LESS: pass = hn::Lt(dref, texel); break;
-            case VK_COMPARE_OP_EQUAL: pass = hn::Eq(dref, texel); break;
-            case VK_COMPARE_OP_LESS_OR_EQUAL: pass = hn::Le(dref, texel); break;
-            case VK_COMPARE_OP_GREATER: pass = hn::Gt(dref, texel); break;
-            case VK_COMPARE_OP_NOT_EQUAL: pass = hn::Ne(dref, texel); break;
-            case VK_COMPARE_OP_GREATER_OR_EQUAL: pass = hn::Ge(dref, texel); break;
-            case VK_COMPARE_OP_ALWAYS: return bitsOf(splatFloat(1.0f));
-            default: return hn::Zero(U32());
-        }
-        return bitsOf(hn::IfThenElseZero(pass, splatFloat(1.0f)));
-    }
-
-    HWY_INLINE void nearest(const TextureLevel& level, const Coordinates& at, Texel& result) const {
-        AxisTaps x, y, z;
-        TexelPosition position[1];
-        VI inside[1];
-        Texel texel[1];
-        if constexpr (kShape == Shape::cube) {
-            nearestTap<Wrap::clampToEdge>(at.s, faceAxis(level), x);
-            nearestTap<Wrap::clampToEdge>(at.t, faceAxis(level), y);
-        } else {
-            nearestTap<kWrap>(at.s, axis(0, level.width), x);
-            nearestTap<kWrap>(at.t, axis(1, level.height), y);
-        }
-        position[0] = {x.index[0], y.index[0], at.slice};
-        if constexpr (kWrap == Wrap::any && kShape != Shape::cube) inside[0] = hn::And(x.inside[0], y.inside[0]);
-        if constexpr (kShape == Shape::volume) {
-            nearestTap<kWrap>(at.r, axis(2, level.depth), z);
-            position[0].slice = z.index[0];
-            inside[0] = hn::And(inside[0], z.inside[0]);
-        }
-        load(level, position, inside, at.dref, texel);
-        for (int p = 0; p < 4; ++p) result[p] = texel[0][p];
-    }
-
-    /// The 2x2 texels around a point; tap 2j + i is (i, j). wx and wy are the weights of i = 1 and j = 1.
-    HWY_INLINE void squareTaps(const TextureLevel& level, const Coordinates& at, Texel (&texels)[4], VF& wx,
-                               VF& wy) const {
-        TexelPosition position[4];
-        VI inside[4];
-        if constexpr (kShape == Shape::cube) {
-            VI corner[4];
-            cubeTaps(level, at, position, corner, wx, wy);
-            load(level, position, inside, at.dref, texels);
-            for (int t = 0; t < 4; ++t) fillCorner(corner[t], texels[t], texels[t ^ 1], texels[t ^ 2], texels[t ^ 3]);
-        } else {
-            AxisTaps x, y;
-            linearTaps<kWrap>(at.s, axis(0, level.width), x);
-            linearTaps<kWrap>(at.t, axis(1, level.height), y);
-            wx = x.weight;
-            wy = y.weight;
-            for (int t = 0; t < 4; ++t) {
-                position[t] = {x.index[t & 1], y.index[t >> 1], at.slice};
-                if constexpr (kWrap == Wrap::any) inside[t] = hn::And(x.inside[t & 1], y.inside[t >> 1]);
-            }
-            load(level, position, inside, at.dref, texels);
-        }
-    }
-
-    HWY_INLINE void linear(const TextureLevel& level, const Coordinates& at, Texel& result) const {
-        if constexpr (kShape == Shape::volume) {
-            AxisTaps x, y, z;
-            linearTaps<kWrap>(at.s, axis(0, level.width), x);
-            linearTaps<kWrap>(at.t, axis(1, level.height), y);
-            linearTaps<kWrap>(at.r, axis(2, level.depth), z);
-            Texel slices[2];
-            for (int k = 0; k < 2; ++k) {
-                TexelPosition position[4];
-                VI inside[4];
-                Texel texels[4];
-                for (int t = 0; t < 4; ++t) {
-                    position[t] = {x.index[t & 1], y.index[t >> 1], z.index[k]};
-                    inside[t] = hn::And(hn::And(x.inside[t & 1], y.inside[t >> 1]), z.inside[k]);
-                }
-                load(level, position, inside, at.dref, texels);
-                blendSquare(texels, x.weight, y.weight, slices[k]);
-            }
-            for (int p = 0; p < 4; ++p) result[p] = lerpPlane<Source>(slices[0][p], slices[1][p], z.weight);
-        } else {
-            Texel texels[4];
-            VF wx, wy;
-            squareTaps(level, at, texels, wx, wy);
-            blendSquare(texels, wx, wy, result);
-        }
-    }
-
-    static HWY_INLINE void blendSquare(const Texel (&texels)[4], VF wx, VF wy, Texel& result) {
-        for (int p = 0; p < 4; ++p) {
-            const VU top = lerpPlane<Source>(texels[0][p], texels[1][p], wx);
-            const VU bottom = lerpPlane<Source>(texels[2][p], texels[3][p], wx);
-            result[p] = lerpPlane<Source>(top, bottom, wy);
-        }
-    }
-
-    // --- Cubes
-
-    static Axis faceAxis(const TextureLevel& level) {
-        return {VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, static_cast<int32_t>(level.width), 0, true};
-    }
-
-    /// As the positions of a flat image, but texels beyond an edge are those of the neighbouring face. corner[t]: all ones
-    /// where tap t lies beyond two edges and has no texel.
-    HWY_INLINE void cubeTaps(const TextureLevel& level, const Coordinates& at, TexelPosition (&position)[4],
-                             VI (&corner)[4], VF& wx, VF& wy) const {
-        const auto size = static_cast<int32_t>(level.width);
-        const auto tap = [&](VF s, VF& weight) HWY_ATTR {
-            const VF zero = hn::Zero(F32()), extent = splatFloat(static_cast<float>(size));
-            const VF u = hn::Sub(clampOrLowV(hn::Mul(s, extent), zero, extent), splatFloat(0.5f));
-            const VF whole = hn::Floor(u);
-            weight = hn::Sub(u, whole);
-            return hn::ConvertTo(I32(), whole);  // -1 .. size - 1
-        };
-        const VI x0 = tap(at.s, wx), y0 = tap(at.t, wy), one = splatInt(1);
-        const auto outside = [&](VI i) HWY_ATTR {
-            return hn::Or(hn::Lt(i, hn::Zero(I32())), hn::Gt(i, splatInt(size - 1)));
-        };
-        for (int t = 0; t < 4; ++t) {
-            const VI x = (t & 1) != 0 ? hn::Add(x0, one) : x0, y = (t & 2) != 0 ? hn::Add(y0, one) : y0;
-            const auto outX = outside(x), outY = outside(y);
-            corner[t] = hn::VecFromMask(I32(), hn::And(outX, outY));
-            position[t] = {clampIndex(x, size), clampIndex(y, size), at.slice};
-            const auto fold = hn::Xor(outX, outY);
-            if (!hn::AllFalse(I32(), fold)) foldLanes(x, y, hn::VecFromMask(I32(), fold), size, position[t]);
-        }
-    }
-
-    HWY_NOINLINE static void foldLanes(VI x, VI y, VI fold, int32_t size, TexelPosition& position) {
-        alignas(64) int32_t xs[kVectorLanes], ys[kVectorLanes], folds[kVectorLanes];
-        alignas(64) int32_t inX[kVectorLanes], inY[kVectorLanes], slices[kVectorLanes];
-        hn::Store(x, I32(), xs);
-        hn::Store(y, I32(), ys);
-        hn::Store(fold, I32(), folds);
-        hn::Store(position.x, I32(), inX);
-        hn::Store(position.y, I32(), inY);
-        hn::Store(position.slice, I32(), slices);
-        for (uint32_t i = 0; i < kVectorLanes; ++i) {
-            if (folds[i] == 0) continue;
-            const int32_t face = slices[i] % 6;
-            const CubeTexel texel = foldOverEdge({face, xs[i], ys[i]}, size);
-            inX[i] = texel.x;
-            inY[i] = texel.y;
-            slices[i] += texel.face - face;
-        }
-        position = {hn::Load(I32(), inX), hn::Load(I32(), inY), hn::Load(I32(), slices)};
-    }
-
-    /// Where `corner` is set, the mean of the other three texels; exactly that value where they are equal.
-    HWY_INLINE void fillCorner(VI corner, Texel& texel, const Texel& a, const Texel& b, const Texel& c) const {
-        const auto isCorner = hn::MaskFromVec(hn::BitCast(U32(), corner));
-        if (hn::AllFalse(U32(), isCorner)) return;
-        for (int p = 0; p < 4; ++p) {
-            const VF fa = floatOf(a[p]), fb = floatOf(b[p]), fc = floatOf(c[p]);
-            const VF third = splatFloat(3.0f);
-            const VF mean = hn::Add(hn::Add(hn::Div(fa, third), hn::Div(fb, third)), hn::Div(fc, third));
-            const auto equal = hn::And(hn::Eq(fa, fb), hn::Eq(fb, fc));
-            texel[p] = hn::IfThenElse(isCorner, bitsOf(hn::IfThenElse(equal, fa, mean)), texel[p]);
-        }
-    }
-
-    // --- Filters and levels
-
-    // Not inlined: the levels of one vector share the code.
-    HWY_NOINLINE void sampleLevel(const TextureLevel& level, const Coordinates& at, Mask magnified, Texel& result) const {
-        const bool magLinear = sampler_.magFilter == VK_FILTER_LINEAR, minLinear = sampler_.minFilter == VK_FILTER_LINEAR;
-        const bool mixed = magLinear != minLinear;  // otherwise `magnified` says nothing
-        const Mask isLinear = magLinear ? magnified : hn::Not(magnified);
-        const bool anyLinear = mixed ? !hn::AllFalse(F32(), isLinear) : magLinear;
-        const bool anyNearest = mixed ? !hn::AllTrue(F32(), isLinear) : !magLinear;
-        if (anyLinear) linear(level, at, result);
-        if (!anyNearest) return;
-        Texel sharp;
-        nearest(level, at, sharp);
-        const auto choose = hn::RebindMask(U32(), isLinear);
-        for (int p = 0; p < 4; ++p) result[p] = anyLinear ? hn::IfThenElse(choose, result[p], sharp[p]) : sharp[p];
-    }
-
-    /// Each lane from its own level: one pass per level that occurs, nearly always one or two.
-    HWY_NOINLINE void sampleLevels(VI levels, const Coordinates& at, Mask magnified, Texel& result) const {
-        if (view_.levelCount == 1) {
-            sampleLevel(view_.levels[0], at, magnified, result);
-            return;
-        }
-        alignas(64) int32_t index[kVectorLanes];
-        hn::Store(levels, I32(), index);
-        for (int p = 0; p < 4; ++p) result[p] = hn::Zero(U32());
-        auto done = hn::MaskFromVec(hn::Zero(I32()));
-        while (!hn::AllTrue(I32(), done)) {
-            const int32_t next = index[hn::FindFirstTrue(I32(), hn::Not(done))];
-            Texel other;
-            sampleLevel(view_.levels[static_cast<uint32_t>(next)], at, magnified, other);
-            const auto here = hn::Eq(levels, splatInt(next));
-            for (int p = 0; p < 4; ++p) result[p] = hn::IfThenElse(hn::RebindMask(U32(), here), other[p], result[p]);
-            done = hn::Or(done, here);
-        }
-    }
-
-    HWY_INLINE void sampleVector(uint32_t first, uint32_t count) const {
-        const Coordinates at = coordinates(first, count);
-        Texel texel;
-        if (view_.levelCount == 1 && sampler_.magFilter == sampler_.minFilter) {
-            sampleLevel(view_.levels[0], at, hn::MaskFromVec(hn::Zero(F32())), texel);
-        } else {
-            const LevelChoice choice = chooseLevels(view_, sampler_, lambda(first, count));
-            const Mask magnified = hn::Not(hn::Gt(choice.lambda, hn::Zero(F32())));
-            sampleLevels(choice.high, at, magnified, texel);
-            if (!hn::AllTrue(F32(), hn::Eq(choice.weight, hn::Zero(F32())))) {
-                Texel less;
-                sampleLevels(choice.low, at, magnified, less);
-                for (int p = 0; p < 4; ++p) texel[p] = lerpPlane<Source>(texel[p], less[p], choice.weight);
-            }
-        }
-        write(texel, first, count);
-    }
-
-    HWY_INLINE void write(const Texel& texel, uint32_t first, uint32_t count) const {
-        for (uint32_t i = 0; i < outputCount_; ++i) {
-            const Output& output = outputs_[i];
-            const VU value = output.plane == kConstantPlane ? splatBits(output.constant)
-                                                            : source_.finish(texel[output.plane]);
-            storeLanes(value, output.target, first, count);
-        }
-    }
-
-    HWY_INLINE void gatherVector(uint32_t first, uint32_t count) const {
-        if constexpr (kShape != Shape::volume && !Source::kFinite) {
-            const Route route = compare_ ? Route::r : routeOf(view_.swizzle, request_.component);
-            const Coordinates at = coordinates(first, count);
-            const LevelChoice choice = chooseLevels(view_, sampler_, lambda(first, count));
-            alignas(64) int32_t index[kVectorLanes];
-            hn::Store(choice.high, I32(), index);
-            constexpr int kOrder[4] = {2, 3, 1, 0};  // (0,1), (1,1), (1,0), (0,0)
-            VU result[4];
-            auto done = hn::MaskFromVec(hn::Zero(I32()));
-            for (int c = 0; c < 4; ++c) result[c] = splatBits(constantBits(view_.ops.layout, route == Route::one));
-            while (route <= Route::a && !hn::AllTrue(I32(), done)) {
-                const int32_t level = index[hn::FindFirstTrue(I32(), hn::Not(done))];
-                const auto here = hn::Eq(choice.high, splatInt(level));
-                Texel texels[4];
-                VF wx, wy;
-                squareTaps(view_.levels[static_cast<uint32_t>(level)], at, texels, wx, wy);
-                for (int c = 0; c < 4; ++c) {
-                    const VU value = texels[kOrder[c]][static_cast<uint32_t>(route)];
-                    result[c] = hn::IfThenElse(hn::RebindMask(U32(), here), value, result[c]);
-                }
-                done = hn::Or(done, here);
-            }
-            for (int c = 0; c < 4; ++c) {
-                if (request_.out[c] != nullptr) storeLanes(result[c], request_.out[c], first, count);
-            }
-        }
-    }
-
-    /// An output that somebody wants: a plane of the filtered texel or a constant.
-    struct Output {
-        float* target;
-        uint32_t constant;
-        uint8_t plane;
-    };
-    static constexpr uint8_t kConstantPlane = 4;
-
-    const TextureView& view_;
-    const SamplerState& sampler_;
-    const SampleRequest& request_;
-    Output outputs_[4];
-    uint32_t outputCount_ = 0;
-    Source source_;
-    uint32_t border_[4];
-    uint32_t neededComponents_ = 0;
-    bool compare_;
-    bool fixedPointDepth_;
-};
 
 template <class Source, Shape kShape, Wrap kWrap>
 void runSample(const TextureView& view, const SamplerState& sampler, const SampleRequest& request) {
@@ -466,17 +24,18 @@ void runSample(const TextureView& view, const SamplerState& sampler, const Sampl
 
 template <Shape kShape>
 void runGather(const TextureView& view, const SamplerState& sampler, const SampleRequest& request) {
-    Sampler<AnySource, kShape, Wrap::any>(view, sampler, request).gather();
+    Sampler<AnySource<4>, kShape, Wrap::any>(view, sampler, request).gather();
 }
 
 template <Shape kShape>
 void runQueryLod(const TextureView& view, const SamplerState& sampler, const SampleRequest& request) {
-    Sampler<AnySource, kShape, Wrap::any>(view, sampler, request).queryLod();
+    Sampler<AnySource<4>, kShape, Wrap::any>(view, sampler, request).queryLod();
 }
 
 Shape shapeOf(VkImageViewType type) {
     if (type == VK_IMAGE_VIEW_TYPE_3D) return Shape::volume;
-    return type == VK_IMAGE_VIEW_TYPE_CUBE || type == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY ? Shape::cube : Shape::flat;
+    return type == VK_IMAGE_VIEW_TYPE_CUBE || type == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY ? Shape::cube
+                                                                                    : Shape::flat;
 }
 
 /// Gathers address texels by a signed 32-bit offset from the level's first one.
@@ -486,39 +45,56 @@ bool offsetsFitInt32(const TextureView& view) {
         const uint64_t slices = view.type == VK_IMAGE_VIEW_TYPE_3D ? level.depth : view.layerCount;
         const uint64_t end = (slices - 1) * level.slicePitch + uint64_t{level.height} * level.rowPitch;
         constexpr uint64_t kLimit = std::numeric_limits<int32_t>::max();
-        if (end > kLimit || (slices > 1 && level.slicePitch > kLimit) || level.rowPitch > kLimit) return false;
+        if (end > kLimit || (slices > 1 && level.slicePitch > kLimit) || level.rowPitch > kLimit)
+            return false;
     }
     return true;
 }
 
-template <template <bool, bool> class Source, bool kSrgb>
+template <bool kSrgb>
 SampleFn selectRgba8(const TextureView& view, const SamplerState& sampler) {
-    using Narrow = Source<kSrgb, false>;
+    using Narrow = Rgba8Source<kSrgb, false>;
+    using Wide = Rgba8Source<kSrgb, true>;
     switch (shapeOf(view.type)) {
-        case Shape::volume: return runSample<Source<kSrgb, true>, Shape::volume, Wrap::any>;
-        case Shape::cube: return runSample<Source<kSrgb, true>, Shape::cube, Wrap::any>;
-        case Shape::flat: break;
+        case Shape::volume:
+            return runSample<Wide, Shape::volume, Wrap::any>;
+        case Shape::cube:
+            return runSample<Wide, Shape::cube, Wrap::any>;
+        case Shape::flat:
+            break;
     }
-    if (!offsetsFitInt32(view)) return runSample<Source<kSrgb, true>, Shape::flat, Wrap::any>;
-    const bool oneDimensional = view.type == VK_IMAGE_VIEW_TYPE_1D || view.type == VK_IMAGE_VIEW_TYPE_1D_ARRAY;
+    if (!offsetsFitInt32(view)) return runSample<Wide, Shape::flat, Wrap::any>;
+    const bool oneDimensional =
+        view.type == VK_IMAGE_VIEW_TYPE_1D || view.type == VK_IMAGE_VIEW_TYPE_1D_ARRAY;
     const VkSamplerAddressMode u = sampler.addressMode[0], v = oneDimensional ? u : sampler.addressMode[1];
     if (u == v && u == VK_SAMPLER_ADDRESS_MODE_REPEAT) return runSample<Narrow, Shape::flat, Wrap::repeat>;
-    if (u == v && u == VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE) return runSample<Narrow, Shape::flat, Wrap::clampToEdge>;
+    if (u == v && u == VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE)
+        return runSample<Narrow, Shape::flat, Wrap::clampToEdge>;
     return runSample<Narrow, Shape::flat, Wrap::any>;
 }
 
 SampleFn selectSampleRoutine(const TextureView& view, const SamplerState& sampler) {
     const TexelLayout& layout = view.ops.layout;
-    bool fourBytes = layout.bytes == 4 && view.texelPitch == 4 && !sampler.compareEnable;
+    const Component& first = layout.rgba[0];
+    const bool words = layout.bytes == 4 && view.texelPitch == 4;
+    bool fourBytes = words && !sampler.compareEnable;
     for (const Component& part : layout.rgba) fourBytes = fourBytes && part.bits == 8 && part.offset % 8 == 0;
-    if (fourBytes && layout.rgba[0].kind == ComponentKind::unorm) return selectRgba8<Rgba8Source, false>(view, sampler);
-    if (fourBytes && layout.rgba[0].kind == ComponentKind::srgb) return selectRgba8<Rgba8Source, true>(view, sampler);
+    if (fourBytes && first.kind == ComponentKind::unorm) return selectRgba8<false>(view, sampler);
+    if (fourBytes && first.kind == ComponentKind::srgb) return selectRgba8<true>(view, sampler);
     switch (shapeOf(view.type)) {
-        case Shape::volume: return runSample<AnySource, Shape::volume, Wrap::any>;
-        case Shape::cube: return runSample<AnySource, Shape::cube, Wrap::any>;
-        case Shape::flat: break;
+        case Shape::volume:
+            return runSample<AnySource<4>, Shape::volume, Wrap::any>;
+        case Shape::cube:
+            return runSample<AnySource<4>, Shape::cube, Wrap::any>;
+        case Shape::flat:
+            break;
     }
-    return runSample<AnySource, Shape::flat, Wrap::any>;
+    if (layout.rgba[1].bits != 0) return runSample<AnySource<4>, Shape::flat, Wrap::any>;
+    if (words && first.offset == 0 && offsetsFitInt32(view)) {
+        if (first.bits == 32) return runSample<R32Source<false>, Shape::flat, Wrap::any>;
+        if (first.bits == 24) return runSample<R32Source<true>, Shape::flat, Wrap::any>;
+    }
+    return runSample<AnySource<1>, Shape::flat, Wrap::any>;
 }
 
 SampleFn selectGatherRoutine(const TextureView& view) {
@@ -527,9 +103,12 @@ SampleFn selectGatherRoutine(const TextureView& view) {
 
 SampleFn selectQueryLodRoutine(const TextureView& view) {
     switch (shapeOf(view.type)) {
-        case Shape::volume: return runQueryLod<Shape::volume>;
-        case Shape::cube: return runQueryLod<Shape::cube>;
-        case Shape::flat: break;
+        case Shape::volume:
+            return runQueryLod<Shape::volume>;
+        case Shape::cube:
+            return runQueryLod<Shape::cube>;
+        case Shape::flat:
+            break;
     }
     return runQueryLod<Shape::flat>;
 }
@@ -542,9 +121,15 @@ HWY_AFTER_NAMESPACE();
 namespace vernier {
 namespace {
 
-auto sampleSelector(Isa isa) { VERNIER_SELECT_ISA(isa, selectSampleRoutine) }
-auto gatherSelector(Isa isa) { VERNIER_SELECT_ISA(isa, selectGatherRoutine) }
-auto queryLodSelector(Isa isa) { VERNIER_SELECT_ISA(isa, selectQueryLodRoutine) }
+auto sampleSelector(Isa isa) {
+    VERNIER_SELECT_ISA(isa, selectSampleRoutine)
+}
+auto gatherSelector(Isa isa) {
+    VERNIER_SELECT_ISA(isa, selectGatherRoutine)
+}
+auto queryLodSelector(Isa isa) {
+    VERNIER_SELECT_ISA(isa, selectQueryLodRoutine)
+}
 
 }  // namespace
 
@@ -552,9 +137,13 @@ SampleFn selectSampler(const TextureView& view, const SamplerState& sampler, Isa
     return sampleSelector(isa)(view, sampler);
 }
 
-SampleFn selectGather(const TextureView& view, const SamplerState&, Isa isa) { return gatherSelector(isa)(view); }
+SampleFn selectGather(const TextureView& view, const SamplerState&, Isa isa) {
+    return gatherSelector(isa)(view);
+}
 
-SampleFn selectQueryLod(const TextureView& view, const SamplerState&, Isa isa) { return queryLodSelector(isa)(view); }
+SampleFn selectQueryLod(const TextureView& view, const SamplerState&, Isa isa) {
+    return queryLodSelector(isa)(view);
+}
 
 }  // namespace vernier
 #endif

@@ -1,5 +1,5 @@
-// Reading the texels of a footprint into vectors: one source per kind of format, fast for four bytes per texel, general for
-// all others. Included once per target (see base/simd.h).
+// Reading the texels of a footprint into vectors: one source per kind of format, fast for four bytes per
+// texel, general for all others. Included once per target (see base/simd.h).
 #if defined(VERNIER_TEXTURE_TEXELS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef VERNIER_TEXTURE_TEXELS_INL_H
 #undef VERNIER_TEXTURE_TEXELS_INL_H
@@ -19,25 +19,55 @@ namespace HWY_NAMESPACE {
 
 constexpr uint32_t kVectorLanes = hn::MaxLanes(F32());
 
-/// Where one texel of the footprint is, in all lanes; indices are in range. slice: array layer, cube face or z.
+/// Where one texel of the footprint is, in all lanes; indices are in range. slice: array layer, cube face or
+/// z.
 struct TexelPosition {
     VI x, y, slice;
 };
 
-/// Four planes of one texel per lane: floats, or the bits of integers. Which component a plane holds is the source's affair.
+/// Four planes of one texel per lane: floats, or the bits of integers. Which component a plane holds is the
+/// source's affair.
 using Texel = VU[4];
 
 // A source has
 //   kFinite               its planes hold finite floats, so that a plain interpolation is safe
-//   planeOf[4]            the plane of each component
+//   kPlanes               the number of planes it fills
+//   planeOf[4]            the plane of each component, kConstantPlane if the format has none
 //   borderPlanes()        the border colour as the planes of a texel
 //   load<kTaps>()         the texels of kTaps positions
 //   finish()              from a filtered plane to the value of its component
+
+constexpr uint8_t kConstantPlane = 4;
+
+/// Texels of four bytes as they lie in memory. kWide: the offsets in the level may exceed int32.
+template <bool kWide>
+HWY_INLINE VU loadWord(const TextureLevel& level, const TexelPosition& at) {
+    if constexpr (kWide) {
+        alignas(64) int32_t x[kVectorLanes], y[kVectorLanes], slice[kVectorLanes];
+        alignas(64) uint32_t words[kVectorLanes];
+        hn::Store(at.x, I32(), x);
+        hn::Store(at.y, I32(), y);
+        hn::Store(at.slice, I32(), slice);
+        for (uint32_t i = 0; i < kVectorLanes; ++i) {
+            std::memcpy(&words[i],
+                        level.data + static_cast<uint64_t>(slice[i]) * level.slicePitch +
+                            static_cast<uint64_t>(y[i]) * level.rowPitch + static_cast<uint64_t>(x[i]) * 4,
+                        4);
+        }
+        return hn::Load(U32(), words);
+    } else {
+        const VI row = hn::Mul(at.y, splatInt(static_cast<int32_t>(level.rowPitch)));
+        const VI slice = hn::Mul(at.slice, splatInt(static_cast<int32_t>(level.slicePitch)));
+        const VI offset = hn::Add(hn::Add(row, slice), hn::ShiftLeft<2>(at.x));
+        return hn::GatherOffset(U32(), reinterpret_cast<const uint32_t*>(level.data), offset);
+    }
+}
 
 /// Four 8-bit components in any order. unorm stays in codes until finish(); sRGB is decoded at once.
 template <bool kSrgb, bool kWide>
 struct Rgba8Source {
     static constexpr bool kFinite = true;
+    static constexpr int kPlanes = 4;
     uint8_t planeOf[4];
 
     explicit Rgba8Source(const TextureView& view) {
@@ -46,56 +76,68 @@ struct Rgba8Source {
 
     void borderPlanes(const VkClearColorValue& color, uint32_t (&planes)[4]) const {
         for (int c = 0; c < 4; ++c) {
-            planes[planeOf[c]] = std::bit_cast<uint32_t>(kSrgb ? color.float32[c] : 255.0f * color.float32[c]);
+            planes[planeOf[c]] =
+                std::bit_cast<uint32_t>(kSrgb ? color.float32[c] : 255.0f * color.float32[c]);
         }
     }
 
     template <int kTaps>
-    HWY_INLINE void load(const TextureView&, const TextureLevel& level, const TexelPosition (&at)[kTaps], uint32_t,
-                         Texel (&texels)[kTaps]) const {
-        for (int t = 0; t < kTaps; ++t) unpack(word(level, at[t]), texels[t]);
+    HWY_INLINE void load(const TextureView&, const TextureLevel& level, const TexelPosition (&at)[kTaps],
+                         uint32_t, Texel (&texels)[kTaps]) const {
+        unrolled<kTaps>([&](auto t)
+                            VERNIER_INLINE_LAMBDA { unpack(loadWord<kWide>(level, at[t]), texels[t]); });
     }
 
     HWY_INLINE VU finish(VU plane) const {
-        return kSrgb ? plane : bitsOf(divideExact(floatOf(plane), splatFloat(255.0f), splatFloat(1.0f / 255)));
+        return kSrgb ? plane
+                     : bitsOf(divideExact(floatOf(plane), splatFloat(255.0f), splatFloat(1.0f / 255)));
     }
 
   private:
-    static HWY_INLINE VU word(const TextureLevel& level, const TexelPosition& at) {
-        if constexpr (kWide) {  // offsets beyond int32
-            alignas(64) int32_t x[kVectorLanes], y[kVectorLanes], slice[kVectorLanes];
-            alignas(64) uint32_t words[kVectorLanes];
-            hn::Store(at.x, I32(), x);
-            hn::Store(at.y, I32(), y);
-            hn::Store(at.slice, I32(), slice);
-            for (uint32_t i = 0; i < kVectorLanes; ++i) {
-                std::memcpy(&words[i],
-                            level.data + static_cast<uint64_t>(slice[i]) * level.slicePitch +
-                                static_cast<uint64_t>(y[i]) * level.rowPitch + static_cast<uint64_t>(x[i]) * 4,
-                            4);
-            }
-            return hn::Load(U32(), words);
-        } else {
-            const VI row = hn::Mul(at.y, splatInt(static_cast<int32_t>(level.rowPitch)));
-            const VI slice = hn::Mul(at.slice, splatInt(static_cast<int32_t>(level.slicePitch)));
-            const VI offset = hn::Add(hn::Add(row, slice), hn::ShiftLeft<2>(at.x));
-            return hn::GatherOffset(U32(), reinterpret_cast<const uint32_t*>(level.data), offset);
-        }
-    }
-
     static HWY_INLINE void unpack(VU word, Texel& texel) {
         const VU mask = splatBits(0xff);
         const VU codes[4] = {hn::And(word, mask), hn::And(hn::ShiftRight<8>(word), mask),
                              hn::And(hn::ShiftRight<16>(word), mask), hn::ShiftRight<24>(word)};
-        for (int p = 0; p < 3; ++p) texel[p] = bitsOf(kSrgb ? decodeSrgbV(codes[p]) : toFloatV(codes[p]));
+        unrolled<3>([&](auto p) VERNIER_INLINE_LAMBDA {
+            texel[p] = bitsOf(kSrgb ? decodeSrgbV(codes[p]) : toFloatV(codes[p]));
+        });
         texel[3] = bitsOf(kSrgb ? decodeUnormV(codes[3], 8) : toFloatV(codes[3]));
     }
 };
 
-/// Any format, through its conversion of rows.
+/// One component in four bytes: a float, or (kFixed24) the low 24 bits of the texel as unorm.
+template <bool kFixed24>
+struct R32Source {
+    static constexpr bool kFinite = false;
+    static constexpr int kPlanes = 1;
+    static constexpr uint8_t planeOf[4] = {0, kConstantPlane, kConstantPlane, kConstantPlane};
+
+    explicit R32Source(const TextureView&) {}
+
+    void borderPlanes(const VkClearColorValue& color, uint32_t (&planes)[4]) const {
+        planes[0] = color.uint32[0];
+    }
+
+    template <int kTaps>
+    HWY_INLINE void load(const TextureView&, const TextureLevel& level, const TexelPosition (&at)[kTaps],
+                         uint32_t, Texel (&texels)[kTaps]) const {
+        unrolled<kTaps>([&](auto t) VERNIER_INLINE_LAMBDA {
+            const VU word = loadWord<false>(level, at[t]);
+            texels[t][0] = kFixed24 ? bitsOf(decodeUnormV(hn::And(word, splatBits(0xffffff)), 24)) : word;
+        });
+    }
+
+    HWY_INLINE VU finish(VU plane) const { return plane; }
+};
+
+/// Any format, through its conversion of rows. kPlaneCount is 1 for formats of one component, else 4.
+template <int kPlaneCount>
 struct AnySource {
     static constexpr bool kFinite = false;
-    static constexpr uint8_t planeOf[4] = {0, 1, 2, 3};
+    static constexpr int kPlanes = kPlaneCount;
+    static constexpr uint8_t planeOf[4] = {0, kPlanes > 1 ? 1 : kConstantPlane,
+                                           kPlanes > 2 ? 2 : kConstantPlane,
+                                           kPlanes > 3 ? 3 : kConstantPlane};
     TexelLayout layout;
 
     explicit AnySource(const TextureView& view) : layout(view.ops.layout) {}
@@ -109,8 +151,8 @@ struct AnySource {
 
     /// `needed`: bit c set = component c is wanted.
     template <int kTaps>
-    HWY_NOINLINE void load(const TextureView& view, const TextureLevel& level, const TexelPosition (&at)[kTaps],
-                             uint32_t needed, Texel (&texels)[kTaps]) const {
+    HWY_NOINLINE void load(const TextureView& view, const TextureLevel& level,
+                           const TexelPosition (&at)[kTaps], uint32_t needed, Texel (&texels)[kTaps]) const {
         const std::byte* pointers[kTaps * kVectorLanes];
         for (int t = 0; t < kTaps; ++t) {
             alignas(64) int32_t x[kVectorLanes], y[kVectorLanes], slice[kVectorLanes];
@@ -120,30 +162,33 @@ struct AnySource {
             for (uint32_t i = 0; i < kVectorLanes; ++i) {
                 pointers[static_cast<uint32_t>(t) * kVectorLanes + i] =
                     level.data + static_cast<uint64_t>(slice[i]) * level.slicePitch +
-                    static_cast<uint64_t>(y[i]) * level.rowPitch + static_cast<uint64_t>(x[i]) * view.texelPitch;
+                    static_cast<uint64_t>(y[i]) * level.rowPitch +
+                    static_cast<uint64_t>(x[i]) * view.texelPitch;
             }
         }
-        alignas(64) uint32_t values[4][kTaps * kVectorLanes];
+        alignas(64) uint32_t values[kPlanes][kTaps * kVectorLanes];
         void* planes[4];
-        for (int c = 0; c < 4; ++c) planes[c] = (needed >> c & 1) != 0 ? values[c] : nullptr;
+        for (int c = 0; c < 4; ++c)
+            planes[c] = c < kPlanes && (needed >> c & 1) != 0 ? values[c < kPlanes ? c : 0] : nullptr;
         view.ops.unpackEach(pointers, kTaps * kVectorLanes, planes);
-        for (int t = 0; t < kTaps; ++t) {
-            for (int c = 0; c < 4; ++c) {
-                texels[t][c] = planes[c] == nullptr
-                                   ? hn::Zero(U32())
-                                   : hn::Load(U32(), values[c] + static_cast<uint32_t>(t) * kVectorLanes);
-            }
-        }
+        unrolled<kTaps>([&](auto t) VERNIER_INLINE_LAMBDA {
+            unrolled<kPlanes>([&](auto c) VERNIER_INLINE_LAMBDA {
+                texels[t][c] =
+                    planes[c] == nullptr ? hn::Zero(U32()) : hn::Load(U32(), values[c] + t * kVectorLanes);
+            });
+        });
     }
 
     HWY_INLINE VU finish(VU plane) const { return plane; }
 };
 
 /// a where t = 0, towards b: a + t (b - a), the same bits as a where a = b.
-HWY_INLINE VF lerpFinite(VF a, VF b, VF t) { return hn::Add(a, hn::Mul(t, hn::Sub(b, a))); }
+HWY_INLINE VF lerpFinite(VF a, VF b, VF t) {
+    return hn::Add(a, hn::Mul(t, hn::Sub(b, a)));
+}
 
-/// The same for any floats: a texel of weight 0 has no say even if it is infinite or NaN, equal infinities stay, and a
-/// difference that overflows is avoided.
+/// The same for any floats: a texel of weight 0 has no say even if it is infinite or NaN, equal infinities
+/// stay, and a difference that overflows is avoided.
 HWY_INLINE VF lerpAny(VF a, VF b, VF t) {
     const F32 df;
     const VF difference = hn::Sub(b, a);
@@ -158,7 +203,8 @@ HWY_INLINE VF lerpAny(VF a, VF b, VF t) {
 
 template <class Source>
 HWY_INLINE VU lerpPlane(VU a, VU b, VF t) {
-    return bitsOf(Source::kFinite ? lerpFinite(floatOf(a), floatOf(b), t) : lerpAny(floatOf(a), floatOf(b), t));
+    return bitsOf(Source::kFinite ? lerpFinite(floatOf(a), floatOf(b), t)
+                                  : lerpAny(floatOf(a), floatOf(b), t));
 }
 
 }  // namespace HWY_NAMESPACE

@@ -1,15 +1,15 @@
-// Sampling: texel addressing, filtering, level of detail, comparison, for many lanes at a time. Follows the chapter
-// "Image Operations" of the Vulkan specification; knows nothing of shaders or of the device.
+// Sampling: texel addressing, filtering, level of detail, comparison, for many lanes at a time. Follows the
+// chapter "Image Operations" of the Vulkan specification; knows nothing of shaders or of the device.
 //
 // Choices where the specification leaves one:
 //   derivatives   one pair per 2x2 quad: lane 1 - lane 0 and lane 2 - lane 0
-//   rho           the longer of the two gradients (Euclidean length, in texels of the base level); log2 within 2^-13
-//   nearest level ceil(lambda + 0.5) - 1, the preferred rule
-//   layer         rounded to nearest even
-//   weights       full float precision; equal texels give that texel, bit for bit; a texel of weight 0 has no influence
-//   RGBA8/BGRA8 unorm filters codes and divides by 255 once; other formats filter decoded values; sRGB before filtering
-//   border        replaces texels before the component swizzle, and enters linear filters with its weight
-//   cube          ties of the largest axis: z, then y; texels beyond an edge come from the neighbouring face, the one
+//   rho           the longer of the two gradients (Euclidean length, in texels of the base level); log2
+//   within 2^-13 nearest level ceil(lambda + 0.5) - 1, the preferred rule layer         rounded to nearest
+//   even weights       full float precision; equal texels give that texel, bit for bit; a texel of weight 0
+//   has no influence RGBA8/BGRA8 unorm filters codes and divides by 255 once; other formats filter decoded
+//   values; sRGB before filtering border        replaces texels before the component swizzle, and enters
+//   linear filters with its weight cube          ties of the largest axis: z, then y; texels beyond an edge
+//   come from the neighbouring face, the one
 //                 beyond a corner is the mean of the corner's three
 //   anisotropy    none
 //   out of range  texel fetches outside the image give 0, with alpha 1 where the format has no alpha
@@ -46,12 +46,13 @@ struct TextureView {
     VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT;  // exactly one
     VkComponentMapping swizzle{};
     uint32_t levelCount = 1;
-    uint32_t layerCount = 1;    // array layers of the view; 6 per cube
+    uint32_t layerCount = 1;  // array layers of the view; 6 per cube
     uint32_t samples = 1;
-    uint32_t texelPitch = 0;    // bytes from a texel to its right neighbour: bytesPerTexel unless samples are interleaved
-    uint64_t samplePitch = 0;   // bytes from a sample of a texel to the next
+    uint32_t texelPitch =
+        0;  // bytes from a texel to its right neighbour: bytesPerTexel unless samples are interleaved
+    uint64_t samplePitch = 0;                            // bytes from a sample of a texel to the next
     std::array<TextureLevel, kMaxTextureLevels> levels;  // [0] is the view's base level
-    FormatOps ops;              // formatOps(format, aspect, isa), the isa given to the select functions
+    FormatOps ops;  // formatOps(format, aspect, isa), the isa given to the select functions
 };
 
 /// The fields of VkSamplerCreateInfo that matter here.
@@ -80,21 +81,22 @@ enum class LodMode : uint8_t {
     base,         // level of detail 0 before the sampler's clamp: lambda = 0
 };
 
-/// One sampling instruction for up to kMaxSampleLanes lanes. Lanes 4q .. 4q+3 are the pixels (0,0), (1,0), (0,1), (1,1) of
-/// a quad. Every array has `lanes` values. Plain data.
+/// One sampling instruction for up to kMaxSampleLanes lanes. Lanes 4q .. 4q+3 are the pixels (0,0), (1,0),
+/// (0,1), (1,1) of a quad. Every array has `lanes` values. Plain data.
 struct SampleRequest {
-    uint32_t lanes = 0;              // a multiple of 4
-    const uint32_t* mask = nullptr;  // 0 or ~0 per lane, null = all active; out of inactive lanes is unspecified
-    const float* coord[4] = {};      // s, t, r, layer; the ones that the view type has not may be null
-    const float* dref = nullptr;     // comparison value, read when the sampler compares
+    uint32_t lanes = 0;  // a multiple of 4
+    const uint32_t* mask =
+        nullptr;                  // 0 or ~0 per lane, null = all active; out of inactive lanes is unspecified
+    const float* coord[4] = {};   // s, t, r, layer; the ones that the view type has not may be null
+    const float* dref = nullptr;  // comparison value, read when the sampler compares
     LodMode lodMode = LodMode::implicitLod;
     const float* lod = nullptr;
     const float* gradX[3] = {};
     const float* gradY[3] = {};
-    int32_t offset[3] = {};          // texels
-    uint32_t component = 0;          // gather: 0..3, after the view's swizzle has its say
-    // Receives floats, or the bits of uint32/int32 values for integer formats; null = not wanted. A comparison gives its
-    // result in out[0] alone (gather: in all four).
+    int32_t offset[3] = {};  // texels
+    uint32_t component = 0;  // gather: 0..3, after the view's swizzle has its say
+    // Receives floats, or the bits of uint32/int32 values for integer formats; null = not wanted. A
+    // comparison gives its result in out[0] alone (gather: in all four).
     float* out[4] = {};
 };
 
@@ -104,7 +106,7 @@ using SampleFn = void (*)(const TextureView&, const SamplerState&, const SampleR
 struct FetchRequest {
     uint32_t lanes = 0;
     const uint32_t* mask = nullptr;
-    const int32_t* coord[4] = {};  // x, y, z, layer; of cubes the face counts as the layer
+    const int32_t* coord[4] = {};     // x, y, z, layer; of cubes the face counts as the layer
     const int32_t* lod = nullptr;     // null = 0
     const int32_t* sample = nullptr;  // null = 0
     int32_t offset[3] = {};
@@ -117,19 +119,20 @@ using FetchFn = void (*)(const TextureView&, const FetchRequest&);
 Status checkView(const TextureView& view);
 Status checkSampling(const TextureView& view, const SamplerState& sampler);
 
-// Resolve once per descriptor. The view and the sampler passed to the function later must equal the ones it was chosen
-// for, and have passed the checks above.
+// Resolve once per descriptor. The view and the sampler passed to the function later must equal the ones it
+// was chosen for, and have passed the checks above.
 SampleFn selectSampler(const TextureView& view, const SamplerState& sampler, Isa isa);
-/// textureGather: `component` of the four texels of the linear footprint at the level of detail that lodMode gives
-/// (normally LodMode::base), in the order (0,1), (1,1), (1,0), (0,0).
+/// textureGather: `component` of the four texels of the linear footprint at the level of detail that lodMode
+/// gives (normally LodMode::base), in the order (0,1), (1,1), (1,0), (0,0).
 SampleFn selectGather(const TextureView& view, const SamplerState& sampler, Isa isa);
 FetchFn selectFetch(const TextureView& view, Isa isa);
 
-/// OpImageQueryLod: out[0] = the level that would be accessed, out[1] = lambda prime before the sampler's clamp.
+/// OpImageQueryLod: out[0] = the level that would be accessed, out[1] = lambda prime before the sampler's
+/// clamp.
 SampleFn selectQueryLod(const TextureView& view, const SamplerState& sampler, Isa isa);
 
-/// OpImageQuerySizeLod: width, height, depth in texels as far as the view type has them, then array layers (cubes for
-/// cube arrays); unused ones are 0. Levels that do not exist have size 0.
+/// OpImageQuerySizeLod: width, height, depth in texels as far as the view type has them, then array layers
+/// (cubes for cube arrays); unused ones are 0. Levels that do not exist have size 0.
 std::array<uint32_t, 4> querySize(const TextureView& view, uint32_t level);
 
 }  // namespace vernier

@@ -32,18 +32,22 @@ Status checkLevel(const TextureView& view, const TextureLevel& level, uint32_t i
         return invalidArgument(fieldError(name.c_str(), "height", level.height, "must be 1 in a 1D view"));
     }
     if (view.type != VK_IMAGE_VIEW_TYPE_3D && level.depth != 1) {
-        return invalidArgument(fieldError(name.c_str(), "depth", level.depth, "must be 1 unless the view is 3D"));
+        return invalidArgument(
+            fieldError(name.c_str(), "depth", level.depth, "must be 1 unless the view is 3D"));
     }
     if (isCube(view.type) && level.width != level.height) {
-        return invalidArgument(fieldError(name.c_str(), "height", level.height, "must equal the width in a cube view"));
+        return invalidArgument(
+            fieldError(name.c_str(), "height", level.height, "must equal the width in a cube view"));
     }
     const uint64_t rowBytes = uint64_t{level.width - 1} * view.texelPitch + view.ops.layout.bytes;
     if (level.height > 1 && level.rowPitch < rowBytes) {
-        return invalidArgument(fieldError(name.c_str(), "rowPitch", level.rowPitch, "must hold a row of texels"));
+        return invalidArgument(
+            fieldError(name.c_str(), "rowPitch", level.rowPitch, "must hold a row of texels"));
     }
     const uint64_t slices = view.type == VK_IMAGE_VIEW_TYPE_3D ? level.depth : view.layerCount;
     if (slices > 1 && level.slicePitch < uint64_t{level.height - 1} * level.rowPitch + rowBytes) {
-        return invalidArgument(fieldError(name.c_str(), "slicePitch", level.slicePitch, "must hold all rows of a slice"));
+        return invalidArgument(
+            fieldError(name.c_str(), "slicePitch", level.slicePitch, "must hold all rows of a slice"));
     }
     return {};
 }
@@ -65,11 +69,20 @@ SamplerState makeSamplerState(const VkSamplerCreateInfo& info) {
     state.compareOp = info.compareOp;
     state.unnormalizedCoordinates = info.unnormalizedCoordinates == VK_TRUE;
     switch (info.borderColor) {
-        case VK_BORDER_COLOR_FLOAT_OPAQUE_BLACK: state.borderColor = {.float32 = {0, 0, 0, 1}}; break;
-        case VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE: state.borderColor = {.float32 = {1, 1, 1, 1}}; break;
-        case VK_BORDER_COLOR_INT_OPAQUE_BLACK: state.borderColor = {.uint32 = {0, 0, 0, 1}}; break;
-        case VK_BORDER_COLOR_INT_OPAQUE_WHITE: state.borderColor = {.uint32 = {1, 1, 1, 1}}; break;
-        default: break;  // the two transparent blacks are zero
+        case VK_BORDER_COLOR_FLOAT_OPAQUE_BLACK:
+            state.borderColor = {.float32 = {0, 0, 0, 1}};
+            break;
+        case VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE:
+            state.borderColor = {.float32 = {1, 1, 1, 1}};
+            break;
+        case VK_BORDER_COLOR_INT_OPAQUE_BLACK:
+            state.borderColor = {.uint32 = {0, 0, 0, 1}};
+            break;
+        case VK_BORDER_COLOR_INT_OPAQUE_WHITE:
+            state.borderColor = {.uint32 = {1, 1, 1, 1}};
+            break;
+        default:
+            break;  // the two transparent blacks are zero
     }
     return state;
 }
@@ -77,24 +90,29 @@ SamplerState makeSamplerState(const VkSamplerCreateInfo& info) {
 Status checkView(const TextureView& view) {
     const FormatInfo* const info = findFormat(view.format);
     if (info == nullptr) {
-        return unsupported(fieldError("TextureView", "format", static_cast<uint32_t>(view.format), "unknown format"));
+        return unsupported(
+            fieldError("TextureView", "format", static_cast<uint32_t>(view.format), "unknown format"));
     }
     if ((info->optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT) == 0) {
         return unsupported(std::string("TextureView.format is ") + info->name + ": cannot be sampled");
     }
-    const bool oneAspect = view.aspect == VK_IMAGE_ASPECT_COLOR_BIT || view.aspect == VK_IMAGE_ASPECT_DEPTH_BIT ||
+    const bool oneAspect = view.aspect == VK_IMAGE_ASPECT_COLOR_BIT ||
+                           view.aspect == VK_IMAGE_ASPECT_DEPTH_BIT ||
                            view.aspect == VK_IMAGE_ASPECT_STENCIL_BIT;
     if (!oneAspect || (info->aspects & view.aspect) == 0) {
-        return invalidArgument(fieldError("TextureView", "aspect", view.aspect, "must be one aspect of the format"));
+        return invalidArgument(
+            fieldError("TextureView", "aspect", view.aspect, "must be one aspect of the format"));
     }
     if (view.ops.unpackFn == nullptr || view.ops.layout.bytes != info->bytesPerTexel) {
         return invalidArgument("TextureView.ops is not that of TextureView.format");
     }
     if (view.type > VK_IMAGE_VIEW_TYPE_CUBE_ARRAY) {
-        return unsupported(fieldError("TextureView", "type", static_cast<uint32_t>(view.type), "unknown view type"));
+        return unsupported(
+            fieldError("TextureView", "type", static_cast<uint32_t>(view.type), "unknown view type"));
     }
     if (view.levelCount < 1 || view.levelCount > kMaxTextureLevels) {
-        return invalidArgument(fieldError("TextureView", "levelCount", view.levelCount, "must be from 1 to 16"));
+        return invalidArgument(
+            fieldError("TextureView", "levelCount", view.levelCount, "must be from 1 to 16"));
     }
     if (view.layerCount < 1 || (isCube(view.type) && view.layerCount % 6 != 0)) {
         return invalidArgument(fieldError("TextureView", "layerCount", view.layerCount,
@@ -115,7 +133,8 @@ Status checkSampling(const TextureView& view, const SamplerState& sampler) {
     const bool linear = sampler.magFilter == VK_FILTER_LINEAR || sampler.minFilter == VK_FILTER_LINEAR ||
                         (sampler.mipmapMode == VK_SAMPLER_MIPMAP_MODE_LINEAR && view.levelCount > 1);
     if (view.samples != 1) {
-        return invalidArgument(fieldError("TextureView", "samples", view.samples, "only fetches read multisampled images"));
+        return invalidArgument(
+            fieldError("TextureView", "samples", view.samples, "only fetches read multisampled images"));
     }
     for (const VkFilter filter : {sampler.magFilter, sampler.minFilter}) {
         if (filter == VK_FILTER_NEAREST || filter == VK_FILTER_LINEAR) continue;
@@ -124,10 +143,12 @@ Status checkSampling(const TextureView& view, const SamplerState& sampler) {
     }
     for (const VkSamplerAddressMode mode : sampler.addressMode) {
         if (mode <= VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE) continue;
-        return unsupported(fieldError("SamplerState", "addressMode", static_cast<uint32_t>(mode), "unknown address mode"));
+        return unsupported(
+            fieldError("SamplerState", "addressMode", static_cast<uint32_t>(mode), "unknown address mode"));
     }
-    const bool filterable = (info.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT) != 0 &&
-                            view.ops.layout.type == ValueType::floating;
+    const bool filterable =
+        (info.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT) != 0 &&
+        view.ops.layout.type == ValueType::floating;
     if (linear && !filterable) {
         return invalidArgument(std::string("SamplerState asks for linear filtering of ") + info.name +
                                ", which cannot be filtered");
@@ -138,9 +159,11 @@ Status checkSampling(const TextureView& view, const SamplerState& sampler) {
     }
     if (sampler.unnormalizedCoordinates) {
         const bool flat = view.type == VK_IMAGE_VIEW_TYPE_1D || view.type == VK_IMAGE_VIEW_TYPE_2D;
-        if (!flat || view.levelCount != 1 || sampler.magFilter != sampler.minFilter || sampler.compareEnable) {
-            return invalidArgument("SamplerState.unnormalizedCoordinates needs a 1D or 2D view of one level, equal filters "
-                                   "and no comparison");
+        if (!flat || view.levelCount != 1 || sampler.magFilter != sampler.minFilter ||
+            sampler.compareEnable) {
+            return invalidArgument(
+                "SamplerState.unnormalizedCoordinates needs a 1D or 2D view of one level, equal filters "
+                "and no comparison");
         }
     }
     return {};
@@ -150,12 +173,18 @@ std::array<uint32_t, 4> querySize(const TextureView& view, uint32_t level) {
     if (level >= view.levelCount) return {};
     const TextureLevel& l = view.levels[level];
     switch (view.type) {
-        case VK_IMAGE_VIEW_TYPE_1D: return {l.width, 0, 0, 0};
-        case VK_IMAGE_VIEW_TYPE_1D_ARRAY: return {l.width, view.layerCount, 0, 0};
-        case VK_IMAGE_VIEW_TYPE_2D_ARRAY: return {l.width, l.height, view.layerCount, 0};
-        case VK_IMAGE_VIEW_TYPE_3D: return {l.width, l.height, l.depth, 0};
-        case VK_IMAGE_VIEW_TYPE_CUBE_ARRAY: return {l.width, l.height, view.layerCount / 6, 0};
-        default: return {l.width, l.height, 0, 0};
+        case VK_IMAGE_VIEW_TYPE_1D:
+            return {l.width, 0, 0, 0};
+        case VK_IMAGE_VIEW_TYPE_1D_ARRAY:
+            return {l.width, view.layerCount, 0, 0};
+        case VK_IMAGE_VIEW_TYPE_2D_ARRAY:
+            return {l.width, l.height, view.layerCount, 0};
+        case VK_IMAGE_VIEW_TYPE_3D:
+            return {l.width, l.height, l.depth, 0};
+        case VK_IMAGE_VIEW_TYPE_CUBE_ARRAY:
+            return {l.width, l.height, view.layerCount / 6, 0};
+        default:
+            return {l.width, l.height, 0, 0};
     }
 }
 

@@ -65,6 +65,7 @@ int main(int argc, char** argv) {
                     .fragment = compile(device, VK_SHADER_STAGE_FRAGMENT_BIT, fragmentSource)}, &program);
     vnGetImageView(device, image, &pass.colors[0].view);
     pass.colors[0].loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+    pass.colors[0].clear.color.float32[3] = 1;
     vnBeginPass(context, &pass);
     vnBindProgram(context, program);
     vnDraw(context, 3, 1, 0, 0);

@@ -134,12 +134,12 @@ const Inst* runDot(Frame& frame, const Inst* inst) {
     const auto factor = [&](size_t k) HWY_ATTR { return Source<float, kScalar>(frame, (*inst)[2 + 2 * k]); };
     const auto a0 = row(0), a1 = row(1), a2 = row(kTerms > 2 ? 2 : 0), a3 = row(kTerms > 3 ? 3 : 0);
     const auto b0 = factor(0), b1 = factor(1), b2 = factor(kTerms > 2 ? 2 : 0), b3 = factor(kTerms > 3 ? 3 : 0);
-    for (size_t lane = 0; lane < frame.lanes; lane += hn::Lanes(kF32)) {
+    fillRow(frame, inst->operand[0], [&](size_t lane) HWY_ATTR {
         VF sum = hn::Add(hn::Mul(a0.at(lane), b0.at(lane)), hn::Mul(a1.at(lane), b1.at(lane)));
         if constexpr (kTerms > 2) sum = hn::Add(sum, hn::Mul(a2.at(lane), b2.at(lane)));
         if constexpr (kTerms > 3) sum = hn::Add(sum, hn::Mul(a3.at(lane), b3.at(lane)));
-        storeRow(frame, inst->operand[0], lane, sum);
-    }
+        return sum;
+    });
     return inst + instsFor(1 + 2 * kTerms);
 }
 

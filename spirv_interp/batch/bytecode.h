@@ -98,6 +98,13 @@ using HandlerTable = std::array<std::array<Handler, kForms>, kOpCount>;
 /// The handlers for an instruction set and a math tier.
 HandlerTable handlerTable(Isa isa, MathTier tier);
 
+/// Between masks as words, one per lane, and LaneMasks; `lanes` is a multiple of kLaneGroup.
+struct MaskFunctions {
+    LaneMask (*pack)(const uint32_t* words, uint32_t lanes) = nullptr;  // by the top bit of each word
+    void (*spread)(const LaneMask& mask, uint32_t* words, uint32_t lanes) = nullptr;
+};
+MaskFunctions maskFunctions(Isa isa);
+
 /// An image instruction: where its operands and results lie.
 struct ImageSite {
     static constexpr uint32_t kNone = ~0u;

@@ -38,11 +38,13 @@ class CompiledProgram final : public BatchProgram {
     const Code& batch() const { return batch_; }
     const Code& draw() const { return draw_; }
     const std::vector<uint32_t>& scalars() const { return scalars_; }
+    const MaskFunctions& masks() const { return masks_; }
 
   private:
     ir::Program source_;
     Code batch_, draw_;
     std::vector<uint32_t> scalars_;
+    MaskFunctions masks_;
     BatchStatistics statistics_;
 };
 

@@ -25,12 +25,6 @@ class Rows {
     std::unique_ptr<uint32_t, Free> data_;
 };
 
-batch::LaneMask lanesOf(const uint32_t* words, uint32_t lanes) {
-    batch::LaneMask mask;
-    for (uint32_t lane = 0; lane < lanes; ++lane) mask.set(lane, words[lane] >> 31);
-    return mask;
-}
-
 }  // namespace
 
 struct BatchContext::Impl {
@@ -43,13 +37,14 @@ struct BatchContext::Impl {
           imageScratch(size_t{batch::kImageScratchRows} * batch::kMaxLanes),
           live(batch::kMaxLanes),
           scalars(compiled.scalars()),
-          masks(std::max(compiled.batch().masks, compiled.draw().masks)) {}
+          masks(std::max(compiled.batch().masks, compiled.draw().masks)),
+          frame(frameFor(compiled.batch(), batchRows)) {}
 
-    batch::Frame frameFor(const batch::Code& code, const Rows& rows, uint32_t lanes) {
+    /// Everything about a frame but its lanes; `code` is one of the program's pieces.
+    batch::Frame frameFor(const batch::Code& code, const Rows& rows) {
         batch::Frame frame;
         frame.rows = reinterpret_cast<std::byte*>(rows.get());
         frame.scalars = scalars.data();
-        frame.lanes = (lanes + batch::kLaneGroup - 1) / batch::kLaneGroup * batch::kLaneGroup;
         frame.rowBytes = code.lanes * static_cast<uint32_t>(sizeof(uint32_t));
         frame.masks = masks.data();
         frame.bindings = &bindings;
@@ -59,7 +54,6 @@ struct BatchContext::Impl {
         frame.local = local.get();
         frame.localStride = compiled.batch().lanes;
         frame.imageScratch = imageScratch.get();
-        frame.interpolator = interpolator;
         return frame;
     }
 
@@ -69,7 +63,7 @@ struct BatchContext::Impl {
     std::vector<uint32_t> scalars;
     std::vector<batch::LaneMask> masks;
     ResourceBindings bindings;
-    Interpolator interpolator;
+    batch::Frame frame;  // of the batch code
 };
 
 BatchContext::BatchContext(std::shared_ptr<const BatchProgram> program)
@@ -82,7 +76,8 @@ void BatchContext::beginDraw(const ResourceBindings& bindings) {
     impl_->bindings = bindings;
     const batch::Code& code = impl_->compiled.draw();
     if (code.instructions <= 1) return;
-    batch::Frame frame = impl_->frameFor(code, impl_->drawRows, batch::kLaneGroup);
+    batch::Frame frame = impl_->frameFor(code, impl_->drawRows);
+    frame.lanes = batch::kLaneGroup;
     frame.exec = frame.live = batch::LaneMask::first(batch::kLaneGroup);
     frame.masks[batch::kCurrentMask] = frame.exec;
     batch::execute(frame, code.insts.data());
@@ -103,21 +98,28 @@ const float* BatchContext::output(uint32_t slot) const {
 bool BatchContext::run(uint32_t lanes, const uint32_t* execMask, const uint32_t* storeMask) {
     const batch::Code& code = impl_->compiled.batch();
     lanes = std::min(lanes, code.lanes);
-    batch::Frame frame = impl_->frameFor(code, impl_->batchRows, lanes);
-    frame.exec = lanesOf(execMask, lanes);
-    frame.live = lanesOf(storeMask, lanes) & frame.exec;
-    std::fill(impl_->masks.begin(), impl_->masks.end(), batch::LaneMask{});
+    batch::Frame& frame = impl_->frame;
+    frame.lanes = (lanes + batch::kLaneGroup - 1) / batch::kLaneGroup * batch::kLaneGroup;
+    frame.backEdges = 0;
+    frame.lost = false;
+    const batch::MaskFunctions& maskWords = impl_->compiled.masks();
+    frame.exec = maskWords.pack(execMask, frame.lanes) & batch::LaneMask::first(lanes);
+    frame.live = maskWords.pack(storeMask, frame.lanes) & frame.exec;
     frame.masks[batch::kCurrentMask] = frame.exec;
     // A variable that is read before it is written holds zero, not what an earlier batch left there.
-    std::fill_n(frame.local, size_t{impl_->compiled.source().localWords} * code.lanes, 0u);
+    const size_t localWords = impl_->compiled.source().localWords;
+    if (localWords != 0) std::fill_n(frame.local, localWords * code.lanes, 0u);
     if (!frame.exec.empty()) batch::execute(frame, code.insts.data());
-    uint32_t* live = impl_->live.get();
-    for (uint32_t lane = 0; lane < code.lanes; ++lane) live[lane] = frame.live.test(lane) ? ~0u : 0u;
+    // Every lane that enters a block's mask leaves it again, unless the run was cut short.
+    if (frame.lost) std::fill(impl_->masks.begin(), impl_->masks.end(), batch::LaneMask{});
+    maskWords.spread(frame.live, impl_->live.get(), code.lanes);
     return !frame.lost;
 }
 
 const uint32_t* BatchContext::liveMask() const { return impl_->live.get(); }
 
-void BatchContext::setInterpolator(const Interpolator& interpolator) { impl_->interpolator = interpolator; }
+void BatchContext::setInterpolator(const Interpolator& interpolator) {
+    impl_->frame.interpolator = interpolator;
+}
 
 }  // namespace vernier

@@ -71,17 +71,21 @@ class Source<T, true> {
     hn::Vec<hn::ScalableTag<T>> value_;
 };
 
-template <class V>
-HWY_INLINE void storeRow(const Frame& frame, uint32_t offset, size_t lane, V value) {
-    hn::Store(hn::BitCast(kU32, value), kU32, frame.row<uint32_t>(offset) + lane);
+/// Calls function(lane) for the first lane of every vector and stores what it returns. The row and the count are read
+/// once: for all the compiler knows, storing lanes could change the frame.
+template <class F>
+HWY_INLINE void fillRow(const Frame& frame, uint32_t offset, F&& function) {
+    auto* row = frame.row<uint32_t>(offset);
+    const size_t lanes = frame.lanes;
+    for (size_t lane = 0; lane < lanes; lane += hn::Lanes(kU32)) {
+        hn::Store(hn::BitCast(kU32, function(lane)), kU32, row + lane);
+    }
 }
 
 template <class E, size_t kForm>
 const Inst* runUnary(Frame& frame, const Inst* inst) {
     const Source<typename E::InType, kForm & 1> a(frame, inst->operand[1]);
-    for (size_t lane = 0; lane < frame.lanes; lane += hn::Lanes(kU32)) {
-        storeRow(frame, inst->operand[0], lane, E::apply(a.at(lane)));
-    }
+    fillRow(frame, inst->operand[0], [&](size_t lane) HWY_ATTR { return E::apply(a.at(lane)); });
     return inst + 1;
 }
 
@@ -89,9 +93,7 @@ template <class E, size_t kForm>
 const Inst* runBinary(Frame& frame, const Inst* inst) {
     const Source<typename E::InType, kForm & 1> a(frame, inst->operand[1]);
     const Source<typename E::InType, (kForm >> 1 & 1)> b(frame, inst->operand[2]);
-    for (size_t lane = 0; lane < frame.lanes; lane += hn::Lanes(kU32)) {
-        storeRow(frame, inst->operand[0], lane, E::apply(a.at(lane), b.at(lane)));
-    }
+    fillRow(frame, inst->operand[0], [&](size_t lane) HWY_ATTR { return E::apply(a.at(lane), b.at(lane)); });
     return inst + 1;
 }
 
@@ -100,9 +102,8 @@ const Inst* runTernary(Frame& frame, const Inst* inst) {
     const Source<typename E::InType, kForm & 1> a(frame, inst->operand[1]);
     const Source<typename E::InType, (kForm >> 1 & 1)> b(frame, inst->operand[2]);
     const Source<typename E::InType, (kForm >> 2 & 1)> c(frame, inst->operand[3]);
-    for (size_t lane = 0; lane < frame.lanes; lane += hn::Lanes(kU32)) {
-        storeRow(frame, inst->operand[0], lane, E::apply(a.at(lane), b.at(lane), c.at(lane)));
-    }
+    fillRow(frame, inst->operand[0],
+            [&](size_t lane) HWY_ATTR { return E::apply(a.at(lane), b.at(lane), c.at(lane)); });
     return inst + 1;
 }
 

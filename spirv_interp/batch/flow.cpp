@@ -14,14 +14,20 @@ HWY_BEFORE_NAMESPACE();
 namespace vernier::batch::HWY_NAMESPACE {
 namespace {
 
-/// The lanes whose word is not zero in their sign bit: b1 rows and comparison results.
+/// Adds the lanes of a vector mask, whose first is `lane`.
+template <class M>
+HWY_INLINE void addLanes(LaneMask& mask, size_t lane, M lanes) {
+    uint8_t bytes[8] = {};
+    hn::StoreMaskBits(kU32, hn::RebindMask(kU32, lanes), bytes);
+    mask.set(static_cast<uint32_t>(lane), bytes[0] | uint64_t{bytes[1]} << 8);
+}
+
+/// The lanes whose word is ~0: of a b1 row.
 HWY_INLINE LaneMask lanesOf(const Frame& frame, uint32_t offset) {
     LaneMask mask;
     const auto* row = frame.row<uint32_t>(offset);
     for (size_t lane = 0; lane < frame.lanes; lane += hn::Lanes(kU32)) {
-        uint8_t bytes[8] = {};
-        hn::StoreMaskBits(kU32, hn::MaskFromVec(hn::Load(kU32, row + lane)), bytes);
-        mask.set(static_cast<uint32_t>(lane), bytes[0] | uint64_t{bytes[1]} << 8);
+        addLanes(mask, lane, hn::MaskFromVec(hn::Load(kU32, row + lane)));
     }
     return mask;
 }
@@ -39,22 +45,19 @@ inline const Inst* jump(const Inst* inst, uint32_t distance) { return inst + sta
 template <bool kScalar>
 const Inst* copy(Frame& frame, const Inst* inst) {
     const Source<uint32_t, kScalar> a(frame, inst->operand[1]);
-    for (size_t lane = 0; lane < frame.lanes; lane += hn::Lanes(kU32)) {
-        storeRow(frame, inst->operand[0], lane, a.at(lane));
-    }
+    fillRow(frame, inst->operand[0], [&](size_t lane) HWY_ATTR { return a.at(lane); });
     return inst + 1;
 }
 
 template <bool kScalar>
 const Inst* copyMasked(Frame& frame, const Inst* inst) {
-    const LaneMask& mask = frame.masks[inst->operand[2]];
+    const LaneMask mask = frame.masks[inst->operand[2]];
     if (mask.contains(frame.exec)) return copy<kScalar>(frame, inst);
     const Source<uint32_t, kScalar> a(frame, inst->operand[1]);
     const Source<uint32_t, false> old(frame, inst->operand[0]);
-    for (size_t lane = 0; lane < frame.lanes; lane += hn::Lanes(kU32)) {
-        storeRow(frame, inst->operand[0], lane,
-                 hn::IfThenElse(vectorMask(mask, lane), a.at(lane), old.at(lane)));
-    }
+    fillRow(frame, inst->operand[0], [&](size_t lane) HWY_ATTR {
+        return hn::IfThenElse(vectorMask(mask, lane), a.at(lane), old.at(lane));
+    });
     return inst + 1;
 }
 
@@ -65,9 +68,8 @@ const Inst* keepScalar(Frame& frame, const Inst* inst) {
 
 const Inst* helperLanes(Frame& frame, const Inst* inst) {
     const LaneMask helpers = frame.exec.without(frame.live);
-    for (size_t lane = 0; lane < frame.lanes; lane += hn::Lanes(kU32)) {
-        storeRow(frame, inst->operand[0], lane, hn::VecFromMask(kU32, vectorMask(helpers, lane)));
-    }
+    fillRow(frame, inst->operand[0],
+            [&](size_t lane) HWY_ATTR { return hn::VecFromMask(kU32, vectorMask(helpers, lane)); });
     return inst + 1;
 }
 
@@ -114,9 +116,7 @@ const Inst* choose(Frame& frame, const Inst* inst) {
     const Source<uint32_t, true> wanted(frame, inst->operand[1]);
     LaneMask equal;
     for (size_t lane = 0; lane < frame.lanes; lane += hn::Lanes(kU32)) {
-        uint8_t bytes[8] = {};
-        hn::StoreMaskBits(kU32, hn::Eq(selector.at(lane), wanted.at(lane)), bytes);
-        equal.set(static_cast<uint32_t>(lane), bytes[0] | uint64_t{bytes[1]} << 8);
+        addLanes(equal, lane, hn::Eq(selector.at(lane), wanted.at(lane)));
     }
     LaneMask& current = frame.masks[kCurrentMask];
     LaneMask& mask = frame.masks[inst->operand[2]];
@@ -158,7 +158,23 @@ VERNIER_ELEMENT(ddxCoarse, float, float, (V a), return hn::Sub(hn::Broadcast<1>(
 VERNIER_ELEMENT(ddyCoarse, float, float, (V a), return hn::Sub(hn::Broadcast<2>(a), hn::Broadcast<0>(a));)
 
 }  // namespace derivative
+LaneMask packWords(const uint32_t* words, uint32_t lanes) {
+    LaneMask mask;
+    for (size_t lane = 0; lane < lanes; lane += hn::Lanes(kU32)) {
+        addLanes(mask, lane, hn::MaskFromVec(hn::BroadcastSignBit(hn::BitCast(kI32, hn::LoadU(kU32, words + lane)))));
+    }
+    return mask;
+}
+
+void spreadWords(const LaneMask& mask, uint32_t* words, uint32_t lanes) {
+    for (size_t lane = 0; lane < lanes; lane += hn::Lanes(kU32)) {
+        hn::StoreU(hn::VecFromMask(kU32, vectorMask(mask, lane)), kU32, words + lane);
+    }
+}
+
 }  // namespace
+
+MaskFunctions maskFunctions() { return {packWords, spreadWords}; }
 
 void addFlow(HandlerTable& table) {
     const auto add = [&](Op op, Handler handler, size_t form = 0) {
@@ -193,8 +209,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace vernier::batch {
 namespace {
+using GetMaskFunctions = MaskFunctions (*)();
+GetMaskFunctions selectMaskFunctions(Isa isa) { VERNIER_SELECT_ISA(isa, maskFunctions) }
 AddHandlers selectFlow(Isa isa) { VERNIER_SELECT_ISA(isa, addFlow) }
 }  // namespace
 void addFlow(Isa isa, HandlerTable& table) { selectFlow(isa)(table); }
+MaskFunctions maskFunctions(Isa isa) { return selectMaskFunctions(isa)(); }
 }  // namespace vernier::batch
 #endif

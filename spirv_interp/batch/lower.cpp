@@ -8,6 +8,7 @@
 #include "spirv_interp/batch/select.h"
 #include "spirv_interp/ir/cfg.h"
 #include "spirv_interp/ir/ops.h"
+#include "spirv_interp/ir/rates.h"
 
 namespace vernier::batch {
 
@@ -35,32 +36,9 @@ uint32_t ScalarFile::reserve(bool wide) {
 }
 
 std::vector<bool> scalarValues(const ir::Program& program) {
-    std::vector<bool> scalar(program.valueTypes.size());
-    for (const ir::Block& block : program.blocks) {
-        for (const ir::Inst& inst : block.insts) {
-            if (inst.result == ir::kNoValue || !ir::isMovable(program, inst)) continue;
-            switch (inst.op) {
-                case ir::Op::phi:
-                case ir::Op::input:
-                case ir::Op::inputIndexed:
-                case ir::Op::interpolateAtCentroid:
-                case ir::Op::interpolateAtSample:
-                case ir::Op::interpolateAtOffset:
-                case ir::Op::isHelper:
-                case ir::Op::ddxFine:
-                case ir::Op::ddyFine:
-                case ir::Op::ddxCoarse:
-                case ir::Op::ddyCoarse:
-                case ir::Op::loadLocal:
-                case ir::Op::image: continue;
-                default: break;
-            }
-            const auto operands = program.operandsOf(inst);
-            if (std::all_of(operands.begin(), operands.end(), [&](ir::ValueId v) { return scalar[v]; })) {
-                scalar[inst.result] = true;
-            }
-        }
-    }
+    const std::vector<ir::Rate> rates = ir::computeRates(program);
+    std::vector<bool> scalar(rates.size());
+    std::transform(rates.begin(), rates.end(), scalar.begin(), [](ir::Rate r) { return r != ir::Rate::invocation; });
     return scalar;
 }
 
@@ -296,11 +274,12 @@ bool Lowerer::lowerFused(const ir::Inst& inst) {
 void Lowerer::lowerInst(const ir::Inst& inst) {
     line_ = inst.line;
     const auto operands = program_.operandsOf(inst);
-    if (inst.result != ir::kNoValue && inst.result < fused_.size() && fused_[inst.result]) return;
+    if (inst.result != ir::kNoValue) {
+        if (isScalar(inst.result)) return;  // constants, and in batch code what the draw-rate code computes
+        if (inst.result < fused_.size() && fused_[inst.result]) return;
+    }
     if (lowerFused(inst)) return;
     switch (inst.op) {
-        case ir::Op::constant:
-        case ir::Op::undef:
         case ir::Op::phi: return;
         case ir::Op::input: {
             uint32_t& reg = code_.inputs[inst.imm];

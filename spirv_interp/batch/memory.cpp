@@ -60,16 +60,16 @@ class LaneSource {
     const uint32_t* words_;
 };
 
-void fillRow(const Frame& frame, uint32_t row, uint32_t value) {
+void spreadWord(const Frame& frame, uint32_t row, uint32_t value) {
     const VU word = hn::Set(kU32, value);
-    for (size_t lane = 0; lane < frame.lanes; lane += hn::Lanes(kU32)) storeRow(frame, row, lane, word);
+    fillRow(frame, row, [&](size_t) HWY_ATTR { return word; });
 }
 
 /// Loads one word per lane from one buffer.
 template <bool kScalar>
 void gather(const Frame& frame, uint32_t row, const BufferBinding& buffer, const LaneSource<kScalar>& offsets) {
     if (buffer.size < 4 || offsets.isUniform(frame.lanes)) {
-        fillRow(frame, row, loadWord(buffer, offsets.at(0)));
+        spreadWord(frame, row, loadWord(buffer, offsets.at(0)));
         return;
     }
     // The hardware's gather takes signed offsets.
@@ -82,12 +82,12 @@ void gather(const Frame& frame, uint32_t row, const BufferBinding& buffer, const
     if constexpr (!kScalar) {
         const auto* base = reinterpret_cast<const uint32_t*>(buffer.data);
         const VU last = hn::Set(kU32, buffer.size - 4), words = hn::Set(kU32, ~3u);
-        for (uint32_t lane = 0; lane < frame.lanes; lane += static_cast<uint32_t>(hn::Lanes(kU32))) {
+        fillRow(frame, row, [&](size_t lane) HWY_ATTR {
             const VU offset = hn::And(hn::Load(kU32, offsets.words() + lane), words);
             const auto inside = hn::Not(hn::Gt(offset, last));
             const VI safe = hn::BitCast(kI32, hn::IfThenElseZero(inside, offset));
-            storeRow(frame, row, lane, hn::IfThenElseZero(inside, hn::GatherOffset(kU32, base, safe)));
-        }
+            return hn::IfThenElseZero(inside, hn::GatherOffset(kU32, base, safe));
+        });
     }
 }
 
@@ -171,7 +171,7 @@ const Inst* atomicBuffer(Frame& frame, const Inst* inst) {
     const auto* offsets = frame.row<uint32_t>(in[2]);
     const auto* values = frame.row<uint32_t>(in[5]);
     const auto* comparators = frame.row<uint32_t>(in[6]);
-    fillRow(frame, in[0], 0);
+    spreadWord(frame, in[0], 0);
     effectLanes(frame).forEach([&](uint32_t lane) {
         uint32_t* word = wordAt(bufferOf(frame, in[3], descriptors[lane]), offsets[lane]);
         if (word == nullptr) return;

@@ -34,7 +34,7 @@ HandlerTable handlerTable(Isa isa, MathTier tier) {
 }
 
 CompiledProgram::CompiledProgram(const ir::Program& source, LoweredProgram lowered, const BatchOptions& options)
-    : source_(source) {
+    : source_(source), masks_(maskFunctions(options.isa)) {
     const HandlerTable handlers = handlerTable(options.isa, options.tier);
     const Allocation batchRows = allocate(lowered.batch), drawRows = allocate(lowered.draw);
     const uint32_t lanes = options.lanes != 0 ? options.lanes : chooseLanes(batchRows.rows);

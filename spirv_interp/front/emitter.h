@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "spirv_interp/ir/ir.h"
+#include "spirv_interp/ir/ops.h"
 
 namespace vernier {
 
@@ -28,6 +28,7 @@ class Emitter {
     // Values.
     ir::ValueId constant(ir::Type type, uint64_t bits);
     ir::ValueId constantI32(uint32_t value) { return constant(ir::Type::i32, value); }
+    ir::ValueId constantBool(bool value) { return constant(ir::Type::b1, value ? ir::kTrueBits : 0); }
     ir::ValueId constantFloat(ir::Type type, double value);
     ir::ValueId undef(ir::Type type);
     ir::Type typeOf(ir::ValueId value) const { return program_.valueTypes[value]; }

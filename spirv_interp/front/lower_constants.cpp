@@ -11,12 +11,12 @@ void Lowering::lowerConstant(const Instruction& inst) {
     switch (inst.op) {
         case spv::Op::OpConstantTrue:
         case spv::Op::OpConstantFalse:
-            setScalar(id, type, emitter_.constant(ir::Type::b1, inst.op == spv::Op::OpConstantTrue ? 1 : 0));
+            setScalar(id, type, emitter_.constantBool(inst.op == spv::Op::OpConstantTrue));
             break;
         case spv::Op::OpSpecConstantTrue:
         case spv::Op::OpSpecConstantFalse: {
             const uint64_t bits = specialised(inst, inst.op == spv::Op::OpSpecConstantTrue ? 1 : 0, 4);
-            setScalar(id, type, emitter_.constant(ir::Type::b1, bits != 0 ? 1 : 0));
+            setScalar(id, type, emitter_.constantBool(bits != 0));
             break;
         }
         case spv::Op::OpConstant:

@@ -187,7 +187,7 @@ std::optional<uint64_t> foldConversion(Op op, Type type, Type from, uint64_t x) 
             if (from == type) return std::nullopt;
             return type == Type::f32 ? floatBits<float>(static_cast<float>(asFloat<double>(x)))
                                      : floatBits<double>(static_cast<double>(asFloat<float>(x)));
-        case Op::zext:
+        case Op::zext: return from == Type::b1 ? x & 1 : x;
         case Op::bitcast: return x;
         case Op::itrunc: return x & 0xFFFFFFFFu;
         case Op::sext:
@@ -196,9 +196,7 @@ std::optional<uint64_t> foldConversion(Op op, Type type, Type from, uint64_t x) 
     }
 }
 
-}  // namespace
-
-std::optional<uint64_t> foldConstant(Op op, Type type, uint64_t imm, std::span<const uint64_t> x) {
+std::optional<uint64_t> foldAny(Op op, Type type, uint64_t imm, std::span<const uint64_t> x) {
     if (x.empty() || opInfo(op).kind != 'P' || op == Op::phi) return std::nullopt;
     const auto from = static_cast<Type>(imm);
     if (op >= Op::fadd && op <= Op::ffrexpMantissa) {
@@ -220,13 +218,21 @@ std::optional<uint64_t> foldConstant(Op op, Type type, uint64_t imm, std::span<c
         case Op::band: return x[0] & x[1];
         case Op::bor: return x[0] | x[1];
         case Op::bxor: return x[0] ^ x[1];
-        case Op::bnot: return x[0] ^ 1;
+        case Op::bnot: return x[0] == 0;
         case Op::select: return x[0] != 0 ? x[1] : x[2];
         case Op::makeWide: return immPair(static_cast<uint32_t>(x[0]), static_cast<uint32_t>(x[1]));
         case Op::lowWord: return x[0] & 0xFFFFFFFFu;
         case Op::highWord: return x[0] >> 32;
         default: return std::nullopt;
     }
+}
+
+}  // namespace
+
+std::optional<uint64_t> foldConstant(Op op, Type type, uint64_t imm, std::span<const uint64_t> operands) {
+    std::optional<uint64_t> result = foldAny(op, type, imm, operands);
+    if (result && type == Type::b1) result = *result != 0 ? kTrueBits : 0;
+    return result;
 }
 
 }  // namespace vernier::ir

@@ -29,6 +29,9 @@ inline uint32_t immLow(const Inst& inst) { return static_cast<uint32_t>(inst.imm
 inline uint32_t immHigh(const Inst& inst) { return static_cast<uint32_t>(inst.imm >> 32); }
 inline uint64_t immPair(uint32_t low, uint32_t high) { return low | static_cast<uint64_t>(high) << 32; }
 
+/// The bits of a b1 constant that is true, as in a lane.
+inline constexpr uint64_t kTrueBits = 0xFFFFFFFFu;
+
 constexpr bool isFloat(Type type) { return type == Type::f32 || type == Type::f64; }
 constexpr bool isInteger(Type type) { return type == Type::i32 || type == Type::i64; }
 constexpr bool isWide(Type type) { return type == Type::i64 || type == Type::f64; }

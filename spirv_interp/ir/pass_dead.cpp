@@ -2,11 +2,32 @@
 #include "spirv_interp/ir/passes.h"
 
 namespace vernier::ir {
+namespace {
+
+/// An output that is never given a value need not exist; it is undefined either way.
+bool dropUndefinedOutputs(Program& program) {
+    std::vector<bool> undefined(program.valueTypes.size(), false);
+    for (const Block& block : program.blocks) {
+        for (const Inst& inst : block.insts) {
+            if (inst.op == Op::undef) undefined[inst.result] = true;
+        }
+    }
+    bool changed = false;
+    for (Block& block : program.blocks) {
+        changed |= std::erase_if(block.insts, [&](const Inst& inst) {
+                       return inst.op == Op::storeOutput && undefined[program.operands[inst.firstOperand]];
+                   }) != 0;
+    }
+    return changed;
+}
+
+}  // namespace
 
 bool removeDead(Program& program) {
     std::vector<const Inst*> definition(program.valueTypes.size(), nullptr);
     std::vector<bool> live(program.valueTypes.size(), false);
     std::vector<const Inst*> work;
+    bool changed = dropUndefinedOutputs(program);
     for (const Block& block : program.blocks) {
         for (const Inst& inst : block.insts) {
             for (uint32_t r = 0; r < opInfo(inst.op).results; ++r) definition[inst.result + r] = &inst;
@@ -24,7 +45,6 @@ bool removeDead(Program& program) {
             work.push_back(from);
         }
     }
-    bool changed = false;
     for (Block& block : program.blocks) {
         changed |= std::erase_if(block.insts, [&](const Inst& inst) {
                        return !hasSideEffect(program, inst) && !live[inst.result];

@@ -268,26 +268,26 @@ class Folder {
                 const ValueId no = operand(inst, 2);
                 if (each[0]) return replace(inst, *each[0] != 0 ? b : no);
                 if (b == no) return replace(inst, b);
-                if (inst.type == Type::b1 && is(1, 1) && is(2, 0)) return replace(inst, a);
-                if (inst.type == Type::b1 && is(1, 0) && is(2, 1)) return rewrite(inst, Op::bnot, {a});
+                if (inst.type == Type::b1 && is(1, kTrueBits) && is(2, 0)) return replace(inst, a);
+                if (inst.type == Type::b1 && is(1, 0) && is(2, kTrueBits)) return rewrite(inst, Op::bnot, {a});
                 if (const Inst* n = definedBy(a, Op::bnot)) return rewrite(inst, Op::select, {operand(*n, 0), no, b});
                 return;
             }
             case Op::band:
-                if (is(0, 1) || a == b) return replace(inst, b);
-                if (is(1, 1)) return replace(inst, a);
+                if (is(0, kTrueBits) || a == b) return replace(inst, b);
+                if (is(1, kTrueBits)) return replace(inst, a);
                 if (is(0, 0) || is(1, 0)) return replace(inst, constant(Type::b1, 0));
                 return;
             case Op::bor:
                 if (is(0, 0) || a == b) return replace(inst, b);
                 if (is(1, 0)) return replace(inst, a);
-                if (is(0, 1) || is(1, 1)) return replace(inst, constant(Type::b1, 1));
+                if (is(0, kTrueBits) || is(1, kTrueBits)) return replace(inst, constant(Type::b1, kTrueBits));
                 return;
             case Op::bxor:
                 if (is(0, 0)) return replace(inst, b);
                 if (is(1, 0)) return replace(inst, a);
-                if (is(0, 1)) return rewrite(inst, Op::bnot, {b});
-                if (is(1, 1)) return rewrite(inst, Op::bnot, {a});
+                if (is(0, kTrueBits)) return rewrite(inst, Op::bnot, {b});
+                if (is(1, kTrueBits)) return rewrite(inst, Op::bnot, {a});
                 return;
             case Op::bnot: return invert(inst, a);
             case Op::bitcast:

@@ -24,7 +24,7 @@ bool foldBranches(Program& program);
 /// the lanes disagree. Branches on draw-rate conditions, which it takes as a whole, stay unless they are tiny.
 bool convertIfs(Program& program);
 
-/// Operations whose results nobody uses are removed.
+/// Operations whose results nobody uses are removed, and stores of undefined values to outputs.
 bool removeDead(Program& program);
 
 /// fmul + fadd, the product used once and neither marked noContraction, become ffma.

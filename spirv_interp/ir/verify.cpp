@@ -204,7 +204,9 @@ class Verifier {
         switch (immKind(inst.op)) {
             case ImmKind::none: return inst.imm != 0 ? "an immediate where there is none" : nullptr;
             case ImmKind::bits: {
-                if (inst.type == Type::b1 && inst.imm > 1) return "a boolean constant that is neither 0 nor 1";
+                if (inst.type == Type::b1 && inst.imm != 0 && inst.imm != kTrueBits) {
+                    return "a boolean constant that is neither all zeros nor all ones";
+                }
                 if (!isWide(inst.type) && inst.imm > 0xFFFFFFFFu) return "a 32-bit constant with more bits";
                 return nullptr;
             }

@@ -1,4 +1,5 @@
-// Constants, specialised: every one is worked out when the module is parsed, since array lengths depend on them.
+// Constants, specialised: every one is worked out when the module is parsed, since array lengths depend on
+// them.
 #include <bit>
 
 #include "spirv_interp/reference/integer_ops.h"
@@ -17,8 +18,10 @@ ConstantScalar scalarFromBits(const Type& type, uint64_t bits) {
             return {type.width == 64 ? std::bit_cast<double>(bits)
                                      : static_cast<double>(std::bit_cast<float>(static_cast<uint32_t>(bits))),
                     0};
-        case TypeKind::integer: return {0, bits};
-        default: fail("type " + name(type.id) + " of a scalar constant");
+        case TypeKind::integer:
+            return {0, bits};
+        default:
+            fail("type " + name(type.id) + " of a scalar constant");
     }
 }
 
@@ -29,17 +32,26 @@ class ConstantParser {
 
     std::vector<ConstantScalar> run() {
         switch (i_.op) {
-            case spv::OpConstantTrue: return boolean(true);
-            case spv::OpConstantFalse: return boolean(false);
-            case spv::OpSpecConstantTrue: return boolean(specialized().value_or(1) != 0);
-            case spv::OpSpecConstantFalse: return boolean(specialized().value_or(0) != 0);
-            case spv::OpConstant: return {scalarFromBits(type_, literal())};
-            case spv::OpSpecConstant: return {scalarFromBits(type_, specialized().value_or(literal()))};
+            case spv::OpConstantTrue:
+                return boolean(true);
+            case spv::OpConstantFalse:
+                return boolean(false);
+            case spv::OpSpecConstantTrue:
+                return boolean(specialized().value_or(1) != 0);
+            case spv::OpSpecConstantFalse:
+                return boolean(specialized().value_or(0) != 0);
+            case spv::OpConstant:
+                return {scalarFromBits(type_, literal())};
+            case spv::OpSpecConstant:
+                return {scalarFromBits(type_, specialized().value_or(literal()))};
             case spv::OpConstantNull:
-            case spv::OpUndef: return std::vector<ConstantScalar>(module_.valueScalars(type_));
+            case spv::OpUndef:
+                return std::vector<ConstantScalar>(module_.valueScalars(type_));
             case spv::OpConstantComposite:
-            case spv::OpSpecConstantComposite: return composite();
-            default: return expression(static_cast<spv::Op>(i_.operand(0)), i_.operands.subspan(1));
+            case spv::OpSpecConstantComposite:
+                return composite();
+            default:
+                return expression(static_cast<spv::Op>(i_.operand(0)), i_.operands.subspan(1));
         }
     }
 
@@ -91,7 +103,8 @@ class ConstantParser {
             case spv::OpCompositeInsert: {
                 const Constant& whole = module_.constant(argument(arguments, 1));
                 const auto range = module_.subrange(module_.types[whole.type], arguments.subspan(2));
-                if (range.count != first.scalars.size()) fail(name(i_.result) + " inserts a part of another size");
+                if (range.count != first.scalars.size())
+                    fail(name(i_.result) + " inserts a part of another size");
                 std::vector<ConstantScalar> scalars = whole.scalars;
                 std::copy(first.scalars.begin(), first.scalars.end(),
                           scalars.begin() + static_cast<ptrdiff_t>(range.first));
@@ -108,7 +121,8 @@ class ConstantParser {
             case spv::OpSelect: {
                 const auto& yes = module_.constant(argument(arguments, 1)).scalars;
                 const auto& no = module_.constant(argument(arguments, 2)).scalars;
-                if (yes.size() != no.size()) fail(name(i_.result) + " selects between values of different sizes");
+                if (yes.size() != no.size())
+                    fail(name(i_.result) + " selects between values of different sizes");
                 std::vector<ConstantScalar> scalars;
                 for (size_t k = 0; k < yes.size(); ++k) {
                     const size_t c = first.scalars.size() == 1 ? 0 : k;
@@ -117,7 +131,8 @@ class ConstantParser {
                 }
                 return scalars;
             }
-            default: return componentwise(op, arguments);
+            default:
+                return componentwise(op, arguments);
         }
     }
 
@@ -129,25 +144,30 @@ class ConstantParser {
         for (size_t k = 0; k < first.scalars.size(); ++k) {
             const ConstantScalar& x = first.scalars[k];
             switch (op) {
-                case spv::OpUConvert: scalars.push_back({0, x.bits & widthMask(to.width)}); continue;
+                case spv::OpUConvert:
+                    scalars.push_back({0, x.bits & widthMask(to.width)});
+                    continue;
                 case spv::OpSConvert:
                     scalars.push_back(
                         {0, static_cast<uint64_t>(asSigned(x.bits, from.width)) & widthMask(to.width)});
                     continue;
                 case spv::OpFConvert:
-                    scalars.push_back({to.width == 32 ? static_cast<double>(static_cast<float>(x.number)) : x.number, 0});
+                    scalars.push_back(
+                        {to.width == 32 ? static_cast<double>(static_cast<float>(x.number)) : x.number, 0});
                     continue;
                 case spv::OpQuantizeToF16:
                     scalars.push_back({halfToFloat32(float32ToHalf(static_cast<float>(x.number))), 0});
                     continue;
-                default: break;
+                default:
+                    break;
             }
             const uint32_t count = integerOperandCount(op);
             if (count == 0) failUnsupported("OpSpecConstantOp with " + name(op));
             std::array<uint64_t, 4> operands{};
             for (uint32_t a = 0; a < count; ++a) {
                 const auto& operand = module_.constant(argument(arguments, a)).scalars;
-                // Shift amounts and bit-field positions may be wider or scalar; everything else has the same shape.
+                // Shift amounts and bit-field positions may be wider or scalar; everything else has the same
+                // shape.
                 const size_t at = operand.size() == 1 ? 0 : k;
                 if (at >= operand.size()) fail(name(i_.result) + " has operands of different sizes");
                 operands[a] = operand[at].bits;
@@ -171,7 +191,8 @@ void parseConstant(ModuleData& module, const Instruction& instruction) {
     if (constant.scalars.size() != module.valueScalars(module.types[constant.type]))
         fail("constant " + name(instruction.result) + " does not fit its type");
     module.constantScalars += constant.scalars.size();
-    if (module.constantScalars > kMaxConstantScalars) failUnsupported("more than a million scalars of constants");
+    if (module.constantScalars > kMaxConstantScalars)
+        failUnsupported("more than a million scalars of constants");
     module.constants.push_back(std::move(constant));
 }
 

@@ -13,7 +13,9 @@ uint64_t signedDivide(int64_t a, int64_t b) {
 }
 
 /// Sign of the dividend.
-int64_t signedRemainder(int64_t a, int64_t b) { return b == 0 || b == -1 ? 0 : a % b; }
+int64_t signedRemainder(int64_t a, int64_t b) {
+    return b == 0 || b == -1 ? 0 : a % b;
+}
 
 /// Sign of the divisor.
 int64_t signedModulo(int64_t a, int64_t b) {
@@ -21,7 +23,9 @@ int64_t signedModulo(int64_t a, int64_t b) {
     return remainder != 0 && (remainder < 0) != (b < 0) ? remainder + b : remainder;
 }
 
-uint64_t lowBits(uint64_t count) { return count >= 64 ? ~uint64_t{0} : (uint64_t{1} << count) - 1; }
+uint64_t lowBits(uint64_t count) {
+    return count >= 64 ? ~uint64_t{0} : (uint64_t{1} << count) - 1;
+}
 
 struct Field {
     uint64_t offset, count;
@@ -105,49 +109,85 @@ uint32_t integerOperandCount(spv::Op op) {
     }
 }
 
-std::optional<uint64_t> integerOperation(spv::Op op, uint32_t width, const std::array<uint64_t, 4>& operands) {
+std::optional<uint64_t> integerOperation(spv::Op op, uint32_t width,
+                                         const std::array<uint64_t, 4>& operands) {
     const uint64_t mask = widthMask(width);
     const uint64_t a = operands[0], b = operands[1];
     const int64_t sa = asSigned(a, width), sb = asSigned(b, width);
     const uint64_t shift = b & (width - 1);
     switch (op) {
-        case spv::OpSNegate: return (uint64_t{0} - a) & mask;
-        case spv::OpNot: return ~a & mask;
-        case spv::OpIAdd: return (a + b) & mask;
-        case spv::OpISub: return (a - b) & mask;
-        case spv::OpIMul: return (a * b) & mask;
-        case spv::OpUDiv: return b == 0 ? 0 : a / b;
-        case spv::OpSDiv: return signedDivide(sa, sb) & mask;
-        case spv::OpUMod: return b == 0 ? 0 : a % b;
-        case spv::OpSRem: return static_cast<uint64_t>(signedRemainder(sa, sb)) & mask;
-        case spv::OpSMod: return static_cast<uint64_t>(signedModulo(sa, sb)) & mask;
-        case spv::OpShiftRightLogical: return a >> shift;
-        case spv::OpShiftRightArithmetic: return static_cast<uint64_t>(sa >> shift) & mask;
-        case spv::OpShiftLeftLogical: return (a << shift) & mask;
-        case spv::OpBitwiseOr: return a | b;
-        case spv::OpBitwiseXor: return a ^ b;
-        case spv::OpBitwiseAnd: return a & b;
-        case spv::OpBitReverse: return reverseBits(a, width);
-        case spv::OpBitCount: return static_cast<uint64_t>(std::popcount(a));
-        case spv::OpBitFieldInsert: return insertField(a, b, operands[2], operands[3], width) & mask;
-        case spv::OpBitFieldSExtract: return extractField(a, b, operands[2], width, true) & mask;
-        case spv::OpBitFieldUExtract: return extractField(a, b, operands[2], width, false) & mask;
-        case spv::OpLogicalNot: return a == 0 ? 1 : 0;
+        case spv::OpSNegate:
+            return (uint64_t{0} - a) & mask;
+        case spv::OpNot:
+            return ~a & mask;
+        case spv::OpIAdd:
+            return (a + b) & mask;
+        case spv::OpISub:
+            return (a - b) & mask;
+        case spv::OpIMul:
+            return (a * b) & mask;
+        case spv::OpUDiv:
+            return b == 0 ? 0 : a / b;
+        case spv::OpSDiv:
+            return signedDivide(sa, sb) & mask;
+        case spv::OpUMod:
+            return b == 0 ? 0 : a % b;
+        case spv::OpSRem:
+            return static_cast<uint64_t>(signedRemainder(sa, sb)) & mask;
+        case spv::OpSMod:
+            return static_cast<uint64_t>(signedModulo(sa, sb)) & mask;
+        case spv::OpShiftRightLogical:
+            return a >> shift;
+        case spv::OpShiftRightArithmetic:
+            return static_cast<uint64_t>(sa >> shift) & mask;
+        case spv::OpShiftLeftLogical:
+            return (a << shift) & mask;
+        case spv::OpBitwiseOr:
+            return a | b;
+        case spv::OpBitwiseXor:
+            return a ^ b;
+        case spv::OpBitwiseAnd:
+            return a & b;
+        case spv::OpBitReverse:
+            return reverseBits(a, width);
+        case spv::OpBitCount:
+            return static_cast<uint64_t>(std::popcount(a));
+        case spv::OpBitFieldInsert:
+            return insertField(a, b, operands[2], operands[3], width) & mask;
+        case spv::OpBitFieldSExtract:
+            return extractField(a, b, operands[2], width, true) & mask;
+        case spv::OpBitFieldUExtract:
+            return extractField(a, b, operands[2], width, false) & mask;
+        case spv::OpLogicalNot:
+            return a == 0 ? 1 : 0;
         case spv::OpLogicalEqual:
-        case spv::OpIEqual: return a == b ? 1 : 0;
+        case spv::OpIEqual:
+            return a == b ? 1 : 0;
         case spv::OpLogicalNotEqual:
-        case spv::OpINotEqual: return a != b ? 1 : 0;
-        case spv::OpLogicalOr: return a | b;
-        case spv::OpLogicalAnd: return a & b;
-        case spv::OpUGreaterThan: return a > b ? 1 : 0;
-        case spv::OpSGreaterThan: return sa > sb ? 1 : 0;
-        case spv::OpUGreaterThanEqual: return a >= b ? 1 : 0;
-        case spv::OpSGreaterThanEqual: return sa >= sb ? 1 : 0;
-        case spv::OpULessThan: return a < b ? 1 : 0;
-        case spv::OpSLessThan: return sa < sb ? 1 : 0;
-        case spv::OpULessThanEqual: return a <= b ? 1 : 0;
-        case spv::OpSLessThanEqual: return sa <= sb ? 1 : 0;
-        default: return std::nullopt;
+        case spv::OpINotEqual:
+            return a != b ? 1 : 0;
+        case spv::OpLogicalOr:
+            return a | b;
+        case spv::OpLogicalAnd:
+            return a & b;
+        case spv::OpUGreaterThan:
+            return a > b ? 1 : 0;
+        case spv::OpSGreaterThan:
+            return sa > sb ? 1 : 0;
+        case spv::OpUGreaterThanEqual:
+            return a >= b ? 1 : 0;
+        case spv::OpSGreaterThanEqual:
+            return sa >= sb ? 1 : 0;
+        case spv::OpULessThan:
+            return a < b ? 1 : 0;
+        case spv::OpSLessThan:
+            return sa < sb ? 1 : 0;
+        case spv::OpULessThanEqual:
+            return a <= b ? 1 : 0;
+        case spv::OpSLessThanEqual:
+            return sa <= sb ? 1 : 0;
+        default:
+            return std::nullopt;
     }
 }
 

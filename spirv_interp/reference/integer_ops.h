@@ -1,4 +1,5 @@
-// Integer and boolean instructions on single scalars: used for shader code and for specialisation-constant expressions.
+// Integer and boolean instructions on single scalars: used for shader code and for specialisation-constant
+// expressions.
 #pragma once
 
 #include <array>
@@ -8,14 +9,17 @@
 
 namespace vernier::reference {
 
-inline uint64_t widthMask(uint32_t width) { return width >= 64 ? ~uint64_t{0} : (uint64_t{1} << width) - 1; }
+inline uint64_t widthMask(uint32_t width) {
+    return width >= 64 ? ~uint64_t{0} : (uint64_t{1} << width) - 1;
+}
 
 inline int64_t asSigned(uint64_t bits, uint32_t width) {
     return width == 32 ? static_cast<int32_t>(static_cast<uint32_t>(bits)) : static_cast<int64_t>(bits);
 }
 
-/// The result of `op` on `operands` of `width` bits (32 or 64; ignored for booleans, which are 0 or 1). Integer results are
-/// cut to `width`; comparisons give 0 or 1. Nothing if `op` is none of these instructions.
+/// The result of `op` on `operands` of `width` bits (32 or 64; ignored for booleans, which are 0 or 1).
+/// Integer results are cut to `width`; comparisons give 0 or 1. Nothing if `op` is none of these
+/// instructions.
 std::optional<uint64_t> integerOperation(spv::Op op, uint32_t width, const std::array<uint64_t, 4>& operands);
 
 /// Number of operands of such an instruction, 0 if it is none of them.

@@ -1,17 +1,19 @@
-// The reference interpreter: SPIR-V vertex and fragment shaders, one invocation at a time, in any of three number types.
-// It is slow, plain and meant to be obviously right: the judge of the batch interpreter, and the shader of the oracle.
+// The reference interpreter: SPIR-V vertex and fragment shaders, one invocation at a time, in any of three
+// number types. It is slow, plain and meant to be obviously right: the judge of the batch interpreter, and
+// the shader of the oracle.
 //
-// Where SPIR-V leaves a result open, this is what is done: integer division and remainder by zero give 0, INT_MIN / -1
-// gives INT_MIN; shift counts are taken modulo the width; float to integer truncates, saturates, and NaN gives 0; min and
-// max ignore a NaN; reads outside a buffer or an array give 0 and writes there are dropped; undefined values are 0;
-// GLSL Round is to nearest even; fma has one rounding; a multiply and an add are never contracted. Reaching OpUnreachable
-// is an error.
+// Where SPIR-V leaves a result open, this is what is done: integer division and remainder by zero give 0,
+// INT_MIN / -1 gives INT_MIN; shift counts are taken modulo the width; float to integer truncates, saturates,
+// and NaN gives 0; min and max ignore a NaN; reads outside a buffer or an array give 0 and writes there are
+// dropped; undefined values are 0; GLSL Round is to nearest even; fma has one rounding; a multiply and an add
+// are never contracted. Reaching OpUnreachable is an error.
 //
-// Number types: with float every instruction is IEEE single precision, and each GLSL.std.450 function is computed in double
-// and rounded once. With double and Real every 32-bit float of the module is held in that type: results are not rounded to
-// float unless Options::roundToFloat asks for it (then each instruction is computed in Number and its result rounded).
-// 64-bit floats of a module are held in Number too: with Number = float they have only float's precision. Bit casts and
-// packing go through the bits of the declared type (float32 or float64), rounding to nearest.
+// Number types: with float every instruction is IEEE single precision, and each GLSL.std.450 function is
+// computed in double and rounded once. With double and Real every 32-bit float of the module is held in that
+// type: results are not rounded to float unless Options::roundToFloat asks for it (then each instruction is
+// computed in Number and its result rounded). 64-bit floats of a module are held in Number too: with Number =
+// float they have only float's precision. Bit casts and packing go through the bits of the declared type
+// (float32 or float64), rounding to nearest.
 #pragma once
 
 #include <array>
@@ -50,8 +52,8 @@ struct EntryPoint {
 
 enum class ScalarKind : uint8_t { boolean, int32, uint32, int64, uint64, float32, float64 };
 
-/// One input or output of an entry point, or one member of an input or output block. Matrices and arrays take one location
-/// per column and element (two for three or four 64-bit components), one after the other.
+/// One input or output of an entry point, or one member of an input or output block. Matrices and arrays take
+/// one location per column and element (two for three or four 64-bit components), one after the other.
 struct InterfaceVariable {
     std::string name;  // may be empty: names are debug information
     bool output = false;
@@ -108,7 +110,9 @@ class Module {
     /// Bytes of the push-constant block up to the end of its last member; 0 without one.
     uint64_t pushConstantSize() const;
 
+    /// The parsed contents, for the interpreter.
     const ModuleData& data() const { return *data_; }
+    std::shared_ptr<const ModuleData> shared() const { return data_; }
 
   private:
     explicit Module(std::shared_ptr<const ModuleData> data) : data_(std::move(data)) {}
@@ -126,8 +130,9 @@ struct Location {
     auto operator<=>(const Location&) const = default;
 };
 
-/// The values on one side of an invocation. Inputs that are missing read as 0. Outputs hold exactly the locations and
-/// built-ins of which the invocation has written a component. 64-bit components take two: the value in the even one.
+/// The values on one side of an invocation. Inputs that are missing read as 0. Outputs hold exactly the
+/// locations and built-ins of which the invocation has written a component. 64-bit components take two: the
+/// value in the even one.
 template <class Number>
 struct InterfaceValues {
     std::map<Location, Texel<Number>> locations;
@@ -161,12 +166,15 @@ struct Outcome {
 };
 
 struct Options {
-    /// Round every 32-bit float result to float32, inputs and image results included. No effect with Number = float.
+    /// Round every 32-bit float result to float32, inputs and image results included. No effect with Number =
+    /// float.
     bool roundToFloat = false;
-    /// OpDPdx, OpDPdy, OpFwidth and implicit levels of detail use one difference for the whole quad, the one of its first
-    /// row or column (as the ...Coarse instructions do); otherwise that of the invocation's own row and column.
+    /// OpDPdx, OpDPdy, OpFwidth and implicit levels of detail use one difference for the whole quad, the one
+    /// of its first row or column (as the ...Coarse instructions do); otherwise that of the invocation's own
+    /// row and column.
     bool coarseDerivatives = false;
-    /// An invocation that executes more instructions ends in an Error. Instructions on large values count for several.
+    /// An invocation that executes more instructions ends in an Error. Instructions on large values count for
+    /// several.
     uint64_t stepBudget = 10'000'000;
 };
 
@@ -182,10 +190,10 @@ class Interpreter {
     /// One invocation on its own: all derivatives are 0.
     Result<Outcome<Number>> run(const InterfaceValues<Number>& inputs, Resources<Number>& resources) const;
 
-    /// The four fragments (0,0) (1,0) (0,1) (1,1) of a quad, in step at derivatives and implicit levels of detail. Helper
-    /// invocations (and demoted ones) have no effect on memory. An invocation that does not take part in a derivative
-    /// (it has ended, or is elsewhere in the program) leaves the others with the difference of the other row or column
-    /// if that is there (coarse), or with 0.
+    /// The four fragments (0,0) (1,0) (0,1) (1,1) of a quad, in step at derivatives and implicit levels of
+    /// detail. Helper invocations (and demoted ones) have no effect on memory. An invocation that does not
+    /// take part in a derivative (it has ended, or is elsewhere in the program) leaves the others with the
+    /// difference of the other row or column if that is there (coarse), or with 0.
     Result<std::array<Outcome<Number>, 4>> runQuad(const std::array<InterfaceValues<Number>, 4>& inputs,
                                                    const std::array<bool, 4>& helper,
                                                    Resources<Number>& resources) const;

@@ -54,7 +54,9 @@ void Machine<Number>::execute(const Instruction& i) {
 template <class Number>
 bool Machine<Number>::executeControl(const Instruction& i) {
     switch (i.op) {
-        case spv::OpBranch: enterBlock(i.operand(0)); return true;
+        case spv::OpBranch:
+            enterBlock(i.operand(0));
+            return true;
         case spv::OpBranchConditional:
             enterBlock(bits(i.operand(0)) != 0 ? i.operand(1) : i.operand(2));
             return true;
@@ -73,7 +75,9 @@ bool Machine<Number>::executeControl(const Instruction& i) {
             enterBlock(target);
             return true;
         }
-        case spv::OpReturn: returnFrom(nullptr); return true;
+        case spv::OpReturn:
+            returnFrom(nullptr);
+            return true;
         case spv::OpReturnValue: {
             const Value<Number> result = value(i.operand(0));
             returnFrom(&result);
@@ -84,10 +88,16 @@ bool Machine<Number>::executeControl(const Instruction& i) {
             discarded_ = true;
             status_ = Status::done;
             return true;
-        case spv::OpDemoteToHelperInvocationEXT: demote(); return true;
-        case spv::OpIsHelperInvocationEXT: setResult(i, Scalar<Number>::ofBits(helper_ ? 1 : 0)); return true;
-        case spv::OpUnreachable: fail("OpUnreachable was reached");
-        case spv::OpPhi: fail("OpPhi is not at the start of a block with predecessors");
+        case spv::OpDemoteToHelperInvocationEXT:
+            demote();
+            return true;
+        case spv::OpIsHelperInvocationEXT:
+            setResult(i, Scalar<Number>::ofBits(helper_ ? 1 : 0));
+            return true;
+        case spv::OpUnreachable:
+            fail("OpUnreachable was reached");
+        case spv::OpPhi:
+            fail("OpPhi is not at the start of a block with predecessors");
         case spv::OpFunctionCall: {
             const IdInfo& info = module_.info(i.operand(0));
             if (info.kind != IdKind::function) fail(name(i.operand(0)) + " is no function");
@@ -96,7 +106,9 @@ bool Machine<Number>::executeControl(const Instruction& i) {
             call(module_.functions[info.index], i.result, arguments);
             return true;
         }
-        case spv::OpExtInst: executeGlsl(i); return true;
+        case spv::OpExtInst:
+            executeGlsl(i);
+            return true;
         case spv::OpDPdx:
         case spv::OpDPdy:
         case spv::OpFwidth:
@@ -105,17 +117,22 @@ bool Machine<Number>::executeControl(const Instruction& i) {
         case spv::OpFwidthFine:
         case spv::OpDPdxCoarse:
         case spv::OpDPdyCoarse:
-        case spv::OpFwidthCoarse: derivative(i); return true;
-        default: return false;
+        case spv::OpFwidthCoarse:
+            derivative(i);
+            return true;
+        default:
+            return false;
     }
 }
 
 template <class Number>
 void Machine<Number>::call(const Function& function, Id result, const std::vector<Value<Number>>& arguments) {
-    if (frames_.size() >= kMaxCallDepth) fail("calls are nested more than " + std::to_string(kMaxCallDepth) + " deep");
+    if (frames_.size() >= kMaxCallDepth)
+        fail("calls are nested more than " + std::to_string(kMaxCallDepth) + " deep");
     if (function.blocks.empty()) fail("function " + name(function.id) + " has no body");
     if (arguments.size() != function.parameters.size())
-        fail("function " + name(function.id) + " takes " + std::to_string(function.parameters.size()) + " arguments");
+        fail("function " + name(function.id) + " takes " + std::to_string(function.parameters.size()) +
+             " arguments");
     charge(1 + function.slots / kScalarsPerStep);
     Frame frame;
     frame.function = &function;
@@ -128,7 +145,8 @@ void Machine<Number>::call(const Function& function, Id result, const std::vecto
         const Type& type = module_.types[typeIndex];
         if (!arguments[p].pointer && !arguments[p].image &&
             arguments[p].scalars.size() != module_.valueScalars(type))
-            fail("argument " + std::to_string(p) + " of function " + name(function.id) + " does not fit its type");
+            fail("argument " + std::to_string(p) + " of function " + name(function.id) +
+                 " does not fit its type");
         frame.values[module_.info(id).index] = arguments[p];
     }
     frames_.push_back(std::move(frame));
@@ -154,7 +172,8 @@ template <class Number>
 void Machine<Number>::enterBlock(Id label) {
     Frame& frame = frames_.back();
     const auto found = frame.function->blockOf.find(label);
-    if (found == frame.function->blockOf.end()) fail("branch to " + name(label) + ", which is no block of the function");
+    if (found == frame.function->blockOf.end())
+        fail("branch to " + name(label) + ", which is no block of the function");
     const Block& block = frame.function->blocks[found->second];
     // Phis see the values from before the branch: all are read before any is written.
     std::vector<std::pair<const Instruction*, Value<Number>>> phis;
@@ -164,7 +183,8 @@ void Machine<Number>::enterBlock(Id label) {
         Id incoming = 0;
         for (size_t k = 0; k + 1 < phi.operands.size(); k += 2)
             if (phi.operands[k + 1] == frame.block) incoming = phi.operands[k];
-        if (incoming == 0) fail("phi " + name(phi.result) + " has no value for predecessor " + name(frame.block));
+        if (incoming == 0)
+            fail("phi " + name(phi.result) + " has no value for predecessor " + name(frame.block));
         charge(1);
         phis.emplace_back(&phi, value(incoming));
     }
@@ -270,12 +290,13 @@ void Machine<Number>::resume(QuadValues values) {
     status_ = Status::running;
 }
 
-/// P(right) - P(left) or P(lower) - P(upper), SPIR-V specification, "Derivative Instructions": fine in the invocation's own
-/// row or column, coarse in the first one that is there.
+/// P(right) - P(left) or P(lower) - P(upper), SPIR-V specification, "Derivative Instructions": fine in the
+/// invocation's own row or column, coarse in the first one that is there.
 template <class Number>
 Number Machine<Number>::difference(size_t component, bool alongX, bool coarse) const {
     const uint32_t step = alongX ? 1 : 2, other = alongX ? 2 : 1;
-    const std::array<uint32_t, 2> starts{coarse ? 0 : invocation_ & other, coarse ? other : invocation_ & other};
+    const std::array<uint32_t, 2> starts{coarse ? 0 : invocation_ & other,
+                                         coarse ? other : invocation_ & other};
     for (const uint32_t start : starts) {
         const std::vector<Number>&from = (*quad_)[start], &to = (*quad_)[start + step];
         if (component < from.size() && component < to.size()) return to[component] - from[component];
@@ -290,7 +311,8 @@ void Machine<Number>::derivative(const Instruction& i) {
     std::vector<Number> offer;
     for (const Scalar<Number>& s : p) offer.push_back(s.number);
     if (!exchange(std::move(offer))) return;
-    const bool coarse = i.op == spv::OpDPdxCoarse || i.op == spv::OpDPdyCoarse || i.op == spv::OpFwidthCoarse ||
+    const bool coarse = i.op == spv::OpDPdxCoarse || i.op == spv::OpDPdyCoarse ||
+                        i.op == spv::OpFwidthCoarse ||
                         ((i.op == spv::OpDPdx || i.op == spv::OpDPdy || i.op == spv::OpFwidth) &&
                          program_.options.coarseDerivatives);
     const bool x = i.op == spv::OpDPdx || i.op == spv::OpDPdxFine || i.op == spv::OpDPdxCoarse;

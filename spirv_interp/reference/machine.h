@@ -1,5 +1,5 @@
-// One invocation of a shader as an explicit-stack machine. It runs until it is done or needs values of the other
-// invocations of its quad; whoever drives it (interpreter.cpp) then hands those in and lets it go on.
+// One invocation of a shader as an explicit-stack machine. It runs until it is done or needs values of the
+// other invocations of its quad; whoever drives it (interpreter.cpp) then hands those in and lets it go on.
 #pragma once
 
 #include <array>
@@ -37,8 +37,8 @@ template <class Number>
 struct Pointer {
     uint32_t type = 0;  // index of the pointee's type
     std::shared_ptr<Object<Number>> object;
-    uint64_t offset = 0;      // first cell, or byte
-    bool outside = false;     // an index left its array: reads give 0, writes are dropped
+    uint64_t offset = 0;   // first cell, or byte
+    bool outside = false;  // an index left its array: reads give 0, writes are dropped
     bool isBuffer = false;
     BufferKind kind = BufferKind::uniform;
     Descriptor descriptor;
@@ -76,13 +76,14 @@ class Machine {
     /// What the invocations of a group have brought to a derivative; empty where one does not take part.
     using QuadValues = std::array<std::vector<Number>, 4>;
 
-    Machine(const Program<Number>& program, const InterfaceValues<Number>& inputs, Resources<Number>& resources,
-            uint32_t invocation, bool helper);
+    Machine(const Program<Number>& program, const InterfaceValues<Number>& inputs,
+            Resources<Number>& resources, uint32_t invocation, bool helper);
 
     /// Until waiting or done. Throws Failure.
     Status run();
 
-    /// Where the machine is: instructions of all frames, outermost first. Earlier in the program compares less.
+    /// Where the machine is: instructions of all frames, outermost first. Earlier in the program compares
+    /// less.
     std::vector<size_t> position() const;
     /// While waiting: what this invocation brings.
     const std::vector<Number>& offer() const { return offer_; }
@@ -97,7 +98,7 @@ class Machine {
         size_t next = 0;  // instruction
         Id block = 0;
         std::vector<Value<Number>> values;  // by slot
-        Id caller = 0;  // the OpFunctionCall that gets the result
+        Id caller = 0;                      // the OpFunctionCall that gets the result
     };
 
     // machine.cpp: control flow and operands
@@ -108,7 +109,8 @@ class Machine {
     bool executeControl(const Instruction& i);
     void demote();
     void charge(uint64_t steps);
-    /// True when the other invocations' values are in quad_; false when the machine has to wait for them first.
+    /// True when the other invocations' values are in quad_; false when the machine has to wait for them
+    /// first.
     bool exchange(std::vector<Number> offer);
     Number difference(size_t component, bool alongX, bool coarse) const;
     void derivative(const Instruction& i);
@@ -125,9 +127,7 @@ class Machine {
     void setResult(const Instruction& i, Scalar<Number> scalar) { setResult(i, Scalars<Number>{scalar}); }
     const Type& resultType(const Instruction& i) const { return module_.typeOf(i.type); }
     size_t resultCount(const Instruction& i) const { return module_.valueScalars(resultType(i)); }
-    Number rounded(const Number& x) const {
-        return program_.options.roundToFloat ? Number(toFloat32(x)) : x;
-    }
+    Number rounded(const Number& x) const { return program_.options.roundToFloat ? Number(toFloat32(x)) : x; }
 
     // memory.cpp
     bool executeMemory(const Instruction& i);
@@ -186,7 +186,6 @@ class Machine {
     uint64_t steps_ = 0;
     std::vector<Frame> frames_;
     std::vector<std::optional<Pointer<Number>>> variables_;  // as ModuleData::variables
-    std::optional<Pointer<Number>> globalPointer_;            // scratch of pointer()
     std::vector<Number> offer_;
     std::optional<QuadValues> quad_;
 };

@@ -16,16 +16,21 @@ constexpr OpName kOpNames[] = {
 
 }  // namespace
 
-void fail(std::string message) { throw Failure{invalidArgument("SPIR-V: " + std::move(message))}; }
+void fail(std::string message) {
+    throw Failure{invalidArgument("SPIR-V: " + std::move(message))};
+}
 void failUnsupported(std::string message) {
     throw Failure{unsupported("SPIR-V: not supported by the reference interpreter: " + std::move(message))};
 }
 
-std::string name(Id id) { return "%" + std::to_string(id); }
+std::string name(Id id) {
+    return "%" + std::to_string(id);
+}
 
 std::string name(spv::Op op) {
-    const auto* found = std::find_if(std::begin(kOpNames), std::end(kOpNames),
-                                     [op](const OpName& entry) { return entry.op == static_cast<uint32_t>(op); });
+    const auto* found = std::find_if(std::begin(kOpNames), std::end(kOpNames), [op](const OpName& entry) {
+        return entry.op == static_cast<uint32_t>(op);
+    });
     return found != std::end(kOpNames) ? found->text : "opcode " + std::to_string(static_cast<uint32_t>(op));
 }
 

@@ -1,5 +1,6 @@
-// The parsed module as the interpreter sees it: types, constants, variables, functions. Every value is flattened: a
-// composite is the row of its scalars in order, so that a member is a sub-row and copying needs no recursion.
+// The parsed module as the interpreter sees it: types, constants, variables, functions. Every value is
+// flattened: a composite is the row of its scalars in order, so that a member is a sub-row and copying needs
+// no recursion.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +25,7 @@ struct Failure {
 };
 [[noreturn]] void fail(std::string message);
 [[noreturn]] void failUnsupported(std::string message);
-std::string name(Id id);      // "%12"
+std::string name(Id id);       // "%12"
 std::string name(spv::Op op);  // "OpFAdd" or "opcode 4711"
 
 /// The largest value a shader may hold: keeps broken modules from asking for all memory.
@@ -32,33 +33,45 @@ inline constexpr uint64_t kMaxScalars = uint64_t{1} << 18;
 inline constexpr uint32_t kMaxTypeDepth = 64;
 
 struct Decorations {
-    std::optional<uint32_t> location, component, index, builtin, specId, arrayStride, matrixStride, offset, binding, set,
-        inputAttachmentIndex;
+    std::optional<uint32_t> location, component, index, builtin, specId, arrayStride, matrixStride, offset,
+        binding, set, inputAttachmentIndex;
     bool flat = false, noPerspective = false, centroid = false, sample = false;
     bool block = false, bufferBlock = false, rowMajor = false, isVolatile = false;
 };
 
 enum class TypeKind : uint8_t {
-    voidType, boolean, integer, floating, vector, matrix, array, runtimeArray, structure,
-    pointer, function, image, sampler, sampledImage,
+    voidType,
+    boolean,
+    integer,
+    floating,
+    vector,
+    matrix,
+    array,
+    runtimeArray,
+    structure,
+    pointer,
+    function,
+    image,
+    sampler,
+    sampledImage,
 };
 
 struct Type {
     Id id = 0;
     TypeKind kind = TypeKind::voidType;
-    uint32_t width = 32;      // integer, floating
-    bool isSigned = false;    // integer
-    uint32_t element = 0;     // index of the element type (vector, matrix, array), pointee, image of a sampled image,
-                              // return type of a function
-    uint32_t count = 0;       // components, columns, array length
-    std::vector<uint32_t> members;  // type indices: of a struct, parameters of a function
+    uint32_t width = 32;    // integer, floating
+    bool isSigned = false;  // integer
+    uint32_t element = 0;   // index of the element type (vector, matrix, array), pointee, image of a sampled
+                           // image, return type of a function
+    uint32_t count = 0;                 // components, columns, array length
+    std::vector<uint32_t> members;      // type indices: of a struct, parameters of a function
     std::vector<uint64_t> cellOffsets;  // struct: first scalar of each member
-    uint64_t scalars = 0;     // when flattened; 0 for opaque types, saturating
-    uint32_t depth = 0;       // nesting
-    bool holdable = false;    // has values that variables and results can hold; then scalars > 0
-    uint64_t bytes = 0;       // struct: ModuleData::byteSize
+    uint64_t scalars = 0;               // when flattened; 0 for opaque types, saturating
+    uint32_t depth = 0;                 // nesting
+    bool holdable = false;              // has values that variables and results can hold; then scalars > 0
+    uint64_t bytes = 0;                 // struct: ModuleData::byteSize
     spv::StorageClass storage = spv::StorageClassFunction;  // pointer
-    ImageShape shape;         // image
+    ImageShape shape;                                       // image
 
     bool isScalar() const {
         return kind == TypeKind::boolean || kind == TypeKind::integer || kind == TypeKind::floating;
@@ -71,7 +84,7 @@ struct Type {
 
 struct Instruction {
     spv::Op op = spv::OpNop;
-    Id type = 0;    // result type
+    Id type = 0;  // result type
     Id result = 0;
     std::span<const uint32_t> operands;  // without result type and result
 
@@ -198,9 +211,9 @@ struct ModuleData {
 };
 
 /// The stages of parsing, in order.
-void parseModule(ModuleData& module);                                   // parse.cpp
-void parseType(ModuleData& module, const Instruction& instruction);     // types.cpp
+void parseModule(ModuleData& module);                                    // parse.cpp
+void parseType(ModuleData& module, const Instruction& instruction);      // types.cpp
 void parseConstant(ModuleData& module, const Instruction& instruction);  // constants.cpp
-void reflect(ModuleData& module);                                       // reflect.cpp
+void reflect(ModuleData& module);                                        // reflect.cpp
 
 }  // namespace vernier::reference

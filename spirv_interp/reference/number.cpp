@@ -7,7 +7,8 @@
 
 namespace vernier::reference {
 
-/// A Real seen as an MPFR variable that lives on the stack: its significand is a copy, store() brings it back.
+/// A Real seen as an MPFR variable that lives on the stack: its significand is a copy, store() brings it
+/// back.
 struct MpfrView {
     static_assert(sizeof(mp_limb_t) == sizeof(uint64_t) && GMP_NUMB_BITS == 64);
 
@@ -31,7 +32,8 @@ struct MpfrView {
         return result;
     }
 
-    /// Reducing the argument of a trigonometric function takes as many bits as its exponent: it has to stay small.
+    /// Reducing the argument of a trigonometric function takes as many bits as its exponent: it has to stay
+    /// small.
     static constexpr int64_t kMaxExponent = 20000;
 
     std::array<uint64_t, Real::kPrecision / 64> limbs{};
@@ -77,8 +79,12 @@ Real::Real(uint64_t value) {
     *this = result.store();
 }
 
-Real::operator float() const { return mpfr_get_flt(MpfrView(*this).value, MPFR_RNDN); }
-Real::operator double() const { return mpfr_get_d(MpfrView(*this).value, MPFR_RNDN); }
+Real::operator float() const {
+    return mpfr_get_flt(MpfrView(*this).value, MPFR_RNDN);
+}
+Real::operator double() const {
+    return mpfr_get_d(MpfrView(*this).value, MPFR_RNDN);
+}
 
 Real Real::operator-() const {
     const MpfrView operand(*this);
@@ -87,12 +93,22 @@ Real Real::operator-() const {
     return result.store();
 }
 
-Real operator+(const Real& a, const Real& b) { return binary(mpfr_add, a, b); }
-Real operator-(const Real& a, const Real& b) { return binary(mpfr_sub, a, b); }
-Real operator*(const Real& a, const Real& b) { return binary(mpfr_mul, a, b); }
-Real operator/(const Real& a, const Real& b) { return binary(mpfr_div, a, b); }
+Real operator+(const Real& a, const Real& b) {
+    return binary(mpfr_add, a, b);
+}
+Real operator-(const Real& a, const Real& b) {
+    return binary(mpfr_sub, a, b);
+}
+Real operator*(const Real& a, const Real& b) {
+    return binary(mpfr_mul, a, b);
+}
+Real operator/(const Real& a, const Real& b) {
+    return binary(mpfr_div, a, b);
+}
 
-bool operator==(const Real& a, const Real& b) { return (a <=> b) == 0; }
+bool operator==(const Real& a, const Real& b) {
+    return (a <=> b) == 0;
+}
 
 std::partial_ordering operator<=>(const Real& a, const Real& b) {
     const MpfrView left(a), right(b);
@@ -103,35 +119,91 @@ std::partial_ordering operator<=>(const Real& a, const Real& b) {
                        : std::partial_ordering::equivalent;
 }
 
-bool isnan(const Real& x) { return mpfr_nan_p(MpfrView(x).value) != 0; }
-bool isinf(const Real& x) { return mpfr_inf_p(MpfrView(x).value) != 0; }
-bool signbit(const Real& x) { return mpfr_signbit(MpfrView(x).value) != 0; }
+bool isnan(const Real& x) {
+    return mpfr_nan_p(MpfrView(x).value) != 0;
+}
+bool isinf(const Real& x) {
+    return mpfr_inf_p(MpfrView(x).value) != 0;
+}
+bool signbit(const Real& x) {
+    return mpfr_signbit(MpfrView(x).value) != 0;
+}
 
-Real floor(const Real& x) { return unary(mpfr_rint_floor, x); }
-Real ceil(const Real& x) { return unary(mpfr_rint_ceil, x); }
-Real trunc(const Real& x) { return unary(mpfr_rint_trunc, x); }
-Real rint(const Real& x) { return unary(mpfr_rint, x); }
-Real fabs(const Real& x) { return signbit(x) ? -x : x; }
-Real sqrt(const Real& x) { return unary(mpfr_sqrt, x); }
-Real exp(const Real& x) { return unary(mpfr_exp, x); }
-Real exp2(const Real& x) { return unary(mpfr_exp2, x); }
-Real log(const Real& x) { return unary(mpfr_log, x); }
-Real log2(const Real& x) { return unary(mpfr_log2, x); }
-Real sin(const Real& x) { return unary(mpfr_sin, x); }
-Real cos(const Real& x) { return unary(mpfr_cos, x); }
-Real tan(const Real& x) { return unary(mpfr_tan, x); }
-Real asin(const Real& x) { return unary(mpfr_asin, x); }
-Real acos(const Real& x) { return unary(mpfr_acos, x); }
-Real atan(const Real& x) { return unary(mpfr_atan, x); }
-Real sinh(const Real& x) { return unary(mpfr_sinh, x); }
-Real cosh(const Real& x) { return unary(mpfr_cosh, x); }
-Real tanh(const Real& x) { return unary(mpfr_tanh, x); }
-Real asinh(const Real& x) { return unary(mpfr_asinh, x); }
-Real acosh(const Real& x) { return unary(mpfr_acosh, x); }
-Real atanh(const Real& x) { return unary(mpfr_atanh, x); }
-Real pow(const Real& x, const Real& y) { return binary(mpfr_pow, x, y); }
-Real atan2(const Real& y, const Real& x) { return binary(mpfr_atan2, y, x); }
-Real fmod(const Real& x, const Real& y) { return binary(mpfr_fmod, x, y); }
+Real floor(const Real& x) {
+    return unary(mpfr_rint_floor, x);
+}
+Real ceil(const Real& x) {
+    return unary(mpfr_rint_ceil, x);
+}
+Real trunc(const Real& x) {
+    return unary(mpfr_rint_trunc, x);
+}
+Real rint(const Real& x) {
+    return unary(mpfr_rint, x);
+}
+Real fabs(const Real& x) {
+    return signbit(x) ? -x : x;
+}
+Real sqrt(const Real& x) {
+    return unary(mpfr_sqrt, x);
+}
+Real exp(const Real& x) {
+    return unary(mpfr_exp, x);
+}
+Real exp2(const Real& x) {
+    return unary(mpfr_exp2, x);
+}
+Real log(const Real& x) {
+    return unary(mpfr_log, x);
+}
+Real log2(const Real& x) {
+    return unary(mpfr_log2, x);
+}
+Real sin(const Real& x) {
+    return unary(mpfr_sin, x);
+}
+Real cos(const Real& x) {
+    return unary(mpfr_cos, x);
+}
+Real tan(const Real& x) {
+    return unary(mpfr_tan, x);
+}
+Real asin(const Real& x) {
+    return unary(mpfr_asin, x);
+}
+Real acos(const Real& x) {
+    return unary(mpfr_acos, x);
+}
+Real atan(const Real& x) {
+    return unary(mpfr_atan, x);
+}
+Real sinh(const Real& x) {
+    return unary(mpfr_sinh, x);
+}
+Real cosh(const Real& x) {
+    return unary(mpfr_cosh, x);
+}
+Real tanh(const Real& x) {
+    return unary(mpfr_tanh, x);
+}
+Real asinh(const Real& x) {
+    return unary(mpfr_asinh, x);
+}
+Real acosh(const Real& x) {
+    return unary(mpfr_acosh, x);
+}
+Real atanh(const Real& x) {
+    return unary(mpfr_atanh, x);
+}
+Real pow(const Real& x, const Real& y) {
+    return binary(mpfr_pow, x, y);
+}
+Real atan2(const Real& y, const Real& x) {
+    return binary(mpfr_atan2, y, x);
+}
+Real fmod(const Real& x, const Real& y) {
+    return binary(mpfr_fmod, x, y);
+}
 
 Real fma(const Real& a, const Real& b, const Real& c) {
     const MpfrView x(a), y(b), z(c);

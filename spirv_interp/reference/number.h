@@ -1,5 +1,6 @@
-// The 128-bit number type of the reference interpreter. Its arithmetic is MPFR's: every operation, the transcendental ones
-// included, is correctly rounded to nearest even. MPFR itself is not seen through this header.
+// The 128-bit number type of the reference interpreter. Its arithmetic is MPFR's: every operation, the
+// transcendental ones included, is correctly rounded to nearest even. MPFR itself is not seen through this
+// header.
 #pragma once
 
 #include <array>
@@ -8,8 +9,9 @@
 
 namespace vernier::reference {
 
-/// A binary floating-point number with a 128-bit significand and exponents up to +-20000 (beyond: infinity or zero, so that
-/// argument reduction stays affordable); NaN, signed infinities and signed zeros as in IEEE 754. A plain value: copies are bitwise. Thread-safe like an int.
+/// A binary floating-point number with a 128-bit significand and exponents up to +-20000 (beyond: infinity or
+/// zero, so that argument reduction stays affordable); NaN, signed infinities and signed zeros as in IEEE
+/// 754. A plain value: copies are bitwise. Thread-safe like an int.
 class Real {
   public:
     static constexpr int kPrecision = 128;

@@ -1,5 +1,5 @@
-// What the interpreter needs to know about a number type besides its operators: the type that functions are computed in,
-// and the conversions to and from bits and integers.
+// What the interpreter needs to know about a number type besides its operators: the type that functions are
+// computed in, and the conversions to and from bits and integers.
 #pragma once
 
 #include <bit>
@@ -15,29 +15,45 @@ namespace vernier::reference {
 template <class Number>
 struct WideOf;
 template <>
-struct WideOf<float> { using Type = double; };
+struct WideOf<float> {
+    using Type = double;
+};
 template <>
-struct WideOf<double> { using Type = long double; };
+struct WideOf<double> {
+    using Type = long double;
+};
 template <>
-struct WideOf<Real> { using Type = Real; };
+struct WideOf<Real> {
+    using Type = Real;
+};
 
 template <class Number>
 using Wide = typename WideOf<Number>::Type;
 
 template <class Number>
-float toFloat32(const Number& x) { return static_cast<float>(x); }
+float toFloat32(const Number& x) {
+    return static_cast<float>(x);
+}
 
 template <class Number>
-uint32_t float32Bits(const Number& x) { return std::bit_cast<uint32_t>(toFloat32(x)); }
+uint32_t float32Bits(const Number& x) {
+    return std::bit_cast<uint32_t>(toFloat32(x));
+}
 
 template <class Number>
-Number fromFloat32Bits(uint64_t bits) { return Number(std::bit_cast<float>(static_cast<uint32_t>(bits))); }
+Number fromFloat32Bits(uint64_t bits) {
+    return Number(std::bit_cast<float>(static_cast<uint32_t>(bits)));
+}
 
 template <class Number>
-uint64_t float64Bits(const Number& x) { return std::bit_cast<uint64_t>(static_cast<double>(x)); }
+uint64_t float64Bits(const Number& x) {
+    return std::bit_cast<uint64_t>(static_cast<double>(x));
+}
 
 template <class Number>
-Number fromFloat64Bits(uint64_t bits) { return static_cast<Number>(std::bit_cast<double>(bits)); }
+Number fromFloat64Bits(uint64_t bits) {
+    return static_cast<Number>(std::bit_cast<double>(bits));
+}
 
 /// IEEE 754 binary16 from binary32, to nearest even (Vulkan spec, "16-Bit Floating-Point Numbers").
 uint32_t float32ToHalf(float value);
@@ -72,8 +88,9 @@ uint64_t toInteger(const Number& x, uint32_t width, bool isSigned) {
 template <class Number>
 Number fromInteger(uint64_t bits, uint32_t width, bool isSigned) {
     if (!isSigned) return static_cast<Number>(bits);
-    return static_cast<Number>(width == 32 ? static_cast<int64_t>(static_cast<int32_t>(static_cast<uint32_t>(bits)))
-                                           : static_cast<int64_t>(bits));
+    return static_cast<Number>(width == 32
+                                   ? static_cast<int64_t>(static_cast<int32_t>(static_cast<uint32_t>(bits)))
+                                   : static_cast<int64_t>(bits));
 }
 
 }  // namespace vernier::reference

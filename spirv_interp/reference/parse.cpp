@@ -1,5 +1,5 @@
-// Words to instructions: the module's sections and the bodies of functions. What an instruction means is left to the files
-// of types and constants, and to the machine.
+// Words to instructions: the module's sections and the bodies of functions. What an instruction means is left
+// to the files of types and constants, and to the machine.
 #include <algorithm>
 
 #define SPV_ENABLE_UTILITY_CODE
@@ -47,8 +47,10 @@ bool isTerminator(spv::Op op) {
         case spv::OpReturnValue:
         case spv::OpKill:
         case spv::OpTerminateInvocation:
-        case spv::OpUnreachable: return true;
-        default: return false;
+        case spv::OpUnreachable:
+            return true;
+        default:
+            return false;
     }
 }
 
@@ -59,8 +61,9 @@ class Parser {
     void run() {
         checkHeader();
         uint32_t maxId = 0;
-        forEachInstruction(module_.words,
-                           [&](const Instruction& instruction) { maxId = std::max(maxId, instruction.result); });
+        forEachInstruction(module_.words, [&](const Instruction& instruction) {
+            maxId = std::max(maxId, instruction.result);
+        });
         if (maxId >= module_.words[3])
             fail("result " + name(maxId) + " is not below the bound " + std::to_string(module_.words[3]));
         module_.ids.resize(size_t{maxId} + 1);
@@ -75,7 +78,8 @@ class Parser {
     void checkHeader() const {
         const auto& words = module_.words;
         if (words.size() < kHeaderWords) fail("a SPIR-V module has at least 5 words");
-        if (words[0] != spv::MagicNumber) fail("not a SPIR-V module in this machine's byte order: wrong magic number");
+        if (words[0] != spv::MagicNumber)
+            fail("not a SPIR-V module in this machine's byte order: wrong magic number");
         if ((words[1] >> 16) != 1 || ((words[1] >> 8) & 0xFF) > 6)
             failUnsupported("SPIR-V version " + std::to_string((words[1] >> 16) & 0xFF) + "." +
                             std::to_string((words[1] >> 8) & 0xFF));
@@ -92,9 +96,12 @@ class Parser {
         switch (i.op) {
             case spv::OpNop:
             case spv::OpLine:
-            case spv::OpNoLine: return;
-            case spv::OpFunction: return beginFunction(i);
-            default: break;
+            case spv::OpNoLine:
+                return;
+            case spv::OpFunction:
+                return beginFunction(i);
+            default:
+                break;
         }
         if (function_)
             visitInFunction(i);
@@ -113,18 +120,26 @@ class Parser {
             case spv::OpModuleProcessed:
             case spv::OpDecorateId:
             case spv::OpDecorateString:
-            case spv::OpMemberDecorateString: return;
+            case spv::OpMemberDecorateString:
+                return;
             case spv::OpExtInst:
-                if (module_.info(i.operand(0)).kind != IdKind::ignoredSet) fail("OpExtInst outside a function");
+                if (module_.info(i.operand(0)).kind != IdKind::ignoredSet)
+                    fail("OpExtInst outside a function");
                 return;
-            case spv::OpExtInstImport: return importSet(i);
+            case spv::OpExtInstImport:
+                return importSet(i);
             case spv::OpMemoryModel:
-                if (i.operand(0) != spv::AddressingModelLogical) failUnsupported("addressing model that is not Logical");
+                if (i.operand(0) != spv::AddressingModelLogical)
+                    failUnsupported("addressing model that is not Logical");
                 return;
-            case spv::OpEntryPoint: return entryPoint(i);
+            case spv::OpEntryPoint:
+                return entryPoint(i);
             case spv::OpExecutionMode:
-            case spv::OpExecutionModeId: return executionMode(i);
-            case spv::OpName: module_.names[i.operand(0)] = literalString(i.operands, 1).first; return;
+            case spv::OpExecutionModeId:
+                return executionMode(i);
+            case spv::OpName:
+                module_.names[i.operand(0)] = literalString(i.operands, 1).first;
+                return;
             case spv::OpMemberName:
                 module_.memberNames[{i.operand(0), i.operand(1)}] = literalString(i.operands, 2).first;
                 return;
@@ -132,7 +147,8 @@ class Parser {
                 return decorate(module_.decorations[i.operand(0)], i, 1);
             case spv::OpMemberDecorate:
                 return decorate(module_.memberDecorations[{i.operand(0), i.operand(1)}], i, 2);
-            case spv::OpVariable: return globalVariable(i);
+            case spv::OpVariable:
+                return globalVariable(i);
             case spv::OpUndef:
             case spv::OpConstantTrue:
             case spv::OpConstantFalse:
@@ -162,8 +178,10 @@ class Parser {
             case spv::OpTypePointer:
             case spv::OpTypeFunction:
                 parseType(module_, i);
-                return define(i.result, {IdKind::type, static_cast<uint32_t>(module_.types.size() - 1), 0, 0});
-            default: failUnsupported(name(i.op) + " outside a function");
+                return define(i.result,
+                              {IdKind::type, static_cast<uint32_t>(module_.types.size() - 1), 0, 0});
+            default:
+                failUnsupported(name(i.op) + " outside a function");
         }
     }
 
@@ -193,42 +211,101 @@ class Parser {
             if (module_.entryPointData[k].function != function) continue;
             ExecutionModes& modes = module_.entryPoints[k].modes;
             switch (mode) {
-                case spv::ExecutionModeOriginUpperLeft: modes.originUpperLeft = true; break;
-                case spv::ExecutionModeOriginLowerLeft: modes.originLowerLeft = true; break;
-                case spv::ExecutionModePixelCenterInteger: modes.pixelCenterInteger = true; break;
-                case spv::ExecutionModeEarlyFragmentTests: modes.earlyFragmentTests = true; break;
-                case spv::ExecutionModeDepthReplacing: modes.depthReplacing = true; break;
-                case spv::ExecutionModeDepthGreater: modes.depthGreater = true; break;
-                case spv::ExecutionModeDepthLess: modes.depthLess = true; break;
-                case spv::ExecutionModeDepthUnchanged: modes.depthUnchanged = true; break;
-                default: break;  // the other modes concern other stages or leave results open
+                case spv::ExecutionModeOriginUpperLeft:
+                    modes.originUpperLeft = true;
+                    break;
+                case spv::ExecutionModeOriginLowerLeft:
+                    modes.originLowerLeft = true;
+                    break;
+                case spv::ExecutionModePixelCenterInteger:
+                    modes.pixelCenterInteger = true;
+                    break;
+                case spv::ExecutionModeEarlyFragmentTests:
+                    modes.earlyFragmentTests = true;
+                    break;
+                case spv::ExecutionModeDepthReplacing:
+                    modes.depthReplacing = true;
+                    break;
+                case spv::ExecutionModeDepthGreater:
+                    modes.depthGreater = true;
+                    break;
+                case spv::ExecutionModeDepthLess:
+                    modes.depthLess = true;
+                    break;
+                case spv::ExecutionModeDepthUnchanged:
+                    modes.depthUnchanged = true;
+                    break;
+                default:
+                    break;  // the other modes concern other stages or leave results open
             }
         }
     }
 
     static void decorate(Decorations& d, const Instruction& i, size_t first) {
         switch (static_cast<spv::Decoration>(i.operand(first))) {
-            case spv::DecorationLocation: d.location = i.operand(first + 1); break;
-            case spv::DecorationComponent: d.component = i.operand(first + 1); break;
-            case spv::DecorationIndex: d.index = i.operand(first + 1); break;
-            case spv::DecorationBuiltIn: d.builtin = i.operand(first + 1); break;
-            case spv::DecorationSpecId: d.specId = i.operand(first + 1); break;
-            case spv::DecorationArrayStride: d.arrayStride = i.operand(first + 1); break;
-            case spv::DecorationMatrixStride: d.matrixStride = i.operand(first + 1); break;
-            case spv::DecorationOffset: d.offset = i.operand(first + 1); break;
-            case spv::DecorationBinding: d.binding = i.operand(first + 1); break;
-            case spv::DecorationDescriptorSet: d.set = i.operand(first + 1); break;
-            case spv::DecorationInputAttachmentIndex: d.inputAttachmentIndex = i.operand(first + 1); break;
-            case spv::DecorationFlat: d.flat = true; break;
-            case spv::DecorationNoPerspective: d.noPerspective = true; break;
-            case spv::DecorationCentroid: d.centroid = true; break;
-            case spv::DecorationSample: d.sample = true; break;
-            case spv::DecorationBlock: d.block = true; break;
-            case spv::DecorationBufferBlock: d.bufferBlock = true; break;
-            case spv::DecorationRowMajor: d.rowMajor = true; break;
-            case spv::DecorationColMajor: d.rowMajor = false; break;
-            case spv::DecorationVolatile: d.isVolatile = true; break;
-            default: break;  // precision, aliasing, invariance: no difference to an interpreter that never contracts
+            case spv::DecorationLocation:
+                d.location = i.operand(first + 1);
+                break;
+            case spv::DecorationComponent:
+                d.component = i.operand(first + 1);
+                break;
+            case spv::DecorationIndex:
+                d.index = i.operand(first + 1);
+                break;
+            case spv::DecorationBuiltIn:
+                d.builtin = i.operand(first + 1);
+                break;
+            case spv::DecorationSpecId:
+                d.specId = i.operand(first + 1);
+                break;
+            case spv::DecorationArrayStride:
+                d.arrayStride = i.operand(first + 1);
+                break;
+            case spv::DecorationMatrixStride:
+                d.matrixStride = i.operand(first + 1);
+                break;
+            case spv::DecorationOffset:
+                d.offset = i.operand(first + 1);
+                break;
+            case spv::DecorationBinding:
+                d.binding = i.operand(first + 1);
+                break;
+            case spv::DecorationDescriptorSet:
+                d.set = i.operand(first + 1);
+                break;
+            case spv::DecorationInputAttachmentIndex:
+                d.inputAttachmentIndex = i.operand(first + 1);
+                break;
+            case spv::DecorationFlat:
+                d.flat = true;
+                break;
+            case spv::DecorationNoPerspective:
+                d.noPerspective = true;
+                break;
+            case spv::DecorationCentroid:
+                d.centroid = true;
+                break;
+            case spv::DecorationSample:
+                d.sample = true;
+                break;
+            case spv::DecorationBlock:
+                d.block = true;
+                break;
+            case spv::DecorationBufferBlock:
+                d.bufferBlock = true;
+                break;
+            case spv::DecorationRowMajor:
+                d.rowMajor = true;
+                break;
+            case spv::DecorationColMajor:
+                d.rowMajor = false;
+                break;
+            case spv::DecorationVolatile:
+                d.isVolatile = true;
+                break;
+            default:
+                break;  // precision, aliasing, invariance: no difference to an interpreter that never
+                        // contracts
         }
     }
 
@@ -247,20 +324,23 @@ class Parser {
             case spv::StorageClassOutput:
             case spv::StorageClassPrivate:
             case spv::StorageClassPushConstant:
-            case spv::StorageClassStorageBuffer: break;
+            case spv::StorageClassStorageBuffer:
+                break;
             default:
                 failUnsupported("variable " + name(i.result) + " of storage class " +
                                 std::to_string(static_cast<uint32_t>(variable.storage)));
         }
         if (variable.initializer != 0) module_.constant(variable.initializer);
-        define(i.result, {IdKind::variable, static_cast<uint32_t>(module_.variables.size()), variable.pointerType, 0});
+        define(i.result,
+               {IdKind::variable, static_cast<uint32_t>(module_.variables.size()), variable.pointerType, 0});
         module_.variables.push_back(variable);
     }
 
     void beginFunction(const Instruction& i) {
         if (function_) fail("function " + name(i.result) + " inside another");
         const Type& type = module_.typeOf(i.operand(1));
-        if (type.kind != TypeKind::function) fail("the type of function " + name(i.result) + " is no function type");
+        if (type.kind != TypeKind::function)
+            fail("the type of function " + name(i.result) + " is no function type");
         const auto index = static_cast<uint32_t>(module_.functions.size());
         define(i.result, {IdKind::function, index, 0, 0});
         module_.functions.emplace_back();
@@ -272,7 +352,8 @@ class Parser {
     }
 
     void defineLocal(Id id, uint32_t type) {
-        define(id, {IdKind::local, function_->slots++, type, static_cast<uint32_t>(module_.functions.size() - 1)});
+        define(id, {IdKind::local, function_->slots++, type,
+                    static_cast<uint32_t>(module_.functions.size() - 1)});
     }
 
     void visitInFunction(const Instruction& i) {
@@ -291,15 +372,18 @@ class Parser {
             case spv::OpLabel: {
                 if (inBlock_) fail("block " + name(function_->blocks.back().label) + " has no terminator");
                 const auto index = static_cast<uint32_t>(function_->blocks.size());
-                if (!function_->blockOf.emplace(i.result, index).second) fail(name(i.result) + " is defined twice");
+                if (!function_->blockOf.emplace(i.result, index).second)
+                    fail(name(i.result) + " is defined twice");
                 function_->blocks.push_back({i.result, function_->instructions.size(), 0});
                 inBlock_ = true;
                 return;
             }
             // Structure is declared for compilers: an interpreter only has to follow the branches.
             case spv::OpSelectionMerge:
-            case spv::OpLoopMerge: return;
-            default: break;
+            case spv::OpLoopMerge:
+                return;
+            default:
+                break;
         }
         if (!inBlock_) fail(name(i.op) + " outside a block");
         if (i.op == spv::OpExtInst && module_.info(i.operand(0)).kind == IdKind::ignoredSet) return;
@@ -329,6 +413,8 @@ std::pair<std::string, size_t> literalString(std::span<const uint32_t> words, si
     fail("a string without end");
 }
 
-void parseModule(ModuleData& module) { Parser(module).run(); }
+void parseModule(ModuleData& module) {
+    Parser(module).run();
+}
 
 }  // namespace vernier::reference

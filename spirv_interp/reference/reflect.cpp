@@ -9,16 +9,20 @@ namespace {
 ScalarKind scalarKind(const Type& type) {
     const bool wide = type.width == 64;
     switch (type.kind) {
-        case TypeKind::boolean: return ScalarKind::boolean;
+        case TypeKind::boolean:
+            return ScalarKind::boolean;
         case TypeKind::integer:
             if (type.isSigned) return wide ? ScalarKind::int64 : ScalarKind::int32;
             return wide ? ScalarKind::uint64 : ScalarKind::uint32;
-        case TypeKind::floating: return wide ? ScalarKind::float64 : ScalarKind::float32;
-        default: fail("type " + name(type.id) + " cannot be an input or output");
+        case TypeKind::floating:
+            return wide ? ScalarKind::float64 : ScalarKind::float32;
+        default:
+            fail("type " + name(type.id) + " cannot be an input or output");
     }
 }
 
-/// Walks one input or output variable down to scalars, vectors, matrices and arrays of them, and gives each its place.
+/// Walks one input or output variable down to scalars, vectors, matrices and arrays of them, and gives each
+/// its place.
 class InterfaceWalker {
   public:
     InterfaceWalker(const ModuleData& module, EntryPointData& entry, InterfaceLayout& layout)
@@ -29,7 +33,8 @@ class InterfaceWalker {
         layout_.cells.resize(module_.valueScalars(type));
         InterfaceVariable place;
         place.output = variable.storage == spv::StorageClassOutput;
-        if (const auto found = module_.names.find(variable.id); found != module_.names.end()) place.name = found->second;
+        if (const auto found = module_.names.find(variable.id); found != module_.names.end())
+            place.name = found->second;
         apply(place, module_.decorationsOf(variable.id));
         next_ = place.location;
         visit(type, place, 0);
@@ -121,7 +126,8 @@ void reflectEntryPoint(const ModuleData& module, EntryPointData& entry) {
         const IdInfo& info = module.info(id);
         if (info.kind != IdKind::variable) fail("interface entry " + name(id) + " is no variable");
         const Variable& variable = module.variables[info.index];
-        if (variable.storage != spv::StorageClassInput && variable.storage != spv::StorageClassOutput) continue;
+        if (variable.storage != spv::StorageClassInput && variable.storage != spv::StorageClassOutput)
+            continue;
         InterfaceLayout layout;
         layout.variable = info.index;
         layout.output = variable.storage == spv::StorageClassOutput;
@@ -143,7 +149,8 @@ DescriptorBinding reflectBinding(const ModuleData& module, const Variable& varia
     binding.set = d.set.value_or(0);
     binding.binding = d.binding.value_or(0);
     binding.inputAttachmentIndex = d.inputAttachmentIndex.value_or(0);
-    if (const auto found = module.names.find(variable.id); found != module.names.end()) binding.name = found->second;
+    if (const auto found = module.names.find(variable.id); found != module.names.end())
+        binding.name = found->second;
     const Type* type = &module.types[module.types[variable.pointerType].element];
     if (type->isArray()) {
         binding.count = type->kind == TypeKind::runtimeArray ? 0 : type->count;
@@ -161,13 +168,16 @@ DescriptorBinding reflectBinding(const ModuleData& module, const Variable& varia
             binding.shape = type->shape;
             binding.kind = imageKind(type->shape);
             break;
-        case TypeKind::sampler: binding.kind = DescriptorKind::sampler; break;
+        case TypeKind::sampler:
+            binding.kind = DescriptorKind::sampler;
+            break;
         case TypeKind::sampledImage:
             binding.shape = module.types[type->element].shape;
             binding.kind = binding.shape.dim == spv::DimBuffer ? DescriptorKind::uniformTexelBuffer
                                                                : DescriptorKind::combinedImageSampler;
             break;
-        default: failUnsupported("descriptor " + name(variable.id) + " of type " + name(type->id));
+        default:
+            failUnsupported("descriptor " + name(variable.id) + " of type " + name(type->id));
     }
     return binding;
 }
@@ -187,7 +197,8 @@ void reflect(ModuleData& module) {
             case spv::StorageClassPushConstant:
                 module.pushConstantSize = std::max(module.pushConstantSize, module.byteSize(type, 0, false));
                 break;
-            default: break;
+            default:
+                break;
         }
     }
 }

@@ -8,8 +8,12 @@ namespace {
 
 constexpr uint64_t kHuge = uint64_t{1} << 60;
 
-uint64_t saturatingAdd(uint64_t a, uint64_t b) { return std::min(kHuge, a + b); }  // both at most kHuge
-uint64_t saturatingMultiply(uint64_t a, uint64_t b) { return a != 0 && b > kHuge / a ? kHuge : a * b; }
+uint64_t saturatingAdd(uint64_t a, uint64_t b) {
+    return std::min(kHuge, a + b);
+}  // both at most kHuge
+uint64_t saturatingMultiply(uint64_t a, uint64_t b) {
+    return a != 0 && b > kHuge / a ? kHuge : a * b;
+}
 
 class TypeParser {
   public:
@@ -19,21 +23,35 @@ class TypeParser {
 
     Type run() {
         switch (i_.op) {
-            case spv::OpTypeVoid: type_.kind = TypeKind::voidType; break;
-            case spv::OpTypeBool: scalar(TypeKind::boolean, 32); break;
+            case spv::OpTypeVoid:
+                type_.kind = TypeKind::voidType;
+                break;
+            case spv::OpTypeBool:
+                scalar(TypeKind::boolean, 32);
+                break;
             case spv::OpTypeInt:
                 scalar(TypeKind::integer, i_.operand(0));
                 type_.isSigned = i_.operand(1) != 0;
                 break;
-            case spv::OpTypeFloat: scalar(TypeKind::floating, i_.operand(0)); break;
-            case spv::OpTypeVector: vector(); break;
-            case spv::OpTypeMatrix: matrix(); break;
-            case spv::OpTypeArray: array(); break;
+            case spv::OpTypeFloat:
+                scalar(TypeKind::floating, i_.operand(0));
+                break;
+            case spv::OpTypeVector:
+                vector();
+                break;
+            case spv::OpTypeMatrix:
+                matrix();
+                break;
+            case spv::OpTypeArray:
+                array();
+                break;
             case spv::OpTypeRuntimeArray:
                 type_.kind = TypeKind::runtimeArray;
                 element(i_.operand(0));
                 break;
-            case spv::OpTypeStruct: structure(); break;
+            case spv::OpTypeStruct:
+                structure();
+                break;
             case spv::OpTypePointer:
                 type_.kind = TypeKind::pointer;
                 type_.storage = static_cast<spv::StorageClass>(i_.operand(0));
@@ -45,13 +63,19 @@ class TypeParser {
                 for (size_t k = 1; k < i_.operands.size(); ++k)
                     type_.members.push_back(module_.typeIndex(i_.operands[k]));
                 break;
-            case spv::OpTypeImage: image(); break;
-            case spv::OpTypeSampler: type_.kind = TypeKind::sampler; break;
+            case spv::OpTypeImage:
+                image();
+                break;
+            case spv::OpTypeSampler:
+                type_.kind = TypeKind::sampler;
+                break;
             case spv::OpTypeSampledImage:
                 type_.kind = TypeKind::sampledImage;
-                if (element(i_.operand(0)).kind != TypeKind::image) fail(name(i_.result) + ": sampled image of no image");
+                if (element(i_.operand(0)).kind != TypeKind::image)
+                    fail(name(i_.result) + ": sampled image of no image");
                 break;
-            default: failUnsupported(name(i_.op));
+            default:
+                failUnsupported(name(i_.op));
         }
         if (type_.depth > kMaxTypeDepth) fail("type " + name(i_.result) + " is nested too deeply");
         return std::move(type_);
@@ -77,7 +101,8 @@ class TypeParser {
         type_.kind = TypeKind::vector;
         type_.count = i_.operand(1);
         if (!element(i_.operand(0)).isScalar() || type_.count < 2 || type_.count > 4)
-            failUnsupported("vector type " + name(i_.result) + " of " + std::to_string(type_.count) + " components");
+            failUnsupported("vector type " + name(i_.result) + " of " + std::to_string(type_.count) +
+                            " components");
         type_.scalars = type_.count;
         type_.holdable = true;
     }
@@ -109,8 +134,10 @@ class TypeParser {
         type_.holdable = !i_.operands.empty();
         for (const Id id : i_.operands) {
             const uint32_t index = module_.typeIndex(id);
-            const Decorations& d = module_.decorationsOf(i_.result, static_cast<uint32_t>(type_.members.size()));
-            const uint64_t bytes = module_.byteSize(module_.types[index], d.matrixStride.value_or(0), d.rowMajor);
+            const Decorations& d =
+                module_.decorationsOf(i_.result, static_cast<uint32_t>(type_.members.size()));
+            const uint64_t bytes =
+                module_.byteSize(module_.types[index], d.matrixStride.value_or(0), d.rowMajor);
             type_.bytes = std::max(type_.bytes, saturatingAdd(d.offset.value_or(0), bytes));
             type_.holdable = type_.holdable && module_.types[index].holdable;
             type_.members.push_back(index);
@@ -155,8 +182,10 @@ const Type& ModuleData::scalarType(const Type& type) const {
 }
 
 uint64_t ModuleData::valueScalars(const Type& type) const {
-    if (!type.holdable) fail("type " + name(type.id) + " has no values that can be held in a variable or result");
-    if (type.scalars > kMaxScalars) failUnsupported("type " + name(type.id) + " is too large to be held in a value");
+    if (!type.holdable)
+        fail("type " + name(type.id) + " has no values that can be held in a variable or result");
+    if (type.scalars > kMaxScalars)
+        failUnsupported("type " + name(type.id) + " is too large to be held in a value");
     return type.scalars;
 }
 
@@ -178,8 +207,10 @@ uint64_t ModuleData::byteSize(const Type& type, uint32_t matrixStride, bool rowM
     switch (type.kind) {
         case TypeKind::boolean:
         case TypeKind::integer:
-        case TypeKind::floating: return type.width / 8;
-        case TypeKind::vector: return uint64_t{type.count} * types[type.element].width / 8;
+        case TypeKind::floating:
+            return type.width / 8;
+        case TypeKind::vector:
+            return uint64_t{type.count} * types[type.element].width / 8;
         case TypeKind::matrix: {
             const uint64_t rows = types[type.element].count, bytes = scalarType(type).width / 8;
             const uint64_t lines = rowMajor ? rows : type.count, along = rowMajor ? type.count : rows;
@@ -189,8 +220,10 @@ uint64_t ModuleData::byteSize(const Type& type, uint32_t matrixStride, bool rowM
             return saturatingAdd(
                 saturatingMultiply(type.count - 1, decorationsOf(type.id).arrayStride.value_or(0)),
                 byteSize(types[type.element], matrixStride, rowMajor));
-        case TypeKind::structure: return type.bytes;
-        default: return 0;
+        case TypeKind::structure:
+            return type.bytes;
+        default:
+            return 0;
     }
 }
 

@@ -32,6 +32,10 @@ inline std::vector<uint32_t> compileGlsl(VkShaderStageFlagBits stage, const std:
 
 class ApiTest : public testing::Test {
   protected:
+    // Otherwise every shader would set the compiler up anew.
+    static void SetUpTestSuite() { vnRetainGlslCompiler(); }
+    static void TearDownTestSuite() { vnReleaseGlslCompiler(); }
+
     void SetUp() override {
         VnDeviceDesc desc{};
         desc.threads = 2;

@@ -15,8 +15,12 @@ namespace {
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-float nextUp(float x) { return std::nextafter(x, kInf); }
-float nextDown(float x) { return std::nextafter(x, -kInf); }
+float nextUp(float x) {
+    return std::nextafter(x, kInf);
+}
+float nextDown(float x) {
+    return std::nextafter(x, -kInf);
+}
 
 /// The sRGB decoding curve at numerator / denominator, to 200 bits.
 class Curve {
@@ -256,7 +260,8 @@ TEST(SharedExponent, FollowsTheSpecification) {
         ASSERT_EQ(value.float32[3], 1.0f);
         uint32_t again = 0;
         packTexel(layout, value, &again);
-        const VkClearColorValue back = unpackTexel(layout, &again);  // another exponent may express the same values
+        const VkClearColorValue back =
+            unpackTexel(layout, &again);  // another exponent may express the same values
         for (int c = 0; c < 3; ++c) ASSERT_EQ(back.float32[c], value.float32[c]);
     }
 }

@@ -122,7 +122,7 @@ TEST_P(CoverageTest, EdgesThroughCentresAndTileCorners) {
 
 TEST_P(CoverageTest, SliverWhoseFloatAreaIsZero) {
     // True area 0.777 square pixels, 24 centres inside; a float evaluation of the area gives 0.
-    const Point v[3] = {{965334, 9134}, {1857265, 1515506}, {1515249, 937879}};
+    const Point v[3] = {{965334 + 128, 9134 + 128}, {1857265 + 128, 1515506 + 128}, {1515249 + 128, 937879 + 128}};
     uint32_t total = 0;
     for (int32_t tileY = 0; tileY < 6000; tileY += kTileSize) {
         for (int32_t tileX = 3712; tileX < 7296; tileX += kTileSize) {

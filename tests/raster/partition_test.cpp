@@ -146,7 +146,7 @@ TEST(Partition, RandomTriangulations) {
         for (const bool grid : {true, false}) {
             for (const int cells : {2, 7, 40, 150}) {
                 const auto counts =
-                    counter.count(triangulation(random, 4, 4, 96, 71, cells, 25.0 / cells, grid));
+                    counter.count(triangulation(random, 4, 4, 96, 71, cells, 10.0 / cells, grid));
                 for (uint32_t y = 0; y < 75; ++y)
                     for (uint32_t x = 0; x < 100; ++x)
                         ASSERT_EQ(counts[y * 100 + x], x >= 4 && x < 96 && y >= 4 && y < 71 ? 1.0f : 0.0f)

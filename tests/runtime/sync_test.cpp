@@ -42,7 +42,9 @@ TEST(BinarySignal, ConsumesResetsAndTimesOut) {
 }
 
 TEST(Queue, RunsSubmissionsInOrderAndWaitsForSemaphores) {
-    auto device = Device::create({.threads = 2}).value();
+    DeviceDesc desc;
+    desc.threads = 2;
+    const auto device = Device::create(desc).value();
     BinarySignal semaphore, fence;
     Timeline timeline;
     std::vector<int> order;
@@ -65,7 +67,9 @@ TEST(Queue, RunsSubmissionsInOrderAndWaitsForSemaphores) {
 }
 
 TEST(Device, RefusesAnAbsurdNumberOfThreads) {
-    const auto device = Device::create({.threads = 100000});
+    DeviceDesc desc;
+    desc.threads = 100000;
+    const auto device = Device::create(desc);
     ASSERT_FALSE(device.ok());
     EXPECT_NE(device.error().message.find("100000"), std::string::npos);
 }

@@ -211,7 +211,10 @@ uint64_t conversion(Op op, Type result, Type operand, const std::vector<uint64_t
         case Op::utof: return result == Type::f64 ? bitsOf(static_cast<double>(a)) : bitsOf(static_cast<float>(a));
         case Op::ftof: return result == Type::f64 ? bitsOf(asReal()) : bitsOf(static_cast<float>(asReal()));
         case Op::zext: return operand == Type::b1 ? a & 1 : a;
-        case Op::sext: return static_cast<uint64_t>(static_cast<int64_t>(static_cast<int32_t>(a)));
+        case Op::sext:
+            return result == Type::i64 && operand == Type::i32
+                       ? static_cast<uint64_t>(static_cast<int64_t>(static_cast<int32_t>(a)))
+                       : a;
         case Op::itrunc:
         case Op::lowWord: return a & 0xFFFFFFFFu;
         case Op::highWord: return a >> 32;
@@ -247,7 +250,8 @@ uint64_t evaluateOp(Op op, Type result, Type operand, const std::vector<uint64_t
     return operand == Type::i64 ? integerOp<uint64_t>(op, a) : integerOp<uint32_t>(op, a);
 }
 
-Evaluation evaluateInvocation(const ir::Program& program, const std::vector<uint32_t>& inputs) {
+Evaluation evaluateInvocation(const ir::Program& program, const std::vector<uint32_t>& inputs,
+                              const std::vector<uint32_t>& buffer) {
     Evaluation result;
     result.outputs.resize(program.outputs.size());
     std::vector<uint64_t> values(program.valueTypes.size());
@@ -283,6 +287,9 @@ Evaluation evaluateInvocation(const ir::Program& program, const std::vector<uint
                 case Op::storeOutput: result.outputs[inst.imm] = static_cast<uint32_t>(at(0)); continue;
                 case Op::demote: result.demoted = true; continue;
                 case Op::isHelper: values[inst.result] = result.demoted ? kTrue : 0; continue;
+                case Op::loadBuffer:
+                    values[inst.result] = at(0) == 0 && at(1) / 4 < buffer.size() ? buffer[at(1) / 4] : 0;
+                    continue;
                 case Op::loadLocal:
                     values[inst.result] = at(0) < ir::immHigh(inst) ? local[ir::immLow(inst) + at(0)] : 0;
                     continue;

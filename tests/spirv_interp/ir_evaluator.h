@@ -1,5 +1,6 @@
 // A plain evaluator of IR programs, one invocation at a time: the judge of the batch interpreter in its tests. Covers
-// everything that does not reach outside the invocation: no buffers, images, derivatives or transcendental functions.
+// everything that does not reach outside the invocation, and loads: no stores, images, derivatives or transcendental
+// functions.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +15,9 @@ struct Evaluation {
     bool killed = false, demoted = false;
 };
 
-/// `inputs` by slot. The program must end.
-Evaluation evaluateInvocation(const ir::Program& program, const std::vector<uint32_t>& inputs);
+/// `inputs` by slot; `buffer` is what every resource holds, and is only read. The program must end.
+Evaluation evaluateInvocation(const ir::Program& program, const std::vector<uint32_t>& inputs,
+                              const std::vector<uint32_t>& buffer = {});
 
 /// One pure operation on bits.
 uint64_t evaluateOp(ir::Op op, ir::Type result, ir::Type operand, const std::vector<uint64_t>& a, uint64_t imm);

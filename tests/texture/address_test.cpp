@@ -7,8 +7,9 @@ namespace vernier::texture_test {
 namespace {
 
 constexpr VkSamplerAddressMode kAllModes[] = {
-    VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-    VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER, VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE};
+    VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT,
+    VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER,
+    VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE};
 
 /// A row of texels 0, 1, 2, ... (uint), so that a sample names the texel it came from.
 Image ramp(uint32_t width) {
@@ -79,7 +80,8 @@ TEST(Address, MirroredRepeatIsSymmetrical) {
         for (int i = 0; i < 64; ++i) {
             const float d = (static_cast<float>(i) + 0.5f) / 64;
             const auto mode = VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
-            EXPECT_EQ(texelAt(image, mode, static_cast<float>(k) + d), texelAt(image, mode, static_cast<float>(k) - d));
+            EXPECT_EQ(texelAt(image, mode, static_cast<float>(k) + d),
+                      texelAt(image, mode, static_cast<float>(k) - d));
         }
     }
 }
@@ -101,12 +103,19 @@ TEST(Address, BorderColours) {
 
 // T04: whatever the coordinates, some texel (or the border) is read and nothing else; ASan watches.
 TEST(Address, HugeAndSpecialCoordinatesStayInside) {
-    const float values[] = {1e10f, -1e10f, 0x1p31f, -0x1p31f, 0x1p24f, 3e38f, -3e38f, kInf, -kInf, kNaN, 8388608.5f, -0.0f};
-    for (const VkImageViewType type : {VK_IMAGE_VIEW_TYPE_1D, VK_IMAGE_VIEW_TYPE_2D, VK_IMAGE_VIEW_TYPE_3D, VK_IMAGE_VIEW_TYPE_CUBE,
-                                       VK_IMAGE_VIEW_TYPE_2D_ARRAY, VK_IMAGE_VIEW_TYPE_CUBE_ARRAY}) {
-        for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R8_UNORM, VK_FORMAT_R32G32B32A32_SFLOAT}) {
-            const uint32_t layers = type == VK_IMAGE_VIEW_TYPE_CUBE ? 6 : type == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY ? 12 : type == VK_IMAGE_VIEW_TYPE_2D_ARRAY ? 3 : 1;
-            Image image(type, format, 5, type == VK_IMAGE_VIEW_TYPE_1D ? 1 : 5, type == VK_IMAGE_VIEW_TYPE_3D ? 5 : 1, layers, 3);
+    const float values[] = {1e10f,  -1e10f, 0x1p31f, -0x1p31f, 0x1p24f,    3e38f,
+                            -3e38f, kInf,   -kInf,   kNaN,     8388608.5f, -0.0f};
+    for (const VkImageViewType type :
+         {VK_IMAGE_VIEW_TYPE_1D, VK_IMAGE_VIEW_TYPE_2D, VK_IMAGE_VIEW_TYPE_3D, VK_IMAGE_VIEW_TYPE_CUBE,
+          VK_IMAGE_VIEW_TYPE_2D_ARRAY, VK_IMAGE_VIEW_TYPE_CUBE_ARRAY}) {
+        for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R8_UNORM,
+                                      VK_FORMAT_R32G32B32A32_SFLOAT}) {
+            const uint32_t layers = type == VK_IMAGE_VIEW_TYPE_CUBE         ? 6
+                                    : type == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY ? 12
+                                    : type == VK_IMAGE_VIEW_TYPE_2D_ARRAY   ? 3
+                                                                            : 1;
+            Image image(type, format, 5, type == VK_IMAGE_VIEW_TYPE_1D ? 1 : 5,
+                        type == VK_IMAGE_VIEW_TYPE_3D ? 5 : 1, layers, 3);
             image.setAll({.float32 = {0.2f, 0.4f, 0.6f, 0.8f}});
             const VkClearColorValue texel = unpackTexel(image.info().color, image.texel(0, 0, 0, 0));
             for (const VkSamplerAddressMode mode : kAllModes) {
@@ -114,7 +123,8 @@ TEST(Address, HugeAndSpecialCoordinatesStayInside) {
                     const SamplerState sampler = makeSampler(filter, mode, VK_SAMPLER_MIPMAP_MODE_LINEAR);
                     for (const Isa isa : availableIsas()) {
                         const TextureView view = image.view(isa);
-                        for (const LodMode lodMode : {LodMode::implicitLod, LodMode::explicitLod, LodMode::base}) {
+                        for (const LodMode lodMode :
+                             {LodMode::implicitLod, LodMode::explicitLod, LodMode::base}) {
                             Batch batch(128);
                             std::mt19937 random(7);
                             for (uint32_t i = 0; i < batch.lanes; ++i) {
@@ -123,9 +133,12 @@ TEST(Address, HugeAndSpecialCoordinatesStayInside) {
                             }
                             batch.request.lodMode = lodMode;
                             batch.run(selectSampler(view, sampler, isa), view, sampler);
-                            if (mode == VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER && type != VK_IMAGE_VIEW_TYPE_CUBE) continue;
+                            if (mode == VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER &&
+                                type != VK_IMAGE_VIEW_TYPE_CUBE)
+                                continue;
                             if (type == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY) continue;
-                            for (uint32_t i = 0; i < batch.lanes; ++i) ASSERT_EQ(batch.out[0][i], texel.float32[0]);
+                            for (uint32_t i = 0; i < batch.lanes; ++i)
+                                ASSERT_EQ(batch.out[0][i], texel.float32[0]);
                         }
                     }
                 }
@@ -149,8 +162,10 @@ TEST(Address, Layers) {
     Image image(VK_IMAGE_VIEW_TYPE_2D_ARRAY, VK_FORMAT_R32_UINT, 1, 1, 1, 4, 1);
     for (uint32_t layer = 0; layer < 4; ++layer) image.set(0, 0, 0, layer, {.uint32 = {layer}});
     const SamplerState sampler = makeSampler(VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_REPEAT);
-    const std::pair<float, double> cases[] = {{0.5f, 0}, {1.5f, 2}, {2.5f, 2}, {0.51f, 1}, {-3.0f, 0}, {99.0f, 3}, {kInf, 3}, {kNaN, 0}};
-    for (const auto& [layer, expected] : cases) EXPECT_EQ(sampleOne(image, sampler, 0, 0, 0, layer)[0], expected) << layer;
+    const std::pair<float, double> cases[] = {{0.5f, 0},  {1.5f, 2},  {2.5f, 2}, {0.51f, 1},
+                                              {-3.0f, 0}, {99.0f, 3}, {kInf, 3}, {kNaN, 0}};
+    for (const auto& [layer, expected] : cases)
+        EXPECT_EQ(sampleOne(image, sampler, 0, 0, 0, layer)[0], expected) << layer;
 }
 
 // T15: unnormalised coordinates are texels; equal to normalised ones at a power-of-two size.
@@ -163,7 +178,8 @@ TEST(Address, UnnormalizedCoordinates) {
         texels.unnormalizedCoordinates = true;
         for (int i = -4; i < 100; ++i) {
             const float u = static_cast<float>(i) * 0.125f;
-            EXPECT_EQ(sampleOne(image, texels, u, u * 0.5f), sampleOne(image, normalized, u / 8, u * 0.5f / 4));
+            EXPECT_EQ(sampleOne(image, texels, u, u * 0.5f),
+                      sampleOne(image, normalized, u / 8, u * 0.5f / 4));
         }
     }
 }

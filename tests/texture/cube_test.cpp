@@ -10,11 +10,13 @@ namespace {
 TEST(Cube, AgreesWithTheModel) {
     std::mt19937 random(21);
     std::normal_distribution<float> direction;
-    for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R16G16B16A16_SFLOAT}) {
+    for (const VkFormat format :
+         {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R16G16B16A16_SFLOAT}) {
         Image image(VK_IMAGE_VIEW_TYPE_CUBE_ARRAY, format, 4, 4, 1, 12, 3);
         image.randomize(22);
         for (const VkFilter filter : {VK_FILTER_NEAREST, VK_FILTER_LINEAR}) {
-            const SamplerState sampler = makeSampler(filter, VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_MIPMAP_MODE_LINEAR);
+            const SamplerState sampler =
+                makeSampler(filter, VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_MIPMAP_MODE_LINEAR);
             std::array<std::vector<float>, 4> reference;
             Batch batch(128);
             for (int round = 0; round < 20; ++round) {
@@ -35,17 +37,25 @@ TEST(Cube, AgreesWithTheModel) {
                     batch.run(selectSampler(view, sampler, isa), view, sampler);
                     if (isa != Isa::sse4) {
                         for (int c = 0; c < 4; ++c) {
-                            ASSERT_EQ(0, std::memcmp(reference[c].data(), batch.out[c].data(), 4 * batch.lanes));
+                            ASSERT_EQ(0,
+                                      std::memcmp(reference[c].data(), batch.out[c].data(), 4 * batch.lanes));
                         }
                         continue;
                     }
                     reference = batch.out;
                     for (uint32_t i = 0; i < batch.lanes; ++i) {
-                        const Point at{batch.coord[0][i], batch.coord[1][i], batch.coord[2][i], batch.coord[3][i], 0, batch.lod[i], {}};
+                        const Point at{batch.coord[0][i],
+                                       batch.coord[1][i],
+                                       batch.coord[2][i],
+                                       batch.coord[3][i],
+                                       0,
+                                       batch.lod[i],
+                                       {}};
                         if (distanceToJump(view, sampler, at) < 1e-3) continue;
                         const Rgba expected = modelSample(view, sampler, at), actual = batch.result(view, i);
                         for (int c = 0; c < 4; ++c) {
-                            ASSERT_NEAR(actual[c], expected[c], 1e-4) << at.s << " " << at.t << " " << at.r << " " << at.layer;
+                            ASSERT_NEAR(actual[c], expected[c], 1e-4)
+                                << at.s << " " << at.t << " " << at.r << " " << at.layer;
                         }
                     }
                 }
@@ -79,15 +89,19 @@ TEST(Cube, FoldingIsAnInvolution) {
     for (const int32_t size : {1, 2, 5}) {
         for (int32_t face = 0; face < 6; ++face) {
             for (int32_t i = 0; i < size; ++i) {
-                for (const CubeTexel start : {CubeTexel{face, -1, i}, CubeTexel{face, size, i}, CubeTexel{face, i, -1}, CubeTexel{face, i, size}}) {
+                for (const CubeTexel start : {CubeTexel{face, -1, i}, CubeTexel{face, size, i},
+                                              CubeTexel{face, i, -1}, CubeTexel{face, i, size}}) {
                     const CubeTexel there = foldOverEdge(start, size);
                     ASSERT_NE(there.face, face);
                     ASSERT_TRUE(there.x >= 0 && there.x < size && there.y >= 0 && there.y < size);
                     // The edge texel we came from is one of the neighbour's own neighbours.
-                    const CubeTexel home{face, std::min(std::max(start.x, 0), size - 1), std::min(std::max(start.y, 0), size - 1)};
+                    const CubeTexel home{face, std::min(std::max(start.x, 0), size - 1),
+                                         std::min(std::max(start.y, 0), size - 1)};
                     int found = 0;
-                    for (const CubeTexel step : {CubeTexel{there.face, there.x - 1, there.y}, CubeTexel{there.face, there.x + 1, there.y},
-                                                 CubeTexel{there.face, there.x, there.y - 1}, CubeTexel{there.face, there.x, there.y + 1}}) {
+                    for (const CubeTexel step : {CubeTexel{there.face, there.x - 1, there.y},
+                                                 CubeTexel{there.face, there.x + 1, there.y},
+                                                 CubeTexel{there.face, there.x, there.y - 1},
+                                                 CubeTexel{there.face, there.x, there.y + 1}}) {
                         const bool outside = step.x < 0 || step.y < 0 || step.x >= size || step.y >= size;
                         if (!outside) continue;
                         const CubeTexel back = foldOverEdge(step, size);

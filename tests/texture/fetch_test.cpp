@@ -10,8 +10,9 @@ struct Fetched {
     std::array<std::vector<float>, 4> out;
 };
 
-Fetched fetch(const TextureView& view, const std::array<std::vector<int32_t>, 4>& coord, const std::vector<int32_t>& lod,
-              const std::vector<int32_t>& sample = {}, std::array<int32_t, 3> offset = {}) {
+Fetched fetch(const TextureView& view, const std::array<std::vector<int32_t>, 4>& coord,
+              const std::vector<int32_t>& lod, const std::vector<int32_t>& sample = {},
+              std::array<int32_t, 3> offset = {}) {
     Fetched result;
     FetchRequest request;
     request.lanes = static_cast<uint32_t>(lod.size());
@@ -33,11 +34,15 @@ TEST(Fetch, ReadsTexelsOfAllLevelsAndLayers) {
     const TextureView view = image.view(bestIsa());
     for (int32_t level = 0; level < 3; ++level) {
         for (int32_t layer = 0; layer < 3; ++layer) {
-            const auto w = static_cast<int32_t>(view.levels[level].width), h = static_cast<int32_t>(view.levels[level].height);
+            const auto w = static_cast<int32_t>(view.levels[level].width),
+                       h = static_cast<int32_t>(view.levels[level].height);
             for (int32_t y = 0; y < h; ++y) {
                 for (int32_t x = 0; x < w; ++x) {
-                    const Fetched f = fetch(view, {{{x, x, x, x}, {y, y, y, y}, {}, {layer, layer, layer, layer}}}, {level, level, level, level});
-                    const VkClearColorValue texel = unpackTexel(image.info().color, image.texel(level, x, y, layer));
+                    const Fetched f =
+                        fetch(view, {{{x, x, x, x}, {y, y, y, y}, {}, {layer, layer, layer, layer}}},
+                              {level, level, level, level});
+                    const VkClearColorValue texel =
+                        unpackTexel(image.info().color, image.texel(level, x, y, layer));
                     for (int c = 0; c < 4; ++c) ASSERT_EQ(f.out[c][2], texel.float32[c]);
                 }
             }
@@ -48,19 +53,22 @@ TEST(Fetch, ReadsTexelsOfAllLevelsAndLayers) {
 // T21: outside in any coordinate, level or sample: zero, with alpha 1 where the format has none.
 TEST(Fetch, OutsideGivesZero) {
     const int32_t far = std::numeric_limits<int32_t>::max(), negative = std::numeric_limits<int32_t>::min();
-    for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8_UNORM, VK_FORMAT_R32G32B32A32_UINT}) {
+    for (const VkFormat format :
+         {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8_UNORM, VK_FORMAT_R32G32B32A32_UINT}) {
         Image image(VK_IMAGE_VIEW_TYPE_2D_ARRAY, format, 4, 4, 1, 2, 2);
         image.setAll({.uint32 = {0x3f800000u, 0x3f800000u, 0x3f800000u, 0x3f800000u}});
         const TextureView view = image.view(bestIsa());
-        const std::vector<int32_t> x{4, -1, far, negative, 0, 0, 0, 0, 0, 0, 0, 0}, y{0, 0, 0, 0, 4, -1, far, 0, 0, 0, 0, 0},
-            layer{0, 0, 0, 0, 0, 0, 0, 2, -1, far, 0, 0}, lod{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, -1};
+        const std::vector<int32_t> x{4, -1, far, negative, 0, 0, 0, 0, 0, 0, 0, 0},
+            y{0, 0, 0, 0, 4, -1, far, 0, 0, 0, 0, 0}, layer{0, 0, 0, 0, 0, 0, 0, 2, -1, far, 0, 0},
+            lod{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, -1};
         const Fetched f = fetch(view, {{x, y, {}, layer}}, lod);
         const float one = format == VK_FORMAT_R8_UNORM ? 1.0f : 0.0f;
         for (size_t i = 0; i < lod.size(); ++i) {
             for (int c = 0; c < 3; ++c) EXPECT_EQ(f.out[c][i], 0.0f);
             EXPECT_EQ(f.out[3][i], one);
         }
-        const Fetched moved = fetch(view, {{{3, 3, 3, 3}, {0, 0, 0, 0}, {}, {0, 0, 0, 0}}}, {0, 0, 0, 0}, {}, {1, 0, 0});
+        const Fetched moved =
+            fetch(view, {{{3, 3, 3, 3}, {0, 0, 0, 0}, {}, {0, 0, 0, 0}}}, {0, 0, 0, 0}, {}, {1, 0, 0});
         EXPECT_EQ(moved.out[0][0], 0.0f);
     }
 }
@@ -85,20 +93,24 @@ TEST(Fetch, SamplesOfMultisampledImages) {
 TEST(Fetch, SwizzleMayRepeatComponents) {
     Image image(VK_IMAGE_VIEW_TYPE_1D, VK_FORMAT_R8G8B8A8_UINT, 2, 1, 1, 1, 1);
     image.set(0, 1, 0, 0, {.uint32 = {11, 22, 33, 44}});
-    image.swizzle = {VK_COMPONENT_SWIZZLE_G, VK_COMPONENT_SWIZZLE_G, VK_COMPONENT_SWIZZLE_ONE, VK_COMPONENT_SWIZZLE_R};
+    image.swizzle = {VK_COMPONENT_SWIZZLE_G, VK_COMPONENT_SWIZZLE_G, VK_COMPONENT_SWIZZLE_ONE,
+                     VK_COMPONENT_SWIZZLE_R};
     const TextureView view = image.view(bestIsa());
     const Fetched f = fetch(view, {{{1, 1, 1, 1}, {}, {}, {}}}, {0, 0, 0, 0});
     const uint32_t expected[4] = {22, 22, 1, 11};
     for (int c = 0; c < 4; ++c) EXPECT_EQ(std::bit_cast<uint32_t>(f.out[c][3]), expected[c]);
 }
 
-// T18: a gather returns the texels of the linear footprint, so filtering them by hand gives the linear sample.
+// T18: a gather returns the texels of the linear footprint, so filtering them by hand gives the linear
+// sample.
 TEST(Gather, IsTheLinearFootprint) {
     Image image(VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R8G8B8A8_UNORM, 7, 5, 1, 1, 1);
     image.randomize(41);
     for (const Isa isa : availableIsas()) {
         const TextureView view = image.view(isa);
-        for (const VkSamplerAddressMode mode : {VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER}) {
+        for (const VkSamplerAddressMode mode :
+             {VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT,
+              VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER}) {
             const SamplerState sampler = makeSampler(VK_FILTER_LINEAR, mode);
             std::mt19937 random(42);
             std::uniform_real_distribution<float> coordinate(-1, 2);
@@ -116,7 +128,8 @@ TEST(Gather, IsTheLinearFootprint) {
             for (uint32_t i = 0; i < batch.lanes; ++i) {
                 const double u = batch.coord[0][i] * 7.0 - 0.5, v = batch.coord[1][i] * 5.0 - 0.5;
                 const double a = u - std::floor(u), b = v - std::floor(v);
-                const double top = gathered[3][i] * (1 - a) + gathered[2][i] * a, bottom = gathered[0][i] * (1 - a) + gathered[1][i] * a;
+                const double top = gathered[3][i] * (1 - a) + gathered[2][i] * a,
+                             bottom = gathered[0][i] * (1 - a) + gathered[1][i] * a;
                 ASSERT_NEAR(batch.out[1][i], top * (1 - b) + bottom * b, 2e-5);
             }
         }
@@ -150,7 +163,8 @@ TEST(Gather, ComparesAndSwizzles) {
     colour.swizzle.b = VK_COMPONENT_SWIZZLE_ONE;
     const TextureView colourView = colour.view(bestIsa());
     const SamplerState plain = makeSampler(VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_REPEAT);
-    for (const auto& [component, expected] : {std::pair(0u, 1u), std::pair(1u, 4u), std::pair(2u, 1u), std::pair(3u, 4u)}) {
+    for (const auto& [component, expected] :
+         {std::pair(0u, 1u), std::pair(1u, 4u), std::pair(2u, 1u), std::pair(3u, 4u)}) {
         batch.request.component = component;
         batch.run(selectGather(colourView, plain, bestIsa()), colourView, plain);
         EXPECT_EQ(std::bit_cast<uint32_t>(batch.out[3][2]), expected) << component;
@@ -160,12 +174,19 @@ TEST(Gather, ComparesAndSwizzles) {
 TEST(Query, Sizes) {
     using Size = std::array<uint32_t, 4>;
     const Isa isa = bestIsa();
-    EXPECT_EQ(querySize(Image(VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R8_UNORM, 5, 3, 1, 1, 3).view(isa), 1), (Size{2, 1, 0, 0}));
-    EXPECT_EQ(querySize(Image(VK_IMAGE_VIEW_TYPE_2D_ARRAY, VK_FORMAT_R8_UNORM, 5, 3, 1, 7, 3).view(isa), 0), (Size{5, 3, 7, 0}));
-    EXPECT_EQ(querySize(Image(VK_IMAGE_VIEW_TYPE_1D_ARRAY, VK_FORMAT_R8_UNORM, 5, 1, 1, 7, 1).view(isa), 0), (Size{5, 7, 0, 0}));
-    EXPECT_EQ(querySize(Image(VK_IMAGE_VIEW_TYPE_3D, VK_FORMAT_R8_UNORM, 5, 4, 3, 1, 2).view(isa), 1), (Size{2, 2, 1, 0}));
-    EXPECT_EQ(querySize(Image(VK_IMAGE_VIEW_TYPE_CUBE_ARRAY, VK_FORMAT_R8_UNORM, 4, 4, 1, 12, 1).view(isa), 0), (Size{4, 4, 2, 0}));
-    EXPECT_EQ(querySize(Image(VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R8_UNORM, 5, 3, 1, 1, 1).view(isa), 1), (Size{}));
+    EXPECT_EQ(querySize(Image(VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R8_UNORM, 5, 3, 1, 1, 3).view(isa), 1),
+              (Size{2, 1, 0, 0}));
+    EXPECT_EQ(querySize(Image(VK_IMAGE_VIEW_TYPE_2D_ARRAY, VK_FORMAT_R8_UNORM, 5, 3, 1, 7, 3).view(isa), 0),
+              (Size{5, 3, 7, 0}));
+    EXPECT_EQ(querySize(Image(VK_IMAGE_VIEW_TYPE_1D_ARRAY, VK_FORMAT_R8_UNORM, 5, 1, 1, 7, 1).view(isa), 0),
+              (Size{5, 7, 0, 0}));
+    EXPECT_EQ(querySize(Image(VK_IMAGE_VIEW_TYPE_3D, VK_FORMAT_R8_UNORM, 5, 4, 3, 1, 2).view(isa), 1),
+              (Size{2, 2, 1, 0}));
+    EXPECT_EQ(
+        querySize(Image(VK_IMAGE_VIEW_TYPE_CUBE_ARRAY, VK_FORMAT_R8_UNORM, 4, 4, 1, 12, 1).view(isa), 0),
+        (Size{4, 4, 2, 0}));
+    EXPECT_EQ(querySize(Image(VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R8_UNORM, 5, 3, 1, 1, 1).view(isa), 1),
+              (Size{}));
 }
 
 // Each refusal names the object, the field and the value.
@@ -181,7 +202,8 @@ TEST(Checks, RefuseWithAReason) {
         EXPECT_NE(status.error().message.find(field), std::string::npos) << status.error().message;
     };
     EXPECT_TRUE(checkSampling(image.view(bestIsa()), good).ok());
-    refused([](TextureView& v, SamplerState&) { v.format = VK_FORMAT_BC1_RGB_UNORM_BLOCK; }, "TextureView.format");
+    refused([](TextureView& v, SamplerState&) { v.format = VK_FORMAT_BC1_RGB_UNORM_BLOCK; },
+            "TextureView.format");
     refused([](TextureView& v, SamplerState&) { v.format = VK_FORMAT_R32G32B32_SFLOAT; }, "R32G32B32_SFLOAT");
     refused([](TextureView& v, SamplerState&) { v.aspect = VK_IMAGE_ASPECT_DEPTH_BIT; }, "aspect");
     refused([](TextureView& v, SamplerState&) { v.levelCount = 17; }, "levelCount is 17");
@@ -189,11 +211,21 @@ TEST(Checks, RefuseWithAReason) {
     refused([](TextureView& v, SamplerState&) { v.levels[0].data = nullptr; }, "levels[0].data");
     refused([](TextureView& v, SamplerState&) { v.levels[0].width = 40000; }, "width is 40000");
     refused([](TextureView& v, SamplerState&) { v.levels[0].rowPitch = 12; }, "rowPitch is 12");
-    refused([](TextureView& v, SamplerState&) { v.layerCount = 2; v.levels[0].slicePitch = 8; }, "slicePitch is 8");
+    refused(
+        [](TextureView& v, SamplerState&) {
+            v.layerCount = 2;
+            v.levels[0].slicePitch = 8;
+        },
+        "slicePitch is 8");
     refused([](TextureView& v, SamplerState&) { v.type = VK_IMAGE_VIEW_TYPE_CUBE; }, "layerCount");
     refused([](TextureView&, SamplerState& s) { s.magFilter = VK_FILTER_CUBIC_EXT; }, "Filter");
     refused([](TextureView&, SamplerState& s) { s.compareEnable = true; }, "compareEnable");
-    refused([](TextureView&, SamplerState& s) { s.unnormalizedCoordinates = true; s.minFilter = VK_FILTER_NEAREST; }, "unnormalizedCoordinates");
+    refused(
+        [](TextureView&, SamplerState& s) {
+            s.unnormalizedCoordinates = true;
+            s.minFilter = VK_FILTER_NEAREST;
+        },
+        "unnormalizedCoordinates");
 }
 
 }  // namespace

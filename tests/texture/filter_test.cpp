@@ -7,8 +7,9 @@ namespace vernier::texture_test {
 namespace {
 
 constexpr VkSamplerAddressMode kAllModes[] = {
-    VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-    VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER, VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE};
+    VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT,
+    VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER,
+    VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE};
 
 struct FilterSetup {
     VkFilter mag, min;
@@ -23,9 +24,11 @@ constexpr FilterSetup kFilters[] = {
     {VK_FILTER_LINEAR, VK_FILTER_NEAREST, VK_SAMPLER_MIPMAP_MODE_NEAREST},
 };
 
-void fillRandom(Batch& batch, uint32_t seed, float low, float high, float layers, float lodLow, float lodHigh) {
+void fillRandom(Batch& batch, uint32_t seed, float low, float high, float layers, float lodLow,
+                float lodHigh) {
     std::mt19937 random(seed);
-    std::uniform_real_distribution<float> coordinate(low, high), layer(-1, layers + 1), lod(lodLow, lodHigh), unit(-0.1f, 1.1f);
+    std::uniform_real_distribution<float> coordinate(low, high), layer(-1, layers + 1), lod(lodLow, lodHigh),
+        unit(-0.1f, 1.1f);
     for (uint32_t i = 0; i < batch.lanes; ++i) {
         for (int a = 0; a < 3; ++a) batch.coord[a][i] = coordinate(random);
         batch.coord[3][i] = layer(random);
@@ -35,12 +38,18 @@ void fillRandom(Batch& batch, uint32_t seed, float low, float high, float layers
 }
 
 Point pointOf(const Batch& batch, uint32_t i) {
-    return {batch.coord[0][i], batch.coord[1][i], batch.coord[2][i], batch.coord[3][i], batch.dref[i], batch.lod[i],
+    return {batch.coord[0][i],
+            batch.coord[1][i],
+            batch.coord[2][i],
+            batch.coord[3][i],
+            batch.dref[i],
+            batch.lod[i],
             {batch.request.offset[0], batch.request.offset[1], batch.request.offset[2]}};
 }
 
 /// Runs the batch on every instruction set; all must agree to the bit, and with the model within `tolerance`.
-void check(const Image& image, const SamplerState& sampler, Batch& batch, double tolerance, const std::string& what) {
+void check(const Image& image, const SamplerState& sampler, Batch& batch, double tolerance,
+           const std::string& what) {
     std::array<std::vector<float>, 4> reference;
     int compared = 0;
     for (const Isa isa : availableIsas()) {
@@ -53,7 +62,8 @@ void check(const Image& image, const SamplerState& sampler, Batch& batch, double
             reference = batch.out;
         } else {
             for (int c = 0; c < outputs; ++c) {
-                ASSERT_EQ(0, std::memcmp(reference[c].data(), batch.out[c].data(), batch.lanes * sizeof(float)))
+                ASSERT_EQ(0,
+                          std::memcmp(reference[c].data(), batch.out[c].data(), batch.lanes * sizeof(float)))
                     << what << " differs between " << isaName(isa) << " and sse4 in component " << c;
             }
             continue;
@@ -65,8 +75,8 @@ void check(const Image& image, const SamplerState& sampler, Batch& batch, double
             const Rgba expected = modelSample(view, sampler, at), actual = batch.result(view, i);
             for (int c = 0; c < outputs; ++c) {
                 ASSERT_NEAR(actual[c], expected[c], tolerance)
-                    << what << " lane " << i << " component " << c << " at (" << at.s << ", " << at.t << ", " << at.r
-                    << ", " << at.layer << ") lod " << at.lambda;
+                    << what << " lane " << i << " component " << c << " at (" << at.s << ", " << at.t << ", "
+                    << at.r << ", " << at.layer << ") lod " << at.lambda;
             }
         }
     }
@@ -80,10 +90,17 @@ struct FormatCase {
 };
 
 constexpr FormatCase kFormats[] = {
-    {VK_FORMAT_R8G8B8A8_UNORM, 2e-5},   {VK_FORMAT_B8G8R8A8_UNORM, 2e-5},  {VK_FORMAT_R8G8B8A8_SRGB, 2e-5},
-    {VK_FORMAT_B8G8R8A8_SRGB, 2e-5},    {VK_FORMAT_R8_UNORM, 2e-5},        {VK_FORMAT_R8G8_SNORM, 4e-5},
-    {VK_FORMAT_R5G6B5_UNORM_PACK16, 2e-5}, {VK_FORMAT_A2B10G10R10_UNORM_PACK32, 2e-5},
-    {VK_FORMAT_R16G16B16A16_SFLOAT, 1e-4}, {VK_FORMAT_R32_SFLOAT, 1e-4},   {VK_FORMAT_R32G32B32A32_SFLOAT, 1e-4},
+    {VK_FORMAT_R8G8B8A8_UNORM, 2e-5},
+    {VK_FORMAT_B8G8R8A8_UNORM, 2e-5},
+    {VK_FORMAT_R8G8B8A8_SRGB, 2e-5},
+    {VK_FORMAT_B8G8R8A8_SRGB, 2e-5},
+    {VK_FORMAT_R8_UNORM, 2e-5},
+    {VK_FORMAT_R8G8_SNORM, 4e-5},
+    {VK_FORMAT_R5G6B5_UNORM_PACK16, 2e-5},
+    {VK_FORMAT_A2B10G10R10_UNORM_PACK32, 2e-5},
+    {VK_FORMAT_R16G16B16A16_SFLOAT, 1e-4},
+    {VK_FORMAT_R32_SFLOAT, 1e-4},
+    {VK_FORMAT_R32G32B32A32_SFLOAT, 1e-4},
     {VK_FORMAT_B10G11R11_UFLOAT_PACK32, 1e-4},
     {VK_FORMAT_D16_UNORM, 2e-5, VK_IMAGE_ASPECT_DEPTH_BIT},
     {VK_FORMAT_D24_UNORM_S8_UINT, 2e-5, VK_IMAGE_ASPECT_DEPTH_BIT},
@@ -91,8 +108,8 @@ constexpr FormatCase kFormats[] = {
 };
 
 std::string describe(const FormatInfo& info, VkSamplerAddressMode mode, const FilterSetup& filter) {
-    return std::string(info.name) + " mode " + std::to_string(mode) + " mag " + std::to_string(filter.mag) + " min " +
-           std::to_string(filter.min) + " mip " + std::to_string(filter.mipmap);
+    return std::string(info.name) + " mode " + std::to_string(mode) + " mag " + std::to_string(filter.mag) +
+           " min " + std::to_string(filter.min) + " mip " + std::to_string(filter.mipmap);
 }
 
 TEST(Filter, TwoDimensionalArraysOfAllFormats) {
@@ -115,7 +132,8 @@ TEST(Filter, TwoDimensionalArraysOfAllFormats) {
 
 TEST(Filter, OneDimensionalAndVolumesAndMixedModes) {
     uint32_t seed = 1000;
-    for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R16G16_SFLOAT}) {
+    for (const VkFormat format :
+         {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R16G16_SFLOAT}) {
         for (const VkSamplerAddressMode mode : kAllModes) {
             for (const FilterSetup& filter : kFilters) {
                 SamplerState sampler = makeSampler(filter.min, mode, filter.mipmap);
@@ -124,12 +142,15 @@ TEST(Filter, OneDimensionalAndVolumesAndMixedModes) {
                 sampler.addressMode[1] = kAllModes[(static_cast<int>(mode) + 1) % 5];
                 Batch batch(128);
                 for (const auto& [type, w, h, d, layers] :
-                     {std::tuple(VK_IMAGE_VIEW_TYPE_1D, 13u, 1u, 1u, 1u), std::tuple(VK_IMAGE_VIEW_TYPE_1D_ARRAY, 8u, 1u, 1u, 4u),
-                      std::tuple(VK_IMAGE_VIEW_TYPE_2D, 7u, 9u, 1u, 1u), std::tuple(VK_IMAGE_VIEW_TYPE_3D, 8u, 6u, 5u, 1u)}) {
+                     {std::tuple(VK_IMAGE_VIEW_TYPE_1D, 13u, 1u, 1u, 1u),
+                      std::tuple(VK_IMAGE_VIEW_TYPE_1D_ARRAY, 8u, 1u, 1u, 4u),
+                      std::tuple(VK_IMAGE_VIEW_TYPE_2D, 7u, 9u, 1u, 1u),
+                      std::tuple(VK_IMAGE_VIEW_TYPE_3D, 8u, 6u, 5u, 1u)}) {
                     Image image(type, format, w, h, d, layers, 3);
                     image.randomize(++seed);
                     fillRandom(batch, ++seed, -1.5f, 2.5f, static_cast<float>(layers), -1.0f, 4.0f);
-                    check(image, sampler, batch, 1e-4, describe(image.info(), mode, filter) + " view " + std::to_string(type));
+                    check(image, sampler, batch, 1e-4,
+                          describe(image.info(), mode, filter) + " view " + std::to_string(type));
                 }
             }
         }
@@ -138,11 +159,11 @@ TEST(Filter, OneDimensionalAndVolumesAndMixedModes) {
 
 TEST(Filter, IntegersAndStencilAreExact) {
     uint32_t seed = 2000;
-    for (const FormatCase& f :
-         {FormatCase{VK_FORMAT_R8G8B8A8_UINT, 0}, FormatCase{VK_FORMAT_R16G16_SINT, 0}, FormatCase{VK_FORMAT_R32G32B32A32_SINT, 0},
-          FormatCase{VK_FORMAT_R32_UINT, 0}, FormatCase{VK_FORMAT_D24_UNORM_S8_UINT, 0, VK_IMAGE_ASPECT_STENCIL_BIT},
-          FormatCase{VK_FORMAT_D32_SFLOAT_S8_UINT, 0, VK_IMAGE_ASPECT_STENCIL_BIT},
-          FormatCase{VK_FORMAT_S8_UINT, 0, VK_IMAGE_ASPECT_STENCIL_BIT}}) {
+    for (const FormatCase& f : {FormatCase{VK_FORMAT_R8G8B8A8_UINT, 0}, FormatCase{VK_FORMAT_R16G16_SINT, 0},
+                                FormatCase{VK_FORMAT_R32G32B32A32_SINT, 0}, FormatCase{VK_FORMAT_R32_UINT, 0},
+                                FormatCase{VK_FORMAT_D24_UNORM_S8_UINT, 0, VK_IMAGE_ASPECT_STENCIL_BIT},
+                                FormatCase{VK_FORMAT_D32_SFLOAT_S8_UINT, 0, VK_IMAGE_ASPECT_STENCIL_BIT},
+                                FormatCase{VK_FORMAT_S8_UINT, 0, VK_IMAGE_ASPECT_STENCIL_BIT}}) {
         Image image(VK_IMAGE_VIEW_TYPE_2D, f.format, 12, 10, 1, 1, 4, f.aspect);
         image.randomize(++seed);
         for (const VkSamplerAddressMode mode : kAllModes) {
@@ -181,7 +202,8 @@ TEST(Filter, DepthComparison) {
         image.randomize(++seed);
         for (int op = VK_COMPARE_OP_NEVER; op <= VK_COMPARE_OP_ALWAYS; ++op) {
             for (const FilterSetup& filter : kFilters) {
-                SamplerState sampler = makeSampler(filter.min, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER, filter.mipmap);
+                SamplerState sampler =
+                    makeSampler(filter.min, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER, filter.mipmap);
                 sampler.magFilter = filter.mag;
                 sampler.borderColor = {.float32 = {1, 1, 1, 1}};
                 sampler.compareEnable = true;
@@ -194,7 +216,8 @@ TEST(Filter, DepthComparison) {
     }
 }
 
-// T19: the comparison is exact, one float to either side of a stored value; fixed-point references are clamped.
+// T19: the comparison is exact, one float to either side of a stored value; fixed-point references are
+// clamped.
 TEST(Filter, DepthComparisonIsExact) {
     for (const VkFormat format : {VK_FORMAT_D16_UNORM, VK_FORMAT_D32_SFLOAT}) {
         Image image(VK_IMAGE_VIEW_TYPE_2D, format, 1, 1, 1, 1, 1, VK_IMAGE_ASPECT_DEPTH_BIT);
@@ -208,7 +231,8 @@ TEST(Filter, DepthComparisonIsExact) {
         EXPECT_EQ(sampleOne(image, sampler, 0.1f, 0.7f, 0, 0, std::nextafter(stored, 1.0f))[0], 0);
         image.setAll({.float32 = {1.0f}});
         sampler.compareOp = VK_COMPARE_OP_LESS_OR_EQUAL;
-        EXPECT_EQ(sampleOne(image, sampler, 0.1f, 0.7f, 0, 0, 1.5f)[0], format == VK_FORMAT_D16_UNORM ? 1 : 0);
+        EXPECT_EQ(sampleOne(image, sampler, 0.1f, 0.7f, 0, 0, 1.5f)[0],
+                  format == VK_FORMAT_D16_UNORM ? 1 : 0);
     }
 }
 
@@ -216,10 +240,12 @@ TEST(Filter, Swizzle) {
     for (const VkFormat format : {VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R8G8_UNORM, VK_FORMAT_R32_UINT}) {
         Image image(VK_IMAGE_VIEW_TYPE_2D, format, 4, 4, 1, 1, 1);
         image.randomize(9);
-        image.swizzle = {VK_COMPONENT_SWIZZLE_A, VK_COMPONENT_SWIZZLE_ONE, VK_COMPONENT_SWIZZLE_R, VK_COMPONENT_SWIZZLE_ZERO};
+        image.swizzle = {VK_COMPONENT_SWIZZLE_A, VK_COMPONENT_SWIZZLE_ONE, VK_COMPONENT_SWIZZLE_R,
+                         VK_COMPONENT_SWIZZLE_ZERO};
         Batch batch(32);
         fillRandom(batch, 10, 0, 1, 0, 0, 0);
-        check(image, makeSampler(VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_REPEAT), batch, 1e-6, image.info().name);
+        check(image, makeSampler(VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_REPEAT), batch, 1e-6,
+              image.info().name);
     }
 }
 
@@ -231,7 +257,8 @@ TEST(Filter, ConstantTexturesStayConstant) {
         Image image(type, format, 4, 4, type == VK_IMAGE_VIEW_TYPE_3D ? 4 : 1, cube ? 6 : 1, 3);
         image.setAll(value);
         const VkClearColorValue stored = unpackTexel(image.info().color, image.texel(0, 0, 0, 0));
-        const SamplerState sampler = makeSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_MIPMAP_MODE_LINEAR);
+        const SamplerState sampler =
+            makeSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_MIPMAP_MODE_LINEAR);
         Batch batch(32);
         for (const Isa isa : availableIsas()) {
             const TextureView view = image.view(isa);
@@ -239,7 +266,8 @@ TEST(Filter, ConstantTexturesStayConstant) {
             batch.run(selectSampler(view, sampler, isa), view, sampler);
             for (uint32_t i = 0; i < batch.lanes; ++i) {
                 for (int c = 0; c < 4; ++c) {
-                    ASSERT_EQ(std::bit_cast<uint32_t>(batch.out[c][i]), stored.uint32[c]) << image.info().name << " " << type;
+                    ASSERT_EQ(std::bit_cast<uint32_t>(batch.out[c][i]), stored.uint32[c])
+                        << image.info().name << " " << type;
                 }
             }
         }
@@ -248,14 +276,17 @@ TEST(Filter, ConstantTexturesStayConstant) {
         const float x = static_cast<float>(code) / 255.0f;
         checkConstant(VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R8G8B8A8_UNORM, {.float32 = {x, 1 - x, x, 1 - x}});
         checkConstant(VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R8G8B8A8_SRGB, {.float32 = {x, 1 - x, x * x, 1 - x}});
-        checkConstant(VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R16G16B16A16_UNORM, {.float32 = {x, 1 - x, x * x, x * 0.37f}});
+        checkConstant(VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R16G16B16A16_UNORM,
+                      {.float32 = {x, 1 - x, x * x, x * 0.37f}});
         if (code % 8 != 0) continue;
         checkConstant(VK_IMAGE_VIEW_TYPE_CUBE, VK_FORMAT_R8G8B8A8_UNORM, {.float32 = {x, 1 - x, x, 1 - x}});
-        checkConstant(VK_IMAGE_VIEW_TYPE_CUBE, VK_FORMAT_R32G32B32A32_SFLOAT, {.float32 = {x, -x, x * 1e30f, x * 1e-30f}});
+        checkConstant(VK_IMAGE_VIEW_TYPE_CUBE, VK_FORMAT_R32G32B32A32_SFLOAT,
+                      {.float32 = {x, -x, x * 1e30f, x * 1e-30f}});
         checkConstant(VK_IMAGE_VIEW_TYPE_3D, VK_FORMAT_R16_UNORM, {.float32 = {x, 0, 0, 1}});
     }
     checkConstant(VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R32_SFLOAT, {.float32 = {kInf, 0, 0, 1}});
-    checkConstant(VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R32_SFLOAT, {.float32 = {std::numeric_limits<float>::max(), 0, 0, 1}});
+    checkConstant(VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R32_SFLOAT,
+                  {.float32 = {std::numeric_limits<float>::max(), 0, 0, 1}});
 }
 
 // T07: a filtered value lies between the smallest and the largest texel.

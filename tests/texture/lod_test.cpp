@@ -14,7 +14,8 @@ Image levelsImage(uint32_t size, uint32_t levels, VkImageViewType type = VK_IMAG
         const uint32_t extent = std::max(1u, size >> l);
         for (uint32_t f = 0; f < (cube ? 6u : 1u); ++f) {
             for (uint32_t y = 0; y < extent; ++y) {
-                for (uint32_t x = 0; x < extent; ++x) image.set(l, x, y, f, {.float32 = {static_cast<float>(l)}});
+                for (uint32_t x = 0; x < extent; ++x)
+                    image.set(l, x, y, f, {.float32 = {static_cast<float>(l)}});
             }
         }
     }
@@ -26,7 +27,8 @@ struct LodResult {
 };
 
 /// Queries with the derivatives dx, dy (in texels of a 256-wide image) along s.
-LodResult query(const SamplerState& sampler, float dx, float dy, float bias = 0, bool explicitGradients = false, Isa isa = bestIsa()) {
+LodResult query(const SamplerState& sampler, float dx, float dy, float bias = 0,
+                bool explicitGradients = false, Isa isa = bestIsa()) {
     static const Image image = levelsImage(256, 9);
     const TextureView view = image.view(isa);
     Batch batch(8);
@@ -44,7 +46,8 @@ LodResult query(const SamplerState& sampler, float dx, float dy, float bias = 0,
     return {batch.out[0][5], batch.out[1][5]};
 }
 
-const SamplerState kTrilinear = makeSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_MIPMAP_MODE_LINEAR);
+const SamplerState kTrilinear =
+    makeSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_MIPMAP_MODE_LINEAR);
 const SamplerState kNearestLevel = makeSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_REPEAT);
 
 TEST(Lod, PowersOfTwoAreExact) {
@@ -113,8 +116,10 @@ TEST(Lod, MagnificationUpToZero) {
     }
     batch.run(selectSampler(view, sampler, bestIsa()), view, sampler);
     for (uint32_t i = 0; i < 16; ++i) {
-        if (i % 4 < 2) EXPECT_EQ(batch.out[0][i], 0.0f);
-        else EXPECT_NEAR(batch.out[0][i], 0.4f, 1e-6);
+        if (i % 4 < 2)
+            EXPECT_EQ(batch.out[0][i], 0.0f);
+        else
+            EXPECT_NEAR(batch.out[0][i], 0.4f, 1e-6);
     }
 }
 
@@ -187,11 +192,13 @@ TEST(Lod, QuadsAreIndependent) {
         batch.request.lodMode = LodMode::implicitLod;
         batch.request.lod = nullptr;
         batch.run(selectSampler(view, kNearestLevel, isa), view, kNearestLevel);
-        for (uint32_t i = 0; i < 28; ++i) EXPECT_EQ(batch.out[0][i], static_cast<float>(i / 4)) << isaName(isa);
+        for (uint32_t i = 0; i < 28; ++i)
+            EXPECT_EQ(batch.out[0][i], static_cast<float>(i / 4)) << isaName(isa);
     }
 }
 
-// L13: across a cube's edge the level does not jump: a quad astride +X and +Z sees about the same lambda as one beside it.
+// L13: across a cube's edge the level does not jump: a quad astride +X and +Z sees about the same lambda as
+// one beside it.
 TEST(Lod, CubeDerivativesUseOneFacePerLane) {
     const Image image = levelsImage(64, 7, VK_IMAGE_VIEW_TYPE_CUBE);
     const TextureView view = image.view(bestIsa());

@@ -8,9 +8,12 @@ namespace {
 
 double asDouble(const TextureView& view, const VkClearColorValue& value, int c) {
     switch (view.ops.layout.type) {
-        case ValueType::uint: return value.uint32[c];
-        case ValueType::sint: return value.int32[c];
-        default: return value.float32[c];
+        case ValueType::uint:
+            return value.uint32[c];
+        case ValueType::sint:
+            return value.int32[c];
+        default:
+            return value.float32[c];
     }
 }
 
@@ -22,17 +25,26 @@ bool isOneDimensional(const TextureView& view) {
     return view.type == VK_IMAGE_VIEW_TYPE_1D || view.type == VK_IMAGE_VIEW_TYPE_1D_ARRAY;
 }
 
-int64_t floorMod(int64_t i, int64_t n) { return ((i % n) + n) % n; }
-int64_t mirror(int64_t n) { return n >= 0 ? n : -(1 + n); }
+int64_t floorMod(int64_t i, int64_t n) {
+    return ((i % n) + n) % n;
+}
+int64_t mirror(int64_t n) {
+    return n >= 0 ? n : -(1 + n);
+}
 
 /// "Wrapping Operation"; -1 for the border.
 int64_t wrap(VkSamplerAddressMode mode, int64_t i, int64_t size) {
     switch (mode) {
-        case VK_SAMPLER_ADDRESS_MODE_REPEAT: return floorMod(i, size);
-        case VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT: return (size - 1) - mirror(floorMod(i, 2 * size) - size);
-        case VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE: return std::clamp<int64_t>(i, 0, size - 1);
-        case VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER: return i >= 0 && i < size ? i : -1;
-        default: return std::clamp<int64_t>(mirror(i), 0, size - 1);
+        case VK_SAMPLER_ADDRESS_MODE_REPEAT:
+            return floorMod(i, size);
+        case VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT:
+            return (size - 1) - mirror(floorMod(i, 2 * size) - size);
+        case VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE:
+            return std::clamp<int64_t>(i, 0, size - 1);
+        case VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER:
+            return i >= 0 && i < size ? i : -1;
+        default:
+            return std::clamp<int64_t>(mirror(i), 0, size - 1);
     }
 }
 
@@ -64,18 +76,34 @@ struct ModelLevel {
 
     Rgba compare(const Rgba& texel) const {
         if (!sampler.compareEnable) return texel;
-        const double reference = view.format == VK_FORMAT_D32_SFLOAT ? at.dref : std::clamp(at.dref, 0.0, 1.0);
+        const double reference =
+            view.format == VK_FORMAT_D32_SFLOAT ? at.dref : std::clamp(at.dref, 0.0, 1.0);
         const bool less = reference < texel[0], equal = reference == texel[0];
         bool pass = false;
         switch (sampler.compareOp) {
-            case VK_COMPARE_OP_LESS: pass = less; break;
-            case VK_COMPARE_OP_EQUAL: pass = equal; break;
-            case VK_COMPARE_OP_LESS_OR_EQUAL: pass = less || equal; break;
-            case VK_COMPARE_OP_GREATER: pass = !less && !equal; break;
-            case VK_COMPARE_OP_NOT_EQUAL: pass = !equal; break;
-            case VK_COMPARE_OP_GREATER_OR_EQUAL: pass = !less; break;
-            case VK_COMPARE_OP_ALWAYS: pass = true; break;
-            default: break;
+            case VK_COMPARE_OP_LESS:
+                pass = less;
+                break;
+            case VK_COMPARE_OP_EQUAL:
+                pass = equal;
+                break;
+            case VK_COMPARE_OP_LESS_OR_EQUAL:
+                pass = less || equal;
+                break;
+            case VK_COMPARE_OP_GREATER:
+                pass = !less && !equal;
+                break;
+            case VK_COMPARE_OP_NOT_EQUAL:
+                pass = !equal;
+                break;
+            case VK_COMPARE_OP_GREATER_OR_EQUAL:
+                pass = !less;
+                break;
+            case VK_COMPARE_OP_ALWAYS:
+                pass = true;
+                break;
+            default:
+                break;
         }
         return {pass ? 1.0 : 0.0, 0, 0, 1};
     }
@@ -114,12 +142,18 @@ FacePoint faceOf(double x, double y, double z) {
 std::array<double, 3> directionOf(const FacePoint& p) {
     const double s = 2 * p.s - 1, t = 2 * p.t - 1;
     switch (p.face) {
-        case 0: return {1, -t, -s};
-        case 1: return {-1, -t, s};
-        case 2: return {s, 1, t};
-        case 3: return {s, -1, -t};
-        case 4: return {s, -t, 1};
-        default: return {-s, -t, -1};
+        case 0:
+            return {1, -t, -s};
+        case 1:
+            return {-1, -t, s};
+        case 2:
+            return {s, 1, t};
+        case 3:
+            return {s, -1, -t};
+        case 4:
+            return {s, -t, 1};
+        default:
+            return {-s, -t, -1};
     }
 }
 
@@ -137,8 +171,8 @@ Rgba cubeTexel(const ModelLevel& m, int face, int64_t x, int64_t y, int64_t firs
     if (out(x) || out(y)) {
         const auto d = directionOf({face, (x + 0.5) / size, (y + 0.5) / size});
         const FacePoint p = faceOf(d[0], d[1], d[2]);
-        return m.texel(static_cast<int64_t>(std::floor(p.s * size)), static_cast<int64_t>(std::floor(p.t * size)),
-                       firstFace + p.face);
+        return m.texel(static_cast<int64_t>(std::floor(p.s * size)),
+                       static_cast<int64_t>(std::floor(p.t * size)), firstFace + p.face);
     }
     return m.texel(x, y, firstFace + face);
 }
@@ -158,7 +192,8 @@ int64_t layerOf(const TextureView& view, const Point& at) {
 std::array<double, 3> unscaled(const ModelLevel& m) {
     const Point& at = m.at;
     if (m.sampler.unnormalizedCoordinates) return {at.s, at.t, 0};
-    return {at.s * m.level.width, isOneDimensional(m.view) ? 0.5 : at.t * m.level.height, at.r * m.level.depth};
+    return {at.s * m.level.width, isOneDimensional(m.view) ? 0.5 : at.t * m.level.height,
+            at.r * m.level.depth};
 }
 
 Rgba sampleLevel(const ModelLevel& m, bool linear) {
@@ -174,7 +209,8 @@ Rgba sampleLevel(const ModelLevel& m, bool linear) {
         const double u = p.s * size - 0.5, v = p.t * size - 0.5;
         const auto i = static_cast<int64_t>(std::floor(u)), j = static_cast<int64_t>(std::floor(v));
         const auto row = [&](int64_t y) {
-            return mix(cubeTexel(m, p.face, i, y, layer * 6), cubeTexel(m, p.face, i + 1, y, layer * 6), u - i);
+            return mix(cubeTexel(m, p.face, i, y, layer * 6), cubeTexel(m, p.face, i + 1, y, layer * 6),
+                       u - i);
         };
         return mix(row(j), row(j + 1), v - j);
     }
@@ -182,9 +218,10 @@ Rgba sampleLevel(const ModelLevel& m, bool linear) {
     const int64_t sizes[3] = {m.level.width, m.level.height, m.level.depth};
     const bool volume = m.view.type == VK_IMAGE_VIEW_TYPE_3D;
     const auto fetch = [&](int64_t i, int64_t j, int64_t k) {
-        return m.texel(wrap(m.sampler.addressMode[0], i + m.at.offset[0], sizes[0]),
-                       isOneDimensional(m.view) ? 0 : wrap(m.sampler.addressMode[1], j + m.at.offset[1], sizes[1]),
-                       volume ? wrap(m.sampler.addressMode[2], k + m.at.offset[2], sizes[2]) : layer);
+        return m.texel(
+            wrap(m.sampler.addressMode[0], i + m.at.offset[0], sizes[0]),
+            isOneDimensional(m.view) ? 0 : wrap(m.sampler.addressMode[1], j + m.at.offset[1], sizes[1]),
+            volume ? wrap(m.sampler.addressMode[2], k + m.at.offset[2], sizes[2]) : layer);
     };
     const double half = linear ? 0.5 : 0;
     int64_t base[3];
@@ -208,7 +245,8 @@ struct Levels {
 };
 
 Levels levelsOf(const TextureView& view, const SamplerState& sampler, double lambdaPrime) {
-    const double lambda = std::clamp<double>(lambdaPrime, sampler.minLod, std::max(sampler.minLod, sampler.maxLod));
+    const double lambda =
+        std::clamp<double>(lambdaPrime, sampler.minLod, std::max(sampler.minLod, sampler.maxLod));
     const bool linear = (lambda <= 0 ? sampler.magFilter : sampler.minFilter) == VK_FILTER_LINEAR;
     const double d = std::clamp<double>(lambda, 0, view.levelCount - 1);
     if (sampler.mipmapMode == VK_SAMPLER_MIPMAP_MODE_NEAREST) {
@@ -225,17 +263,26 @@ Rgba modelSample(const TextureView& view, const SamplerState& sampler, const Poi
     const Levels levels = levelsOf(view, sampler, at.lambda);
     Rgba rgba = sampleLevel({view, sampler, view.levels[levels.high], at}, levels.linear);
     if (levels.weight != 0) {
-        rgba = mix(rgba, sampleLevel({view, sampler, view.levels[levels.low], at}, levels.linear), levels.weight);
+        rgba = mix(rgba, sampleLevel({view, sampler, view.levels[levels.low], at}, levels.linear),
+                   levels.weight);
     }
     if (sampler.compareEnable) return rgba;
     const VkComponentSwizzle swizzle[4] = {view.swizzle.r, view.swizzle.g, view.swizzle.b, view.swizzle.a};
     Rgba result;
     for (int c = 0; c < 4; ++c) {
         switch (swizzle[c]) {
-            case VK_COMPONENT_SWIZZLE_IDENTITY: result[c] = rgba[c]; break;
-            case VK_COMPONENT_SWIZZLE_ZERO: result[c] = 0; break;
-            case VK_COMPONENT_SWIZZLE_ONE: result[c] = 1; break;
-            default: result[c] = rgba[swizzle[c] - VK_COMPONENT_SWIZZLE_R]; break;
+            case VK_COMPONENT_SWIZZLE_IDENTITY:
+                result[c] = rgba[c];
+                break;
+            case VK_COMPONENT_SWIZZLE_ZERO:
+                result[c] = 0;
+                break;
+            case VK_COMPONENT_SWIZZLE_ONE:
+                result[c] = 1;
+                break;
+            default:
+                result[c] = rgba[swizzle[c] - VK_COMPONENT_SWIZZLE_R];
+                break;
         }
     }
     return result;
@@ -273,8 +320,8 @@ double distanceToJump(const TextureView& view, const SamplerState& sampler, cons
     return distance;
 }
 
-Image::Image(VkImageViewType type, VkFormat format, uint32_t width, uint32_t height, uint32_t depth, uint32_t layers,
-             uint32_t levels, VkImageAspectFlags aspect)
+Image::Image(VkImageViewType type, VkFormat format, uint32_t width, uint32_t height, uint32_t depth,
+             uint32_t layers, uint32_t levels, VkImageAspectFlags aspect)
     : type_(type), format_(format), aspect_(aspect), layers_(layers) {
     for (uint32_t l = 0; l < levels; ++l) {
         TextureLevel level;
@@ -316,7 +363,8 @@ void Image::set(uint32_t level, uint32_t x, uint32_t y, uint32_t slice, const Vk
 
 void Image::setAll(const VkClearColorValue& value) {
     for (std::vector<std::byte>& level : data_) {
-        for (size_t i = 0; i < level.size(); i += info().bytesPerTexel) packTexel(info().layout(aspect_), value, &level[i]);
+        for (size_t i = 0; i < level.size(); i += info().bytesPerTexel)
+            packTexel(info().layout(aspect_), value, &level[i]);
     }
 }
 
@@ -324,7 +372,8 @@ void Image::randomize(uint32_t seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> number(-2, 2), depth(0, 1);
     const TexelLayout& layout = info().layout(aspect_);
-    const bool isFloat = layout.rgba[0].kind == ComponentKind::sfloat || layout.rgba[0].kind == ComponentKind::ufloat;
+    const bool isFloat =
+        layout.rgba[0].kind == ComponentKind::sfloat || layout.rgba[0].kind == ComponentKind::ufloat;
     for (std::vector<std::byte>& level : data_) {
         if (!isFloat) {
             for (std::byte& b : level) b = static_cast<std::byte>(random());
@@ -332,7 +381,8 @@ void Image::randomize(uint32_t seed) {
         }
         for (size_t i = 0; i < level.size(); i += info().bytesPerTexel) {
             VkClearColorValue value;
-            for (float& f : value.float32) f = aspect_ == VK_IMAGE_ASPECT_DEPTH_BIT ? depth(random) : number(random);
+            for (float& f : value.float32)
+                f = aspect_ == VK_IMAGE_ASPECT_DEPTH_BIT ? depth(random) : number(random);
             packTexel(layout, value, &level[i]);
         }
     }
@@ -370,8 +420,8 @@ SamplerState makeSampler(VkFilter filter, VkSamplerAddressMode mode, VkSamplerMi
     return sampler;
 }
 
-Rgba sampleOne(const Image& image, const SamplerState& sampler, float s, float t, float r, float layer, float dref,
-               Isa isa) {
+Rgba sampleOne(const Image& image, const SamplerState& sampler, float s, float t, float r, float layer,
+               float dref, Isa isa) {
     const TextureView view = image.view(isa);
     EXPECT_TRUE(checkSampling(view, sampler).ok());
     Batch batch(4);

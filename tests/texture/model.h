@@ -1,5 +1,5 @@
-// A plain model of the specification's image operations: one lane at a time, in double precision, sharing with the code
-// under test only the conversion of single texels. Plus images and requests to run both on.
+// A plain model of the specification's image operations: one lane at a time, in double precision, sharing
+// with the code under test only the conversion of single texels. Plus images and requests to run both on.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -27,11 +27,12 @@ inline std::vector<Isa> availableIsas() {
     return isas;
 }
 
-/// Each slice of each level has a heap block of its own exact size behind it, so that ASan sees any access outside.
+/// Each slice of each level has a heap block of its own exact size behind it, so that ASan sees any access
+/// outside.
 class Image {
   public:
-    Image(VkImageViewType type, VkFormat format, uint32_t width, uint32_t height, uint32_t depth, uint32_t layers,
-          uint32_t levels, VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT);
+    Image(VkImageViewType type, VkFormat format, uint32_t width, uint32_t height, uint32_t depth,
+          uint32_t layers, uint32_t levels, VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT);
 
     const FormatInfo& info() const { return *findFormat(format_); }
     TextureView view(Isa isa) const;
@@ -77,14 +78,16 @@ struct Batch {
     SampleRequest request;
 
     Rgba result(const TextureView& view, uint32_t lane) const;
-    void run(SampleFn fn, const TextureView& view, const SamplerState& sampler) { fn(view, sampler, request); }
+    void run(SampleFn fn, const TextureView& view, const SamplerState& sampler) {
+        fn(view, sampler, request);
+    }
 };
 
 SamplerState makeSampler(VkFilter filter, VkSamplerAddressMode mode,
                          VkSamplerMipmapMode mipmap = VK_SAMPLER_MIPMAP_MODE_NEAREST);
 
 /// Samples s, t in one quad-shaped batch of four equal lanes at lambda 0.
-Rgba sampleOne(const Image& image, const SamplerState& sampler, float s, float t, float r = 0, float layer = 0,
-               float dref = 0, Isa isa = bestIsa());
+Rgba sampleOne(const Image& image, const SamplerState& sampler, float s, float t, float r = 0,
+               float layer = 0, float dref = 0, Isa isa = bestIsa());
 
 }  // namespace vernier::texture_test

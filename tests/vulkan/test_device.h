@@ -1,5 +1,5 @@
-// What the driver's tests share: a device reached through the unmodified Vulkan loader, and the few lines that every test
-// would write again. Handles are destroyed with the device.
+// What the driver's tests share: a device reached through the unmodified Vulkan loader, and the few lines
+// that every test would write again. Handles are destroyed with the device.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -33,6 +33,11 @@ struct TestImage {
     VkFormat format = VK_FORMAT_UNDEFINED;
     VkExtent2D extent{};
 };
+
+/// Whether the validation layer stands between: tests of invalid use then have nothing to see.
+bool validated();
+#define VERNIER_SKIP_WHEN_VALIDATED() \
+    if (::vernier::test::validated()) GTEST_SKIP() << "invalid use, or questions to the driver alone"
 
 /// A fixture with an instance, a device and a queue, all features on.
 class VulkanTest : public testing::Test {

@@ -1,0 +1,30 @@
+// The outcomes of running one quad of a fragment shader under several perturbations, and the ranges they
+// span.
+#pragma once
+
+#include "conformance/oracle/sample_states.h"
+#include "spirv_interp/reference/interpreter.h"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace vernier::conformance::exact {
+
+/// Outcomes by kind of perturbation; fragment_shader.h tells what each kind stands for.
+struct ShaderRuns {
+    using Quad = std::array<reference::Outcome<double>, 4>;
+
+    Quad nominal;
+    std::vector<Quad> shifted, filtered, coarse, rounded;
+};
+
+bool isIntegerVariable(const reference::InterfaceVariable& variable);
+
+/// One fragment's result: nominal outputs with their ranges. Components that the shader has not written are
+/// NaN. `imprecision` is the relative error of the built-in functions that the module uses.
+FragmentResult combineRuns(const ShaderRuns& runs, size_t lane,
+                           std::span<const reference::InterfaceVariable> outputs, double imprecision,
+                           size_t colorCount);
+
+}  // namespace vernier::conformance::exact

@@ -1,0 +1,143 @@
+// The public classes: modules are parsed, programs prepared, quads driven; every Failure ends here as an
+// Error.
+#include "spirv_interp/reference/interpreter.h"
+
+#include <limits>
+#include <new>
+
+#include "spirv_interp/reference/machine.h"
+
+namespace vernier::reference {
+namespace {
+
+/// Calls f and turns what it throws into an Error.
+template <class T, class F>
+Result<T> guarded(const F& f) {
+    try {
+        return f();
+    } catch (const Failure& failure) {
+        return failure.error;
+    } catch (const std::bad_alloc&) {
+        return Error{ErrorCode::outOfHostMemory, "SPIR-V reference interpreter: out of memory"};
+    }
+}
+
+template <class Number>
+Value<Number> constantValue(const Constant& constant) {
+    Value<Number> value;
+    for (const ConstantScalar& s : constant.scalars)
+        value.scalars.push_back({static_cast<Number>(s.number), s.bits});
+    value.defined = true;
+    return value;
+}
+
+/// Lets the invocations run, each until it waits or is done; then lets those go on that wait at the earliest
+/// place.
+template <class Number>
+void drive(std::array<std::optional<Machine<Number>>, 4>& machines) {
+    using Status = typename Machine<Number>::Status;
+    while (true) {
+        std::optional<std::vector<size_t>> earliest;
+        std::array<bool, 4> waiting{};
+        for (size_t k = 0; k < 4; ++k) {
+            if (!machines[k]) continue;
+            waiting[k] = machines[k]->run() == Status::waiting;
+            if (waiting[k] && (!earliest || machines[k]->position() < *earliest))
+                earliest = machines[k]->position();
+        }
+        if (!earliest) return;
+        typename Machine<Number>::QuadValues values;
+        for (size_t k = 0; k < 4; ++k) {
+            waiting[k] = waiting[k] && machines[k]->position() == *earliest;
+            if (waiting[k]) values[k] = machines[k]->offer();
+        }
+        for (size_t k = 0; k < 4; ++k)
+            if (waiting[k]) machines[k]->resume(values);
+    }
+}
+
+}  // namespace
+
+Result<Module> Module::parse(std::span<const uint32_t> words, const Specialization& specialization) {
+    return guarded<Module>([&] {
+        auto data = std::make_shared<ModuleData>();
+        data->words.assign(words.begin(), words.end());
+        data->specialization = specialization;
+        parseModule(*data);
+        reflect(*data);
+        return Module(std::move(data));
+    });
+}
+
+const std::vector<EntryPoint>& Module::entryPoints() const {
+    return data_->entryPoints;
+}
+const std::vector<InterfaceVariable>& Module::interfaceVariables(size_t entryPoint) const {
+    return data_->entryPointData.at(entryPoint).variables;
+}
+const std::vector<DescriptorBinding>& Module::descriptorBindings() const {
+    return data_->bindings;
+}
+uint64_t Module::pushConstantSize() const {
+    return data_->pushConstantSize;
+}
+
+template <class Number>
+struct Interpreter<Number>::State {
+    Program<Number> program;
+};
+
+template <class Number>
+Result<Interpreter<Number>> Interpreter<Number>::create(const Module& module, spv::ExecutionModel model,
+                                                        std::string_view entryPoint, const Options& options) {
+    return guarded<Interpreter>([&]() -> Result<Interpreter> {
+        if (model != spv::ExecutionModelVertex && model != spv::ExecutionModelFragment)
+            return unsupported("SPIR-V reference interpreter: execution model " +
+                               std::to_string(static_cast<uint32_t>(model)));
+        const auto& entries = module.entryPoints();
+        for (size_t k = 0; k < entries.size(); ++k) {
+            if (entries[k].model != model || entries[k].name != entryPoint) continue;
+            auto state = std::make_shared<State>();
+            state->program.module = module.shared();
+            state->program.entryPoint = k;
+            state->program.options = options;
+            for (const Constant& constant : module.data().constants)
+                state->program.constants.push_back(constantValue<Number>(constant));
+            return Interpreter(std::move(state));
+        }
+        return invalidArgument("SPIR-V: no entry point \"" + std::string(entryPoint) +
+                               "\" of execution model " + std::to_string(static_cast<uint32_t>(model)));
+    });
+}
+
+template <class Number>
+Result<Outcome<Number>> Interpreter<Number>::run(const InterfaceValues<Number>& inputs,
+                                                 Resources<Number>& resources) const {
+    return guarded<Outcome<Number>>([&] {
+        std::array<std::optional<Machine<Number>>, 4> machines;
+        machines[0].emplace(state_->program, inputs, resources, 0, false);
+        drive(machines);
+        return machines[0]->outcome();
+    });
+}
+
+template <class Number>
+Result<std::array<Outcome<Number>, 4>> Interpreter<Number>::runQuad(
+    const std::array<InterfaceValues<Number>, 4>& inputs, const std::array<bool, 4>& helper,
+    Resources<Number>& resources) const {
+    return guarded<std::array<Outcome<Number>, 4>>([&] {
+        std::array<std::optional<Machine<Number>>, 4> machines;
+        for (uint32_t k = 0; k < 4; ++k)
+            machines[k].emplace(state_->program, inputs[k], resources, k, helper[k]);
+        drive(machines);
+        std::array<Outcome<Number>, 4> outcomes;
+        for (size_t k = 0; k < 4; ++k) outcomes[k] = machines[k]->outcome();
+        return outcomes;
+    });
+}
+
+template class Interpreter<float>;
+template class Interpreter<double>;
+template class Interpreter<Real>;
+
+}  // namespace vernier::reference

@@ -1,0 +1,457 @@
+// Variables, pointers, loads, stores and atomics.
+#include <algorithm>
+#include <cstring>
+
+#include "spirv_interp/reference/integer_ops.h"
+#include "spirv_interp/reference/machine.h"
+
+namespace vernier::reference {
+namespace {
+
+/// Offsets beyond this are outside every buffer: sums of a few of them cannot wrap around.
+constexpr int64_t kMaxOffset = int64_t{1} << 48;
+
+template <class Number>
+Scalar<Number> readScalar(std::span<const std::byte> bytes, uint64_t offset, const Type& type) {
+    const size_t size = type.width / 8;
+    if (bytes.size() < size || offset > bytes.size() - size) return {};
+    uint64_t raw = 0;
+    std::memcpy(&raw, bytes.data() + offset, size);
+    if (type.kind == TypeKind::integer) return Scalar<Number>::ofBits(raw);
+    return Scalar<Number>::ofNumber(type.width == 64 ? fromFloat64Bits<Number>(raw)
+                                                     : fromFloat32Bits<Number>(raw));
+}
+
+template <class Number>
+void writeScalar(std::span<std::byte> bytes, uint64_t offset, const Type& type,
+                 const Scalar<Number>& scalar) {
+    const size_t size = type.width / 8;
+    if (bytes.size() < size || offset > bytes.size() - size) return;
+    const uint64_t raw = type.kind == TypeKind::integer ? scalar.bits
+                         : type.width == 64             ? float64Bits(scalar.number)
+                                                        : float32Bits(scalar.number);
+    std::memcpy(bytes.data() + offset, &raw, size);
+}
+
+}  // namespace
+
+template <class Number>
+void Machine<Number>::createInterface(const InterfaceValues<Number>& inputs) {
+    for (const InterfaceLayout& layout : module_.entryPointData[program_.entryPoint].layouts) {
+        const Variable& variable = module_.variables[layout.variable];
+        variables_[layout.variable] = variablePointer(variable);
+        Object<Number>& object = *variables_[layout.variable]->object;
+        object.layout = &layout;
+        if (layout.output) continue;
+        for (const InterfaceCell& cell : layout.cells) {
+            Scalar<Number>& target = object.cells[cell.cell];
+            if (cell.isBuiltin) {
+                if (cell.builtin == spv::BuiltInHelperInvocation) target.bits = helper_ ? 1 : 0;
+                const auto found = inputs.builtins.find(cell.builtin);
+                if (found != inputs.builtins.end() && cell.element < found->second.size())
+                    target = found->second[cell.element];
+            } else if (const auto found = inputs.locations.find(cell.location);
+                       found != inputs.locations.end()) {
+                target = found->second[cell.component];
+                if (module_.types[cell.type].width == 64 && cell.component < 3 &&
+                    module_.types[cell.type].kind == TypeKind::integer)
+                    target.bits = (target.bits & 0xFFFFFFFFu) | found->second[cell.component + 1].bits << 32;
+            }
+            const Type& type = module_.types[cell.type];
+            target.bits &= widthMask(type.width);
+            if (type.kind == TypeKind::boolean) target.bits = target.bits != 0 ? 1 : 0;
+            if (type.width == 32) target.number = rounded(target.number);
+        }
+    }
+}
+
+template <class Number>
+Pointer<Number> Machine<Number>::variablePointer(const Variable& variable) {
+    Pointer<Number> pointer;
+    pointer.type = module_.types[variable.pointerType].element;
+    const Type& type = module_.types[pointer.type];
+    const Decorations& d = module_.decorationsOf(variable.id);
+    pointer.descriptor = {d.set.value_or(0), d.binding.value_or(0), 0};
+    switch (variable.storage) {
+        case spv::StorageClassUniformConstant:
+            pointer.atDescriptors = type.isArray();
+            return pointer;
+        case spv::StorageClassPushConstant:
+            pointer.isBuffer = true;
+            pointer.kind = BufferKind::pushConstants;
+            pointer.descriptor = {};
+            return pointer;
+        case spv::StorageClassUniform:
+        case spv::StorageClassStorageBuffer: {
+            pointer.isBuffer = true;
+            pointer.atDescriptors = type.isArray();
+            const Type& block = type.isArray() ? module_.types[type.element] : type;
+            if (variable.storage == spv::StorageClassStorageBuffer ||
+                module_.decorationsOf(block.id).bufferBlock)
+                pointer.kind = BufferKind::storage;
+            return pointer;
+        }
+        default:
+            break;
+    }
+    const uint64_t count = module_.valueScalars(type);
+    charge(count);
+    pointer.object = std::make_shared<Object<Number>>();
+    pointer.object->cells.resize(count);
+    pointer.object->written.resize(count);
+    if (variable.initializer != 0) store(pointer, data(variable.initializer, count));
+    return pointer;
+}
+
+template <class Number>
+const Pointer<Number>& Machine<Number>::pointer(Id id) {
+    const IdInfo& info = module_.info(id);
+    if (info.kind == IdKind::variable) {
+        auto& known = variables_[info.index];
+        if (!known) known = variablePointer(module_.variables[info.index]);
+        return *known;
+    }
+    const Value<Number>& v = value(id);
+    if (!v.pointer) fail(name(id) + " is no pointer");
+    return *v.pointer;
+}
+
+template <class Number>
+Pointer<Number> Machine<Number>::index(Pointer<Number> p, Id indexId) const {
+    const Type& type = module_.types[p.type];
+    const int64_t i = signedInteger(indexId);
+    if (p.atDescriptors) {
+        p.descriptor.arrayIndex = static_cast<uint32_t>(i);
+        p.atDescriptors = false;
+        p.type = type.element;
+        return p;
+    }
+    // Moves by i * stride bytes; what ends outside all buffers stays outside.
+    const auto move = [&p, i](uint64_t stride) {
+        __extension__ using Wide = __int128;
+        const Wide offset = Wide(i) * static_cast<int64_t>(stride) + static_cast<int64_t>(p.offset);
+        p.outside = p.outside || offset < 0 || offset > kMaxOffset;
+        p.offset = p.outside ? 0 : static_cast<uint64_t>(offset);
+    };
+    if (type.kind == TypeKind::structure) {
+        if (i < 0 || static_cast<uint64_t>(i) >= type.members.size())
+            fail("index " + std::to_string(i) + " into struct " + name(type.id) + " is out of range");
+        const auto member = static_cast<uint32_t>(i);
+        p.type = type.members[member];
+        if (p.isBuffer) {
+            const Decorations& d = module_.decorationsOf(type.id, member);
+            p.offset += d.offset.value_or(0);
+            p.matrix = {d.matrixStride.value_or(0), d.rowMajor};
+        } else {
+            p.offset += type.cellOffsets[member];
+        }
+        return p;
+    }
+    if (!type.isArray() && type.kind != TypeKind::matrix && type.kind != TypeKind::vector)
+        fail("an access chain goes into type " + name(type.id) + ", which has no parts");
+    const Type& element = module_.types[type.element];
+    p.type = type.element;
+    if (!p.isBuffer) {
+        p.outside = p.outside || i < 0 || i >= static_cast<int64_t>(type.count);
+        if (!p.outside) p.offset += static_cast<uint64_t>(i) * element.scalars;
+        return p;
+    }
+    const uint64_t scalarBytes = module_.scalarType(type).width / 8;
+    switch (type.kind) {
+        case TypeKind::matrix:
+            move(p.matrix.rowMajor ? scalarBytes : p.matrix.stride);
+            p.componentStride = p.matrix.rowMajor ? p.matrix.stride : 0;
+            break;
+        case TypeKind::vector:
+            move(p.componentStride != 0 ? p.componentStride : scalarBytes);
+            p.componentStride = 0;
+            break;
+        default:
+            move(module_.decorationsOf(type.id).arrayStride.value_or(0));
+            break;
+    }
+    return p;
+}
+
+/// Calls visit(scalar type, byte offset) for the scalars of `type` in flattened order.
+template <class Number>
+template <class Visit>
+void Machine<Number>::forEachScalar(const Type& type, uint64_t offset, MatrixLayout matrix,
+                                    uint32_t componentStride, const Visit& visit) const {
+    switch (type.kind) {
+        case TypeKind::vector: {
+            const Type& scalar = module_.types[type.element];
+            const uint64_t stride = componentStride != 0 ? componentStride : scalar.width / 8;
+            for (uint64_t c = 0; c < type.count; ++c) visit(scalar, offset + c * stride);
+            break;
+        }
+        case TypeKind::matrix: {
+            const uint64_t step = matrix.rowMajor ? module_.scalarType(type).width / 8 : matrix.stride;
+            for (uint64_t c = 0; c < type.count; ++c)
+                forEachScalar(module_.types[type.element], offset + c * step, matrix,
+                              matrix.rowMajor ? matrix.stride : 0, visit);
+            break;
+        }
+        case TypeKind::array: {
+            const uint64_t stride = module_.decorationsOf(type.id).arrayStride.value_or(0);
+            for (uint64_t e = 0; e < type.count; ++e)
+                forEachScalar(module_.types[type.element], offset + e * stride, matrix, 0, visit);
+            break;
+        }
+        case TypeKind::structure:
+            for (uint32_t m = 0; m < type.members.size(); ++m) {
+                const Decorations& d = module_.decorationsOf(type.id, m);
+                forEachScalar(module_.types[type.members[m]], offset + d.offset.value_or(0),
+                              {d.matrixStride.value_or(0), d.rowMajor}, 0, visit);
+            }
+            break;
+        case TypeKind::integer:
+        case TypeKind::floating:
+            visit(type, offset);
+            break;
+        default:
+            fail("type " + name(type.id) + " cannot be in a buffer");
+    }
+}
+
+template <class Number>
+Scalars<Number> Machine<Number>::loadScalars(const Pointer<Number>& p) {
+    const Type& type = module_.types[p.type];
+    const uint64_t count = module_.valueScalars(type);
+    charge(count / 16);
+    Scalars<Number> result;
+    if (p.outside) {
+        result.resize(count);
+    } else if (p.object) {
+        if (p.offset > p.object->cells.size() || count > p.object->cells.size() - p.offset)
+            fail("a pointer does not fit its variable");
+        const auto begin = p.object->cells.begin() + static_cast<ptrdiff_t>(p.offset);
+        result.assign(begin, begin + static_cast<ptrdiff_t>(count));
+    } else if (p.isBuffer && !p.atDescriptors) {
+        const std::span<const std::byte> bytes = resources_.buffer(p.kind, p.descriptor);
+        forEachScalar(type, p.offset, p.matrix, p.componentStride, [&](const Type& scalar, uint64_t offset) {
+            result.push_back(readScalar<Number>(bytes, offset, scalar));
+        });
+    } else {
+        fail("a load through a pointer to type " + name(type.id));
+    }
+    return result;
+}
+
+template <class Number>
+Value<Number> Machine<Number>::load(const Pointer<Number>& p) {
+    Value<Number> result;
+    const Type& type = module_.types[p.type];
+    if (!type.isOpaque()) {
+        result.scalars = loadScalars(p);
+    } else if (p.object || p.isBuffer || p.atDescriptors) {
+        fail("a load of type " + name(type.id) + " that is not in UniformConstant");
+    } else {
+        result.image = ImageHandle{type.kind == TypeKind::sampledImage ? type.element : p.type, p.descriptor,
+                                   p.descriptor};
+    }
+    return result;
+}
+
+template <class Number>
+void Machine<Number>::store(const Pointer<Number>& p, const Scalars<Number>& scalars) {
+    const Type& type = module_.types[p.type];
+    const uint64_t count = module_.valueScalars(type);
+    charge(count / 16);
+    if (scalars.size() != count) fail("a stored value does not fit type " + name(type.id));
+    if (p.outside) return;
+    if (p.object) {
+        if (p.offset > p.object->cells.size() || count > p.object->cells.size() - p.offset)
+            fail("a pointer does not fit its variable");
+        for (size_t k = 0; k < count; ++k) {
+            p.object->cells[p.offset + k] = scalars[k];
+            p.object->written[p.offset + k] = true;
+        }
+        return;
+    }
+    if (!p.isBuffer || p.kind != BufferKind::storage || p.atDescriptors)
+        fail("a store to type " + name(type.id) + " in read-only memory");
+    if (helper_) return;
+    const std::span<std::byte> bytes = resources_.buffer(p.kind, p.descriptor);
+    size_t next = 0;
+    forEachScalar(type, p.offset, p.matrix, p.componentStride, [&](const Type& scalar, uint64_t offset) {
+        writeScalar(bytes, offset, scalar, scalars[next++]);
+    });
+}
+
+template <class Number>
+uint64_t Machine<Number>::arrayLength(const Instruction& i) {
+    const Pointer<Number>& p = pointer(i.operand(0));
+    const Type& type = module_.types[p.type];
+    const uint32_t member = i.operand(1);
+    if (!p.isBuffer || p.atDescriptors || type.kind != TypeKind::structure || member >= type.members.size())
+        fail("OpArrayLength of type " + name(type.id));
+    const Type& array = module_.types[type.members[member]];
+    const uint64_t stride = module_.decorationsOf(array.id).arrayStride.value_or(0);
+    if (array.kind != TypeKind::runtimeArray || stride == 0) fail("OpArrayLength of type " + name(array.id));
+    const uint64_t first = p.offset + module_.decorationsOf(type.id, member).offset.value_or(0);
+    const uint64_t size = resources_.buffer(p.kind, p.descriptor).size();
+    return p.outside || size < first ? 0 : (size - first) / stride;
+}
+
+template <class Number>
+bool Machine<Number>::executeMemory(const Instruction& i) {
+    switch (i.op) {
+        case spv::OpVariable: {
+            Variable variable;
+            variable.id = i.result;
+            variable.pointerType = module_.typeIndex(i.type);
+            variable.storage = static_cast<spv::StorageClass>(i.operand(0));
+            if (i.operands.size() > 1) variable.initializer = i.operands[1];
+            if (variable.storage != spv::StorageClassFunction ||
+                module_.types[variable.pointerType].kind != TypeKind::pointer)
+                fail("variable " + name(i.result) + " in a function has another storage class");
+            Value<Number> v;
+            v.pointer = variablePointer(variable);
+            setValue(i, std::move(v));
+            return true;
+        }
+        case spv::OpLoad: {
+            Value<Number> v = load(pointer(i.operand(0)));
+            setValue(i, std::move(v));
+            return true;
+        }
+        case spv::OpStore:
+            store(pointer(i.operand(0)), data(i.operand(1)));
+            return true;
+        case spv::OpCopyMemory: {
+            const Scalars<Number> scalars = loadScalars(pointer(i.operand(1)));
+            store(pointer(i.operand(0)), scalars);
+            return true;
+        }
+        case spv::OpAccessChain:
+        case spv::OpInBoundsAccessChain: {
+            Pointer<Number> p = pointer(i.operand(0));
+            for (const Id id : i.operands.subspan(1)) p = index(std::move(p), id);
+            Value<Number> v;
+            v.pointer = std::move(p);
+            setValue(i, std::move(v));
+            return true;
+        }
+        case spv::OpArrayLength:
+            setResult(i, Scalar<Number>::ofBits(arrayLength(i) & 0xFFFFFFFFu));
+            return true;
+        default:
+            return false;
+    }
+}
+
+/// One invocation runs at a time, so an atomic is a load and a store. Helpers read but do not write.
+template <class Number>
+bool Machine<Number>::executeAtomic(const Instruction& i) {
+    const auto modify = [&](auto combine) {
+        const Pointer<Number> p = pointer(i.operand(0));
+        const Type& type = module_.types[p.type];
+        if (type.kind != TypeKind::integer) failUnsupported(name(i.op) + " on type " + name(type.id));
+        const uint64_t old = loadScalars(p)[0].bits;
+        store(p, {Scalar<Number>::ofBits(combine(old, type.width) & widthMask(type.width))});
+        if (i.result != 0) setResult(i, Scalar<Number>::ofBits(old));
+        return true;
+    };
+    // Operands: pointer, scope, semantics, value; exchange-compare: ..., semantics if unequal, value,
+    // comparator.
+    const auto operand = [&](size_t index) { return bits(i.operand(index)); };
+    const auto arithmetic = [&](spv::Op op) {
+        return modify([&, op](uint64_t old, uint32_t width) {
+            return *integerOperation(op, width, {old, operand(3), 0, 0});
+        });
+    };
+    const auto extreme = [&](bool isSigned, bool larger) {
+        return modify([&, isSigned, larger](uint64_t old, uint32_t width) {
+            const uint64_t v = operand(3);
+            const bool greater = isSigned ? asSigned(v, width) > asSigned(old, width) : v > old;
+            return greater == larger ? v : old;
+        });
+    };
+    switch (i.op) {
+        case spv::OpAtomicLoad:
+            setResult(i, loadScalars(pointer(i.operand(0))));
+            return true;
+        case spv::OpAtomicStore:
+            store(pointer(i.operand(0)), data(i.operand(3), 1));
+            return true;
+        case spv::OpAtomicExchange: {
+            const Pointer<Number> p = pointer(i.operand(0));
+            Scalars<Number> old = loadScalars(p);
+            store(p, data(i.operand(3), 1));
+            setResult(i, std::move(old));
+            return true;
+        }
+        case spv::OpAtomicCompareExchange:
+            return modify([&](uint64_t old, uint32_t) { return old == operand(5) ? operand(4) : old; });
+        case spv::OpAtomicIIncrement:
+            return modify([](uint64_t old, uint32_t) { return old + 1; });
+        case spv::OpAtomicIDecrement:
+            return modify([](uint64_t old, uint32_t) { return old - 1; });
+        case spv::OpAtomicIAdd:
+            return arithmetic(spv::OpIAdd);
+        case spv::OpAtomicISub:
+            return arithmetic(spv::OpISub);
+        case spv::OpAtomicAnd:
+            return arithmetic(spv::OpBitwiseAnd);
+        case spv::OpAtomicOr:
+            return arithmetic(spv::OpBitwiseOr);
+        case spv::OpAtomicXor:
+            return arithmetic(spv::OpBitwiseXor);
+        case spv::OpAtomicSMin:
+            return extreme(true, false);
+        case spv::OpAtomicUMin:
+            return extreme(false, false);
+        case spv::OpAtomicSMax:
+            return extreme(true, true);
+        case spv::OpAtomicUMax:
+            return extreme(false, true);
+        case spv::OpMemoryBarrier:
+            return true;
+        default:
+            return false;
+    }
+}
+
+template <class Number>
+Outcome<Number> Machine<Number>::outcome() const {
+    Outcome<Number> result;
+    result.discarded = discarded_;
+    result.steps = steps_;
+    for (const InterfaceLayout& layout : module_.entryPointData[program_.entryPoint].layouts) {
+        if (!layout.output) continue;
+        const Object<Number>& object = *variables_[layout.variable]->object;
+        for (const InterfaceCell& cell : layout.cells) {
+            if (!object.written[cell.cell]) continue;
+            const Scalar<Number>& scalar = object.cells[cell.cell];
+            if (cell.isBuiltin) {
+                auto& scalars = result.outputs.builtins[cell.builtin];
+                if (scalars.size() <= cell.element) scalars.resize(cell.element + 1);
+                scalars[cell.element] = scalar;
+            } else {
+                Texel<Number>& texel = result.outputs.locations[cell.location];
+                texel[cell.component] = scalar;
+                const Type& type = module_.types[cell.type];
+                if (type.kind == TypeKind::integer && type.width == 64 && cell.component < 3) {
+                    texel[cell.component].bits &= 0xFFFFFFFFu;
+                    texel[cell.component + 1].bits = scalar.bits >> 32;
+                }
+            }
+        }
+    }
+    return result;
+}
+
+#define VERNIER_INSTANTIATE(Number)                                                       \
+    template void Machine<Number>::createInterface(const InterfaceValues<Number>&);       \
+    template const Pointer<Number>& Machine<Number>::pointer(Id);                         \
+    template Scalars<Number> Machine<Number>::loadScalars(const Pointer<Number>&);        \
+    template void Machine<Number>::store(const Pointer<Number>&, const Scalars<Number>&); \
+    template bool Machine<Number>::executeMemory(const Instruction&);                     \
+    template bool Machine<Number>::executeAtomic(const Instruction&);                     \
+    template Outcome<Number> Machine<Number>::outcome() const;
+VERNIER_INSTANTIATE(float)
+VERNIER_INSTANTIATE(double)
+VERNIER_INSTANTIATE(Real)
+
+}  // namespace vernier::reference

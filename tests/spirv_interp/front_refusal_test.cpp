@@ -1,0 +1,126 @@
+// What loadShader refuses, and in which words.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+
+#include "spirv_interp/ir/print.h"
+#include "spirv_interp/ir/verify.h"
+#include "spirv_interp/program.h"
+#include "tests/spirv_interp/front_snippets.h"
+#include "tests/spirv_interp/front_support.h"
+
+namespace vernier::test {
+namespace {
+
+std::string errorOf(const Words& words, ir::Stage stage = ir::Stage::fragment, const Specialization& specialization = {}) {
+    ShaderSource source;
+    source.words = words;
+    source.stage = stage;
+    source.specialization = specialization;
+    const Result<ir::Program> program = loadShader(source);
+    return program.ok() ? "" : program.error().message;
+}
+
+std::string errorOfGlsl(std::string_view body, std::string_view globals = "", ir::Stage stage = ir::Stage::fragment) {
+    const std::string text = "#version 450\n" + std::string(globals) + "\nvoid main() {\n" + std::string(body) + "\n}\n";
+    return errorOf(compileGlsl(stage, text, true), stage);
+}
+
+TEST(Refusal, NamesInstructionIdAndLine) {
+    EXPECT_EQ(errorOfGlsl("o = subgroupAdd(1.0);",
+                          "#extension GL_KHR_shader_subgroup_arithmetic : enable\nlayout(location=0) out float o;"),
+              "SPIR-V: capability GroupNonUniform is not supported");
+    EXPECT_EQ(errorOfGlsl("o = uint(clockARB());",
+                          "#extension GL_ARB_shader_clock : enable\n#extension GL_ARB_gpu_shader_int64 : enable\n"
+                          "layout(location=0) out uint o;"),
+              "SPIR-V: capability ShaderClockKHR is not supported");
+    EXPECT_EQ(errorOfGlsl("int8_t x = int8_t(2); o = int(x);",
+                          "#extension GL_EXT_shader_explicit_arithmetic_types_int8 : enable\nlayout(location=0) out int o;"),
+              "SPIR-V: capability Int8 is not supported");
+    const std::string gather = errorOfGlsl(
+        "o = texture(t, vec2(0));",
+        "layout(set=0,binding=0) uniform sampler2D t; layout(location=0) out vec4 o;", ir::Stage::vertex);
+    EXPECT_EQ(gather, "");  // the compiler writes an explicit lod of 0 outside fragment shaders
+    EXPECT_NE(errorOfGlsl("o = sparseTextureARB(t, vec2(0), v);",
+                          "#extension GL_ARB_sparse_texture2 : enable\nlayout(set=0,binding=0) uniform sampler2D t; "
+                          "layout(location=0) out int o; vec4 v;")
+                  .find("SparseResidency is not supported"),
+              std::string::npos);
+}
+
+TEST(Refusal, EntryPoint) {
+    const Words words = compileGlsl(ir::Stage::vertex, "#version 450\nvoid main() {}\n");
+    EXPECT_EQ(errorOf(words), "SPIR-V: the module has no fragment entry point named 'main'");
+    EXPECT_EQ(errorOf(words, ir::Stage::compute), "SPIR-V: compute shaders are not supported");
+    ShaderSource source;
+    source.words = words;
+    source.entryPoint = "other";
+    EXPECT_EQ(loadShader(source).error().message, "SPIR-V: the module has no vertex entry point named 'other'");
+}
+
+TEST(Refusal, BrokenModules) {
+    EXPECT_EQ(errorOf({}), "SPIR-V: the module is shorter than its header");
+    EXPECT_FALSE(checkModule({}).ok());
+    EXPECT_NE(errorOf({1, 2, 3, 4, 5, 6}).find("not valid"), std::string::npos);
+    Words words = compileGlsl(ir::Stage::vertex, "#version 450\nvoid main() { gl_Position = vec4(1); }\n");
+    EXPECT_TRUE(checkModule(words).ok());
+    words.pop_back();
+    EXPECT_FALSE(checkModule(words).ok());
+}
+
+TEST(Refusal, Specialisation) {
+    const Words words = compileGlsl(
+        ir::Stage::fragment,
+        "#version 450\nlayout(constant_id=7) const int k = 2; layout(location=0) out int o; void main() { o = k; }");
+    const uint32_t value[2] = {5, 6};
+    const auto data = std::as_bytes(std::span(value));
+    Specialization::Entry entry{7, 4, 4};
+    Specialization specialization{{&entry, 1}, data};
+    EXPECT_EQ(errorOf(words, ir::Stage::fragment, specialization), "");
+    ShaderSource source{words, "main", ir::Stage::fragment, specialization};
+    EXPECT_NE(ir::print(*loadShader(source)).find("constant 0x6"), std::string::npos);
+    entry.offset = 5;
+    EXPECT_EQ(errorOf(words, ir::Stage::fragment, specialization),
+              "specialisation constant 7: offset 5 and size 4 do not give the 4 bytes of the constant in 8 bytes of data");
+    entry = {7, 0, 2};
+    EXPECT_EQ(errorOf(words, ir::Stage::fragment, specialization),
+              "specialisation constant 7: offset 0 and size 2 do not give the 4 bytes of the constant in 8 bytes of data");
+    entry = {8, 100, 100};  // of another shader: not looked at
+    EXPECT_EQ(errorOf(words, ir::Stage::fragment, specialization), "");
+}
+
+// Damaged modules: most are refused by the validator, the rest lower to something that verifies or are refused with words.
+TEST(Refusal, DamagedModulesNeverCrash) {
+    std::mt19937 random(11);
+    for (const char* name : {"loop", "storage", "switchInLoop", "calls", "doubles", "localArrays", "uniforms"}) {
+        std::string text = kSnippetPrologue;
+        for (const Snippet& snippet : snippets()) {
+            if (snippet.name == name) text += snippet.functions + "\nvoid main() {\no = vec4(0); p = ivec4(0);\n" + snippet.body + "}";
+        }
+        const Words words = compileGlsl(ir::Stage::fragment, text);
+        for (int i = 0; i < 600; ++i) {
+            Words broken = words;
+            if (i % 10 == 0) broken.resize(random() % broken.size());
+            for (uint32_t k = 0; k <= random() % 3 && !broken.empty(); ++k) {
+                uint32_t& word = broken[random() % broken.size()];
+                switch (random() % 3) {
+                    case 0: word ^= 1u << random() % 32; break;
+                    case 1: word = random() % 400; break;
+                    default: word = words[random() % words.size()]; break;
+                }
+            }
+            ShaderSource source;
+            source.words = broken;
+            source.stage = ir::Stage::fragment;
+            const Result<ir::Program> program = loadShader(source);
+            if (!program) {
+                EXPECT_FALSE(program.error().message.empty());
+                EXPECT_EQ(program.error().message.find("IR of"), std::string::npos) << program.error().message;
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace vernier::test

@@ -1,0 +1,131 @@
+// linkStages: what one stage writes and the other reads.
+#include <gtest/gtest.h>
+
+#include "spirv_interp/ir/link.h"
+#include "spirv_interp/ir/parse.h"
+#include "spirv_interp/ir/print.h"
+#include "spirv_interp/ir/verify.h"
+
+namespace vernier::ir {
+namespace {
+
+Program read(const char* text) {
+    Result<Program> program = parse(text);
+    EXPECT_TRUE(program.ok()) << (program.ok() ? "" : program.error().message);
+    EXPECT_TRUE(verify(*program).ok()) << verify(*program).error().message;
+    return *program;
+}
+
+constexpr const char* kVertex = R"(program vertex "main"
+input 0 f32 user 0.0
+input 1 f32 user 1.0
+output 0 f32 position 0.0
+output 1 f32 user 0.0
+output 2 f32 user 3.1
+b0:
+  %0 f32 = input #0
+  %1 f32 = input #1
+  %2 f32 = fsin %1
+  storeOutput #0 %0
+  storeOutput #1 %0
+  storeOutput #2 %2
+  ret
+)";
+
+TEST(Link, DropsWhatIsNotReadAndZeroesWhatIsNotWritten) {
+    Program vertex = read(kVertex);
+    Program fragment = read(R"(program fragment "main"
+input 0 f32 user 0.0 smooth center
+input 1 f32 user 2.0 smooth center
+input 2 f32 fragCoord 0.0 smooth center
+output 0 f32 user 0.0
+output 1 f32 user 0.1
+b0:
+  %0 f32 = input #0
+  %1 f32 = input #1
+  %2 f32 = input #2
+  %3 f32 = fmul %0 %2
+  %4 f32 = fsub %2 %1
+  storeOutput #0 %3
+  storeOutput #1 %4
+  ret
+)");
+    const Status status = linkStages(vertex, fragment);
+    ASSERT_TRUE(status.ok()) << status.error().message;
+    EXPECT_EQ(print(vertex), R"(program vertex "main"
+input 0 f32 user 0.0
+output 0 f32 position 0.0
+output 1 f32 user 0.0
+b0:
+  %0 f32 = input #0
+  storeOutput #0 %0
+  storeOutput #1 %0
+  ret
+)");
+    EXPECT_EQ(print(fragment), R"(program fragment "main"
+input 0 f32 user 0.0 smooth center
+input 1 f32 fragCoord 0.0 smooth center
+output 0 f32 user 0.0
+output 1 f32 user 0.1
+b0:
+  %0 f32 = input #0
+  %1 f32 = input #1
+  %2 f32 = fmul %0 %1
+  storeOutput #0 %2
+  storeOutput #1 %1
+  ret
+)");
+}
+
+TEST(Link, FillsIndexedInputs) {
+    Program vertex = read(kVertex);
+    Program fragment = read(R"(program fragment "main"
+input 0 f32 user 0.0 smooth center
+input 1 f32 user 1.0 smooth center
+input 2 i32 primitiveId 0.0 flat center
+output 0 f32 user 0.0
+b0:
+  %0 i32 = input #2
+  %1 f32 = inputIndexed #0:2 %0
+  storeOutput #0 %1
+  ret
+)");
+    ASSERT_TRUE(linkStages(vertex, fragment).ok());
+    EXPECT_EQ(fragment.inputs.size(), 3u);
+    EXPECT_EQ(print(vertex), R"(program vertex "main"
+input 0 f32 user 0.0
+output 0 f32 position 0.0
+output 1 f32 user 0.0
+output 2 f32 user 1.0
+b0:
+  %0 f32 = constant 0x0
+  %1 f32 = input #0
+  storeOutput #0 %1
+  storeOutput #1 %1
+  storeOutput #2 %0
+  ret
+)");
+    EXPECT_TRUE(verify(vertex).ok());
+}
+
+TEST(Link, RefusesTypesThatDiffer) {
+    Program vertex = read(kVertex);
+    Program fragment = read(R"(program fragment "main"
+input 0 i32 user 3.1 flat center
+output 0 i32 user 0.0
+b0:
+  %0 i32 = input #0
+  storeOutput #0 %0
+  ret
+)");
+    const std::string before = print(vertex);
+    const Status status = linkStages(vertex, fragment);
+    ASSERT_FALSE(status.ok());
+    EXPECT_EQ(status.error().message,
+              "location 3, component 1: the vertex shader writes f32, the fragment shader reads i32");
+    EXPECT_EQ(print(vertex), before);
+    EXPECT_FALSE(linkStages(fragment, vertex).ok());
+}
+
+}  // namespace
+}  // namespace vernier::ir

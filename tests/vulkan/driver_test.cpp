@@ -1,0 +1,203 @@
+// What the driver says about itself: identity, entry points, extensions, features, limits, formats.
+#include <dlfcn.h>
+#include <gmock/gmock.h>
+
+#include <set>
+
+#include "tests/vulkan/test_device.h"
+
+namespace vernier::test {
+namespace {
+
+class DriverTest : public VulkanTest {};
+
+TEST_F(DriverTest, identityIsItsOwn) {
+    VkPhysicalDeviceProperties properties{};
+    vkGetPhysicalDeviceProperties(physicalDevice, &properties);
+    EXPECT_EQ(std::string(properties.deviceName).rfind("Vernier (software, ", 0), 0u)
+        << properties.deviceName;
+    EXPECT_EQ(properties.deviceType, VK_PHYSICAL_DEVICE_TYPE_CPU);
+    EXPECT_EQ(properties.vendorID, 0x56524Eu);
+    EXPECT_NE(properties.vendorID, static_cast<uint32_t>(VK_VENDOR_ID_MESA));
+    EXPECT_EQ(VK_API_VERSION_MAJOR(properties.apiVersion), 1u);
+    EXPECT_EQ(VK_API_VERSION_MINOR(properties.apiVersion), 0u);
+}
+
+TEST_F(DriverTest, environmentChoosesTypeAndProfile) {
+    const auto create = [](VkInstance* made) {
+        const auto info = make<VkInstanceCreateInfo>(VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO);
+        return vkCreateInstance(&info, nullptr, made);
+    };
+    setenv("VERNIER_DEVICE_TYPE", "integrated", 1);
+    setenv("VERNIER_PROFILE", "draft", 1);
+    VkInstance other = VK_NULL_HANDLE;
+    ASSERT_EQ(create(&other), VK_SUCCESS);
+    uint32_t count = 1;
+    VkPhysicalDevice chosen = VK_NULL_HANDLE;
+    ASSERT_EQ(vkEnumeratePhysicalDevices(other, &count, &chosen), VK_SUCCESS);
+    VkPhysicalDeviceProperties properties{}, standard{};
+    vkGetPhysicalDeviceProperties(chosen, &properties);
+    vkGetPhysicalDeviceProperties(physicalDevice, &standard);
+    EXPECT_EQ(properties.deviceType, VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU);
+    EXPECT_LE(properties.limits.subPixelPrecisionBits, standard.limits.subPixelPrecisionBits);
+    EXPECT_NE(memcmp(properties.pipelineCacheUUID, standard.pipelineCacheUUID, VK_UUID_SIZE), 0);
+    vkDestroyInstance(other, nullptr);
+
+    setenv("VERNIER_PROFILE", "exactish", 1);
+    EXPECT_NE(create(&other), VK_SUCCESS) << "an unknown profile must be refused";
+    unsetenv("VERNIER_PROFILE");
+    unsetenv("VERNIER_DEVICE_TYPE");
+}
+
+struct CoreCommand {
+    const char* name;
+    enum class Level { loader, instance, physicalDevice, device } level;
+    bool implemented;
+};
+constexpr CoreCommand kCoreCommands[] = {
+#define VERNIER_CORE_COMMAND(name, level, implemented) {#name, CoreCommand::Level::level, implemented},
+#include "core_1_0.inc"
+#undef VERNIER_CORE_COMMAND
+};
+
+TEST_F(DriverTest, deviceCommandsAreThereOrNull) {
+    VERNIER_SKIP_WHEN_VALIDATED();  // the layer has every command
+    int missing = 0;
+    for (const CoreCommand& command : kCoreCommands) {
+        if (command.level != CoreCommand::Level::device) continue;
+        EXPECT_EQ(vkGetDeviceProcAddr(device, command.name) != nullptr, command.implemented) << command.name;
+        missing += !command.implemented;
+    }
+    // Without a compute queue the compute commands need not be there; without texel buffer features, nor
+    // buffer views.
+    EXPECT_EQ(missing, 5);
+    for (const char* name : {"vkNoSuchCommand", "vkCreateSwapchainKHR", "vkGetBufferMemoryRequirements2",
+                             "vkTrimCommandPoolKHR", "vkGetPhysicalDeviceFeatures", "vkCreateInstance"}) {
+        EXPECT_EQ(vkGetDeviceProcAddr(device, name), nullptr) << name;
+    }
+    EXPECT_NE(vkGetDeviceProcAddr(device, "vkWaitSemaphoresKHR"), nullptr) << "its extension is enabled";
+}
+
+TEST(DriverLibrary, speaksToTheLoaderDirectly) {
+    void* library = dlopen(VERNIER_ICD_LIBRARY, RTLD_NOW | RTLD_LOCAL);
+    ASSERT_NE(library, nullptr) << dlerror();
+    const auto negotiate =
+        reinterpret_cast<VkResult (*)(uint32_t*)>(dlsym(library, "vk_icdNegotiateLoaderICDInterfaceVersion"));
+    const auto get = reinterpret_cast<PFN_vkGetInstanceProcAddr>(dlsym(library, "vk_icdGetInstanceProcAddr"));
+    ASSERT_NE(negotiate, nullptr);
+    ASSERT_NE(get, nullptr);
+    EXPECT_EQ(dlsym(library, "vkGetInstanceProcAddr"), nullptr);
+    for (const auto& [asked, expected] : {std::pair{5u, 5u}, {7u, 7u}, {99u, 7u}}) {
+        uint32_t version = asked;
+        EXPECT_EQ(negotiate(&version), VK_SUCCESS);
+        EXPECT_EQ(version, expected);
+    }
+    uint32_t old = 2;
+    EXPECT_EQ(negotiate(&old), VK_ERROR_INCOMPATIBLE_DRIVER);
+    for (const char* name : {"vkCreateInstance", "vkEnumerateInstanceExtensionProperties",
+                             "vkGetInstanceProcAddr", "vk_icdNegotiateLoaderICDInterfaceVersion"}) {
+        EXPECT_NE(get(nullptr, name), nullptr) << name;
+    }
+    for (const char* name : {"vkCreateDevice", "vkQueueSubmit", "vkEnumerateInstanceVersion"}) {
+        EXPECT_EQ(get(nullptr, name), nullptr) << name;
+    }
+    dlclose(library);
+}
+
+TEST_F(DriverTest, featuresNotListedAreRefused) {
+    VkPhysicalDeviceFeatures features{};
+    vkGetPhysicalDeviceFeatures(physicalDevice, &features);
+    ASSERT_EQ(features.geometryShader, VK_FALSE);
+    VkPhysicalDeviceFeatures wanted{};
+    wanted.geometryShader = VK_TRUE;
+    const float priority = 1;
+    auto queueInfo = make<VkDeviceQueueCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO);
+    queueInfo.queueCount = 1;
+    queueInfo.pQueuePriorities = &priority;
+    auto info = make<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
+    info.queueCreateInfoCount = 1;
+    info.pQueueCreateInfos = &queueInfo;
+    info.pEnabledFeatures = &wanted;
+    VkDevice refused = VK_NULL_HANDLE;
+    EXPECT_EQ(vkCreateDevice(physicalDevice, &info, nullptr, &refused), VK_ERROR_FEATURE_NOT_PRESENT);
+    // The loader adds a message of its own.
+    EXPECT_THAT(messages, testing::Contains(testing::HasSubstr("geometryShader")));
+}
+
+TEST_F(DriverTest, enumerationsFollowTheTwoCallIdiom) {
+    uint32_t count = 0;
+    ASSERT_EQ(vkEnumerateDeviceExtensionProperties(physicalDevice, nullptr, &count, nullptr), VK_SUCCESS);
+    ASSERT_GT(count, 1u);
+    std::vector<VkExtensionProperties> all(count);
+    ASSERT_EQ(vkEnumerateDeviceExtensionProperties(physicalDevice, nullptr, &count, all.data()), VK_SUCCESS);
+    std::set<std::string> names;
+    for (const auto& extension : all) EXPECT_TRUE(names.insert(extension.extensionName).second);
+    uint32_t tooFew = 1;
+    EXPECT_EQ(vkEnumerateDeviceExtensionProperties(physicalDevice, nullptr, &tooFew, all.data()),
+              VK_INCOMPLETE);
+    EXPECT_EQ(tooFew, 1u);
+}
+
+/// The tables "Required Format Support" that a device without compression must meet, the corner cases of
+/// them.
+TEST_F(DriverTest, mandatoryFormats) {
+    const auto optimal = [&](VkFormat format) {
+        VkFormatProperties properties{};
+        vkGetPhysicalDeviceFormatProperties(physicalDevice, format, &properties);
+        return properties.optimalTilingFeatures;
+    };
+    constexpr VkFormatFeatureFlags kColor =
+        VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT |
+        VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT | VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT |
+        VK_FORMAT_FEATURE_BLIT_SRC_BIT | VK_FORMAT_FEATURE_BLIT_DST_BIT;
+    for (const VkFormat format :
+         {VK_FORMAT_R5G6B5_UNORM_PACK16, VK_FORMAT_A1R5G5B5_UNORM_PACK16, VK_FORMAT_R8_UNORM,
+          VK_FORMAT_R8G8_UNORM, VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_B8G8R8A8_UNORM,
+          VK_FORMAT_B8G8R8A8_SRGB, VK_FORMAT_A2B10G10R10_UNORM_PACK32, VK_FORMAT_R16_SFLOAT,
+          VK_FORMAT_R16G16B16A16_SFLOAT}) {
+        EXPECT_EQ(optimal(format) & kColor, kColor) << format;
+    }
+    EXPECT_TRUE(optimal(VK_FORMAT_D16_UNORM) & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT);
+    EXPECT_TRUE((optimal(VK_FORMAT_D24_UNORM_S8_UINT) | optimal(VK_FORMAT_D32_SFLOAT_S8_UINT)) &
+                VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT);
+    EXPECT_EQ(optimal(VK_FORMAT_UNDEFINED), 0u);
+    if (!validated()) EXPECT_EQ(optimal(static_cast<VkFormat>(0x7FFFFFF0)), 0u);
+
+    VkImageFormatProperties image{};
+    EXPECT_EQ(vkGetPhysicalDeviceImageFormatProperties(physicalDevice, VK_FORMAT_R8G8B8A8_UNORM,
+                                                       VK_IMAGE_TYPE_2D, VK_IMAGE_TILING_OPTIMAL,
+                                                       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, 0, &image),
+              VK_SUCCESS);
+    EXPECT_TRUE(image.sampleCounts & VK_SAMPLE_COUNT_4_BIT);
+    EXPECT_GE(image.maxExtent.width, 4096u);
+    EXPECT_EQ(vkGetPhysicalDeviceImageFormatProperties(
+                  physicalDevice, VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_TYPE_2D, VK_IMAGE_TILING_OPTIMAL,
+                  VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, 0, &image),
+              VK_ERROR_FORMAT_NOT_SUPPORTED);
+}
+
+TEST_F(DriverTest, oneHeapOneTypeOneQueueFamily) {
+    VkPhysicalDeviceMemoryProperties memory{};
+    vkGetPhysicalDeviceMemoryProperties(physicalDevice, &memory);
+    ASSERT_EQ(memory.memoryHeapCount, 1u);
+    ASSERT_EQ(memory.memoryTypeCount, 1u);
+    EXPECT_GT(memory.memoryHeaps[0].size, 64u << 20);
+    uint32_t count = 4;
+    VkQueueFamilyProperties families[4];
+    vkGetPhysicalDeviceQueueFamilyProperties(physicalDevice, &count, families);
+    ASSERT_EQ(count, 1u);
+    EXPECT_EQ(families[0].queueFlags, VkQueueFlags{VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_TRANSFER_BIT});
+}
+
+TEST_F(DriverTest, moreMemoryThanTheHeapHasIsRefused) {
+    VERNIER_SKIP_WHEN_VALIDATED();
+    VkPhysicalDeviceMemoryProperties memory{};
+    vkGetPhysicalDeviceMemoryProperties(physicalDevice, &memory);
+    auto tooMuch = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
+    tooMuch.allocationSize = memory.memoryHeaps[0].size + 1;
+    VkDeviceMemory refused = VK_NULL_HANDLE;
+    EXPECT_EQ(vkAllocateMemory(device, &tooMuch, nullptr, &refused), VK_ERROR_OUT_OF_DEVICE_MEMORY);
+}
+
+}  // namespace
+}  // namespace vernier::test

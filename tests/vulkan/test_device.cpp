@@ -1,0 +1,227 @@
+#include "tests/vulkan/test_device.h"
+
+#include <vernier/vernier_glsl.h>
+
+#include <cstdlib>
+
+namespace vernier::test {
+namespace {
+
+VKAPI_ATTR VkBool32 VKAPI_CALL keepMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                           VkDebugUtilsMessageTypeFlagsEXT,
+                                           const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
+    // With validation switched on in the environment, every test is also a test of clean use.
+    const std::string id = data->pMessageIdName != nullptr ? data->pMessageIdName : "";
+    if (id.find("VUID") != std::string::npos) ADD_FAILURE() << data->pMessage;
+    static_cast<std::vector<std::string>*>(user)->push_back(data->pMessage);
+    return VK_FALSE;
+}
+
+}  // namespace
+
+void useOwnDriver() {
+    setenv("VK_ICD_FILENAMES", VERNIER_ICD_JSON, 1);
+    setenv("VK_DRIVER_FILES", VERNIER_ICD_JSON, 1);
+}
+
+bool validated() { return std::getenv("VK_INSTANCE_LAYERS") != nullptr; }
+
+std::vector<uint32_t> compileGlsl(VkShaderStageFlagBits stage, const std::string& source) {
+    VnGlslDesc desc{};
+    desc.stage = stage;
+    desc.source = source.c_str();
+    desc.target = VN_GLSL_TARGET_VULKAN_1_0;
+    VnGlslOutput* output = nullptr;
+    const VnGlslResult result = vnCompileGlsl(&desc, &output);
+    EXPECT_EQ(result, VN_GLSL_SUCCESS) << (output != nullptr ? output->log : "");
+    std::vector<uint32_t> words;
+    if (result == VN_GLSL_SUCCESS) words.assign(output->words, output->words + output->wordCount);
+    vnFreeGlslOutput(output);
+    return words;
+}
+
+void VulkanTest::SetUp() {
+    useOwnDriver();
+    auto application = make<VkApplicationInfo>(VK_STRUCTURE_TYPE_APPLICATION_INFO);
+    application.apiVersion = VK_API_VERSION_1_0;
+    const char* extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
+                                VK_KHR_GET_PHYSICAL_DEVICE_PROPERTIES_2_EXTENSION_NAME};
+    auto info = make<VkInstanceCreateInfo>(VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO);
+    info.pApplicationInfo = &application;
+    info.enabledExtensionCount = 2;
+    info.ppEnabledExtensionNames = extensions;
+    ASSERT_EQ(vkCreateInstance(&info, nullptr, &instance), VK_SUCCESS);
+
+    auto messengerInfo =
+        make<VkDebugUtilsMessengerCreateInfoEXT>(VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT);
+    messengerInfo.messageSeverity =
+        VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+    messengerInfo.messageType =
+        VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
+    messengerInfo.pfnUserCallback = keepMessage;
+    messengerInfo.pUserData = &messages;
+    const auto createMessenger = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
+        vkGetInstanceProcAddr(instance, "vkCreateDebugUtilsMessengerEXT"));
+    ASSERT_NE(createMessenger, nullptr);
+    ASSERT_EQ(createMessenger(instance, &messengerInfo, nullptr, &messenger_), VK_SUCCESS);
+
+    uint32_t count = 1;
+    ASSERT_EQ(vkEnumeratePhysicalDevices(instance, &count, &physicalDevice), VK_SUCCESS);
+    ASSERT_EQ(count, 1u);
+    VkPhysicalDeviceFeatures features{};
+    vkGetPhysicalDeviceFeatures(physicalDevice, &features);
+    const float priority = 1;
+    auto queueInfo = make<VkDeviceQueueCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO);
+    queueInfo.queueCount = 1;
+    queueInfo.pQueuePriorities = &priority;
+    const char* deviceExtensions[] = {VK_KHR_TIMELINE_SEMAPHORE_EXTENSION_NAME};
+    auto timeline = make<VkPhysicalDeviceTimelineSemaphoreFeatures>(
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES);
+    timeline.timelineSemaphore = VK_TRUE;
+    auto deviceInfo = make<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
+    deviceInfo.pNext = &timeline;
+    deviceInfo.queueCreateInfoCount = 1;
+    deviceInfo.pQueueCreateInfos = &queueInfo;
+    deviceInfo.enabledExtensionCount = 1;
+    deviceInfo.ppEnabledExtensionNames = deviceExtensions;
+    deviceInfo.pEnabledFeatures = &features;
+    ASSERT_EQ(vkCreateDevice(physicalDevice, &deviceInfo, nullptr, &device), VK_SUCCESS);
+    vkGetDeviceQueue(device, 0, 0, &queue);
+    ASSERT_NE(queue, nullptr);
+    auto poolInfo = make<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
+    poolInfo.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
+    ASSERT_EQ(vkCreateCommandPool(device, &poolInfo, nullptr, &pool), VK_SUCCESS);
+}
+
+void VulkanTest::TearDown() {
+    if (device != VK_NULL_HANDLE) vkDeviceWaitIdle(device);
+    while (!deferred_.empty()) {
+        deferred_.back()();
+        deferred_.pop_back();
+    }
+    if (device != VK_NULL_HANDLE) {
+        vkDestroyCommandPool(device, pool, nullptr);
+        vkDestroyDevice(device, nullptr);
+    }
+    if (instance != VK_NULL_HANDLE) {
+        const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
+            vkGetInstanceProcAddr(instance, "vkDestroyDebugUtilsMessengerEXT"));
+        destroy(instance, messenger_, nullptr);
+        vkDestroyInstance(instance, nullptr);
+    }
+}
+
+TestBuffer VulkanTest::makeBuffer(VkDeviceSize size, VkBufferUsageFlags usage) {
+    TestBuffer result;
+    result.size = size;
+    auto info = make<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
+    info.size = size;
+    info.usage = usage;
+    EXPECT_EQ(vkCreateBuffer(device, &info, nullptr, &result.buffer), VK_SUCCESS);
+    VkMemoryRequirements needs{};
+    vkGetBufferMemoryRequirements(device, result.buffer, &needs);
+    EXPECT_EQ(needs.memoryTypeBits, 1u);
+    EXPECT_GE(needs.size, size);
+    auto allocation = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
+    allocation.allocationSize = needs.size;
+    EXPECT_EQ(vkAllocateMemory(device, &allocation, nullptr, &result.memory), VK_SUCCESS);
+    EXPECT_EQ(vkBindBufferMemory(device, result.buffer, result.memory, 0), VK_SUCCESS);
+    EXPECT_EQ(vkMapMemory(device, result.memory, 0, VK_WHOLE_SIZE, 0, &result.data), VK_SUCCESS);
+    defer([this, result] {
+        vkDestroyBuffer(device, result.buffer, nullptr);
+        vkFreeMemory(device, result.memory, nullptr);
+    });
+    return result;
+}
+
+TestImage VulkanTest::makeImage(VkFormat format, VkExtent2D extent, VkImageUsageFlags usage,
+                                VkSampleCountFlagBits samples) {
+    TestImage result;
+    result.format = format;
+    result.extent = extent;
+    auto info = make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
+    info.imageType = VK_IMAGE_TYPE_2D;
+    info.format = format;
+    info.extent = {extent.width, extent.height, 1};
+    info.mipLevels = 1;
+    info.arrayLayers = 1;
+    info.samples = samples;
+    info.tiling = VK_IMAGE_TILING_OPTIMAL;
+    info.usage = usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    EXPECT_EQ(vkCreateImage(device, &info, nullptr, &result.image), VK_SUCCESS);
+    VkMemoryRequirements needs{};
+    vkGetImageMemoryRequirements(device, result.image, &needs);
+    auto allocation = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
+    allocation.allocationSize = needs.size;
+    EXPECT_EQ(vkAllocateMemory(device, &allocation, nullptr, &result.memory), VK_SUCCESS);
+    EXPECT_EQ(vkBindImageMemory(device, result.image, result.memory, 0), VK_SUCCESS);
+    auto view = make<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
+    view.image = result.image;
+    view.viewType = VK_IMAGE_VIEW_TYPE_2D;
+    view.format = format;
+    const bool depth = format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM;
+    const VkImageAspectFlagBits aspect = depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
+    view.subresourceRange = {static_cast<VkImageAspectFlags>(aspect), 0, VK_REMAINING_MIP_LEVELS, 0,
+                             VK_REMAINING_ARRAY_LAYERS};
+    EXPECT_EQ(vkCreateImageView(device, &view, nullptr, &result.view), VK_SUCCESS);
+    defer([this, result] {
+        vkDestroyImageView(device, result.view, nullptr);
+        vkDestroyImage(device, result.image, nullptr);
+        vkFreeMemory(device, result.memory, nullptr);
+    });
+    return result;
+}
+
+VkShaderModule VulkanTest::makeShader(VkShaderStageFlagBits stage, const std::string& glsl) {
+    const std::vector<uint32_t> words = compileGlsl(stage, glsl);
+    auto info = make<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
+    info.codeSize = words.size() * sizeof(uint32_t);
+    info.pCode = words.data();
+    VkShaderModule module = VK_NULL_HANDLE;
+    EXPECT_EQ(vkCreateShaderModule(device, &info, nullptr, &module), VK_SUCCESS);
+    defer([this, module] { vkDestroyShaderModule(device, module, nullptr); });
+    return module;
+}
+
+VkCommandBuffer VulkanTest::begin() {
+    auto allocation = make<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
+    allocation.commandPool = pool;
+    allocation.commandBufferCount = 1;
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    EXPECT_EQ(vkAllocateCommandBuffers(device, &allocation, &commands), VK_SUCCESS);
+    const auto info = make<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
+    EXPECT_EQ(vkBeginCommandBuffer(commands, &info), VK_SUCCESS);
+    return commands;
+}
+
+void VulkanTest::submit(VkCommandBuffer commands) {
+    ASSERT_EQ(vkEndCommandBuffer(commands), VK_SUCCESS);
+    const auto fenceInfo = make<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
+    VkFence fence = VK_NULL_HANDLE;
+    ASSERT_EQ(vkCreateFence(device, &fenceInfo, nullptr, &fence), VK_SUCCESS);
+    auto info = make<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
+    info.commandBufferCount = 1;
+    info.pCommandBuffers = &commands;
+    ASSERT_EQ(vkQueueSubmit(queue, 1, &info, fence), VK_SUCCESS);
+    ASSERT_EQ(vkWaitForFences(device, 1, &fence, VK_TRUE, UINT64_MAX), VK_SUCCESS);
+    vkDestroyFence(device, fence, nullptr);
+    vkFreeCommandBuffers(device, pool, 1, &commands);
+}
+
+std::vector<uint8_t> VulkanTest::readImage(const TestImage& image, VkImageAspectFlags aspect,
+                                           uint32_t texelBytes) {
+    const VkDeviceSize size = VkDeviceSize{texelBytes} * image.extent.width * image.extent.height;
+    const TestBuffer buffer = makeBuffer(size, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+    const VkCommandBuffer commands = begin();
+    VkBufferImageCopy region{};
+    region.imageSubresource = {aspect, 0, 0, 1};
+    region.imageExtent = {image.extent.width, image.extent.height, 1};
+    vkCmdCopyImageToBuffer(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer.buffer, 1,
+                           &region);
+    submit(commands);
+    std::vector<uint8_t> texels(size);
+    std::memcpy(texels.data(), buffer.data, size);
+    return texels;
+}
+
+}  // namespace vernier::test

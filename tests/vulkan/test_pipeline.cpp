@@ -1,0 +1,175 @@
+#include "tests/vulkan/test_pipeline.h"
+
+namespace vernier::test {
+
+uint32_t pixelAt(const std::vector<uint8_t>& texels, const TestImage& image, uint32_t x, uint32_t y) {
+    uint32_t value = 0;
+    std::memcpy(&value, texels.data() + 4 * (size_t{y} * image.extent.width + x), 4);
+    return value;
+}
+
+DrawTest::Pass DrawTest::makePass(const TestImage& color, const TestImage* depth, const TestImage* resolve) {
+    const VkSampleCountFlagBits samples = resolve != nullptr ? VK_SAMPLE_COUNT_4_BIT : VK_SAMPLE_COUNT_1_BIT;
+    std::vector<VkAttachmentDescription> attachments;
+    std::vector<VkImageView> views;
+    const auto add = [&](const TestImage& image, VkSampleCountFlagBits count, VkImageLayout final) {
+        attachments.push_back({0, image.format, count, VK_ATTACHMENT_LOAD_OP_CLEAR,
+                               VK_ATTACHMENT_STORE_OP_STORE, VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+                               VK_ATTACHMENT_STORE_OP_DONT_CARE, VK_IMAGE_LAYOUT_UNDEFINED, final});
+        views.push_back(image.view);
+        return static_cast<uint32_t>(attachments.size() - 1);
+    };
+    const VkAttachmentReference colorReference{add(color, samples, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL),
+                                               VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+    VkAttachmentReference depthReference{}, resolveReference{};
+    VkSubpassDescription subpass{};
+    subpass.colorAttachmentCount = 1;
+    subpass.pColorAttachments = &colorReference;
+    if (depth != nullptr) {
+        depthReference = {add(*depth, samples, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL),
+                          VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
+        subpass.pDepthStencilAttachment = &depthReference;
+    }
+    if (resolve != nullptr) {
+        resolveReference = {add(*resolve, VK_SAMPLE_COUNT_1_BIT, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL),
+                            VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+        subpass.pResolveAttachments = &resolveReference;
+    }
+    Pass result;
+    result.extent = color.extent;
+    result.clears.resize(attachments.size());
+    if (depth != nullptr) result.clears[1].depthStencil.depth = 1;
+    auto info = make<VkRenderPassCreateInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO);
+    info.attachmentCount = static_cast<uint32_t>(attachments.size());
+    info.pAttachments = attachments.data();
+    info.subpassCount = 1;
+    info.pSubpasses = &subpass;
+    EXPECT_EQ(vkCreateRenderPass(device, &info, nullptr, &result.pass), VK_SUCCESS);
+    auto framebuffer = make<VkFramebufferCreateInfo>(VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO);
+    framebuffer.renderPass = result.pass;
+    framebuffer.attachmentCount = static_cast<uint32_t>(views.size());
+    framebuffer.pAttachments = views.data();
+    framebuffer.width = color.extent.width;
+    framebuffer.height = color.extent.height;
+    framebuffer.layers = 1;
+    EXPECT_EQ(vkCreateFramebuffer(device, &framebuffer, nullptr, &result.framebuffer), VK_SUCCESS);
+    defer([this, result] {
+        vkDestroyFramebuffer(device, result.framebuffer, nullptr);
+        vkDestroyRenderPass(device, result.pass, nullptr);
+    });
+    return result;
+}
+
+VkPipelineLayout DrawTest::makeLayout(const std::vector<VkDescriptorSetLayout>& sets, uint32_t pushBytes) {
+    const VkPushConstantRange range{VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, pushBytes};
+    auto info = make<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
+    info.setLayoutCount = static_cast<uint32_t>(sets.size());
+    info.pSetLayouts = sets.data();
+    info.pushConstantRangeCount = pushBytes != 0 ? 1 : 0;
+    info.pPushConstantRanges = &range;
+    VkPipelineLayout layout = VK_NULL_HANDLE;
+    EXPECT_EQ(vkCreatePipelineLayout(device, &info, nullptr, &layout), VK_SUCCESS);
+    defer([this, layout] { vkDestroyPipelineLayout(device, layout, nullptr); });
+    return layout;
+}
+
+VkPipeline DrawTest::makePipeline(VkRenderPass pass, const PipelineDesc& desc, VkResult expected) {
+    std::vector<VkPipelineShaderStageCreateInfo> stages;
+    const auto addStage = [&](VkShaderStageFlagBits stage, VkShaderModule module,
+                              const VkSpecializationInfo* special) {
+        if (module == VK_NULL_HANDLE) return;
+        auto& info = stages.emplace_back(
+            make<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO));
+        info.stage = stage;
+        info.module = module;
+        info.pName = "main";
+        info.pSpecializationInfo = special;
+    };
+    addStage(VK_SHADER_STAGE_VERTEX_BIT, desc.vertex, nullptr);
+    addStage(VK_SHADER_STAGE_FRAGMENT_BIT, desc.fragment, desc.specialization);
+
+    auto input =
+        make<VkPipelineVertexInputStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
+    input.vertexBindingDescriptionCount = static_cast<uint32_t>(desc.bindings.size());
+    input.pVertexBindingDescriptions = desc.bindings.data();
+    input.vertexAttributeDescriptionCount = static_cast<uint32_t>(desc.attributes.size());
+    input.pVertexAttributeDescriptions = desc.attributes.data();
+    auto assembly = make<VkPipelineInputAssemblyStateCreateInfo>(
+        VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
+    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    const VkViewport viewport{
+        0, 0, static_cast<float>(desc.extent.width), static_cast<float>(desc.extent.height), 0, 1};
+    const VkRect2D scissor{{0, 0}, desc.extent};
+    auto viewports =
+        make<VkPipelineViewportStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
+    viewports.viewportCount = viewports.scissorCount = 1;
+    viewports.pViewports = &viewport;
+    viewports.pScissors = &scissor;
+    auto raster = make<VkPipelineRasterizationStateCreateInfo>(
+        VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
+    raster.lineWidth = 1;
+    auto multisample =
+        make<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
+    multisample.rasterizationSamples = desc.samples;
+    auto depth = make<VkPipelineDepthStencilStateCreateInfo>(
+        VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
+    depth.depthTestEnable = depth.depthWriteEnable = desc.depthTest ? VK_TRUE : VK_FALSE;
+    depth.depthCompareOp = VK_COMPARE_OP_LESS;
+    VkPipelineColorBlendAttachmentState blend{};
+    blend.colorWriteMask = 0xF;
+    const std::vector<VkPipelineColorBlendAttachmentState> blends(desc.colorCount, blend);
+    auto colors =
+        make<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
+    colors.attachmentCount = desc.colorCount;
+    colors.pAttachments = blends.data();
+    auto dynamic =
+        make<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
+    dynamic.dynamicStateCount = static_cast<uint32_t>(desc.dynamic.size());
+    dynamic.pDynamicStates = desc.dynamic.data();
+
+    auto info = make<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
+    info.stageCount = static_cast<uint32_t>(stages.size());
+    info.pStages = stages.data();
+    info.pVertexInputState = &input;
+    info.pInputAssemblyState = &assembly;
+    info.pViewportState = &viewports;
+    info.pRasterizationState = &raster;
+    info.pMultisampleState = &multisample;
+    info.pDepthStencilState = &depth;
+    info.pColorBlendState = &colors;
+    info.pDynamicState = &dynamic;
+    info.layout = desc.layout != VK_NULL_HANDLE ? desc.layout : makeLayout({}, 0);
+    info.renderPass = pass;
+    info.subpass = desc.subpass;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    EXPECT_EQ(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline), expected)
+        << (messages.empty() ? "" : messages.back());
+    defer([this, pipeline] { vkDestroyPipeline(device, pipeline, nullptr); });
+    return pipeline;
+}
+
+void DrawTest::beginPass(VkCommandBuffer commands, const Pass& pass, VkSubpassContents contents) {
+    auto info = make<VkRenderPassBeginInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO);
+    info.renderPass = pass.pass;
+    info.framebuffer = pass.framebuffer;
+    info.renderArea.extent = pass.extent;
+    info.clearValueCount = static_cast<uint32_t>(pass.clears.size());
+    info.pClearValues = pass.clears.data();
+    vkCmdBeginRenderPass(commands, &info, contents);
+}
+
+VkShaderModule DrawTest::fullScreen(const std::string& z) {
+    return makeShader(VK_SHADER_STAGE_VERTEX_BIT, R"(#version 450
+void main() {
+    vec2 p = vec2(gl_VertexIndex == 1 ? 3 : -1, gl_VertexIndex == 2 ? 3 : -1);
+    gl_Position = vec4(p, )" + z + R"(, 1);
+})");
+}
+
+VkShaderModule DrawTest::constantColor(const std::string& rgba) {
+    return makeShader(VK_SHADER_STAGE_FRAGMENT_BIT, R"(#version 450
+layout(location = 0) out vec4 color;
+void main() { color = vec4()" + rgba + "); }");
+}
+
+}  // namespace vernier::test

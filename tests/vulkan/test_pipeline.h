@@ -1,0 +1,52 @@
+// A render pass, a framebuffer and a pipeline in a few lines: the defaults draw opaque triangles into one
+// colour image.
+#pragma once
+
+#include <optional>
+
+#include "tests/vulkan/test_device.h"
+
+namespace vernier::test {
+
+class DrawTest : public VulkanTest {
+  protected:
+    struct Pass {
+        VkRenderPass pass = VK_NULL_HANDLE;
+        VkFramebuffer framebuffer = VK_NULL_HANDLE;
+        VkExtent2D extent{};
+        std::vector<VkClearValue> clears;
+    };
+    /// One subpass: clears the colour, and the depth to 1 if there is one, and stores both.
+    Pass makePass(const TestImage& color, const TestImage* depth = nullptr,
+                  const TestImage* resolve = nullptr);
+
+    struct PipelineDesc {
+        VkShaderModule vertex = VK_NULL_HANDLE, fragment = VK_NULL_HANDLE;
+        VkPipelineLayout layout = VK_NULL_HANDLE;  // VK_NULL_HANDLE: an empty one
+        uint32_t subpass = 0;
+        VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
+        bool depthTest = false;
+        uint32_t colorCount = 1;
+        const VkSpecializationInfo* specialization = nullptr;  // of the fragment stage
+        std::vector<VkVertexInputBindingDescription> bindings;
+        std::vector<VkVertexInputAttributeDescription> attributes;
+        std::vector<VkDynamicState> dynamic;
+        VkExtent2D extent{};
+    };
+    VkPipeline makePipeline(VkRenderPass pass, const PipelineDesc& desc, VkResult expected = VK_SUCCESS);
+
+    VkPipelineLayout makeLayout(const std::vector<VkDescriptorSetLayout>& sets, uint32_t pushBytes);
+
+    void beginPass(VkCommandBuffer commands, const Pass& pass,
+                   VkSubpassContents contents = VK_SUBPASS_CONTENTS_INLINE);
+
+    /// A full-screen triangle without vertex buffers: gl_Position from gl_VertexIndex, at depth `z`.
+    VkShaderModule fullScreen(const std::string& z = "0.5");
+    /// Writes a constant.
+    VkShaderModule constantColor(const std::string& rgba);
+};
+
+/// The colour of an RGBA8 pixel as 0xAABBGGRR.
+uint32_t pixelAt(const std::vector<uint8_t>& texels, const TestImage& image, uint32_t x, uint32_t y);
+
+}  // namespace vernier::test
