@@ -1,9 +1,10 @@
-// The batch interpreter against one fused native loop: a lit fragment of 35 scalar operations (normalise, two dot products,
-// a power by squaring, three colour channels), both over rows of the same length. The counter is nanoseconds per lane
-// operation.
+// The batch interpreter against one fused native loop: a lit fragment of 35 scalar operations (normalise, two
+// dot products, a power by squaring, three colour channels), both over rows of the same length. The counter
+// is nanoseconds per lane operation.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bench/micro/interp_bench.cpp"
 #include "base/simd_targets.h"
+
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -65,7 +66,9 @@ namespace vernier::bench {
 namespace {
 
 using Lit = void (*)(const LitUniforms&, const float* const*, float* const*, size_t);
-Lit litNative(Isa isa) { VERNIER_SELECT_ISA(isa, litNative) }
+Lit litNative(Isa isa) {
+    VERNIER_SELECT_ISA(isa, litNative)
+}
 
 constexpr const char* kLitProgram = R"(program fragment "lit"
 input 0 f32 user 0.0 smooth center
@@ -145,13 +148,15 @@ b0:
 )";
 
 void report(benchmark::State& state, uint32_t lanes) {
-    state.counters["ns/lane-op"] = benchmark::Counter(static_cast<double>(state.iterations()) * lanes * kLitOperations * 1e-9,
-                                                      benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    state.counters["ns/lane-op"] =
+        benchmark::Counter(static_cast<double>(state.iterations()) * lanes * kLitOperations * 1e-9,
+                           benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
 /// An input row as interpolation would leave it.
 void fill(float* row, uint32_t slot, uint32_t lanes) {
-    for (uint32_t lane = 0; lane < lanes; ++lane) row[lane] = 0.25f + 0.01f * static_cast<float>((lane + slot * 5) % 64);
+    for (uint32_t lane = 0; lane < lanes; ++lane)
+        row[lane] = 0.25f + 0.01f * static_cast<float>((lane + slot * 5) % 64);
 }
 
 void nativeLit(benchmark::State& state) {
@@ -195,8 +200,8 @@ void batchLit(benchmark::State& state) {
     BatchContext context(*compiled);
     context.beginDraw(bindings);
     const std::vector<uint32_t> mask(128, ~0u);
-    // Input rows are reused by the run; refilling them is the caller's work and not measured: what they hold between runs
-    // is some other value of the program, finite all the same.
+    // Input rows are reused by the run; refilling them is the caller's work and not measured: what they hold
+    // between runs is some other value of the program, finite all the same.
     for (uint32_t k = 0; k < 6; ++k) fill(context.input(k), k, lanes);
     for (auto _ : state) {
         if (!context.run(lanes, mask.data(), mask.data())) return state.SkipWithError("lost");

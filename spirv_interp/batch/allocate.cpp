@@ -6,9 +6,14 @@
 namespace vernier::batch {
 namespace {
 
-// Instruction k reads at time 2k and writes at 2k + 1, so that a result may take the row of an operand that ends there.
-constexpr uint32_t readTime(uint32_t position) { return 2 * position; }
-constexpr uint32_t writeTime(uint32_t position) { return 2 * position + 1; }
+// Instruction k reads at time 2k and writes at 2k + 1, so that a result may take the row of an operand that
+// ends there.
+constexpr uint32_t readTime(uint32_t position) {
+    return 2 * position;
+}
+constexpr uint32_t writeTime(uint32_t position) {
+    return 2 * position + 1;
+}
 
 struct Interval {
     uint32_t begin = kNone, end = 0;
@@ -25,7 +30,8 @@ struct Interval {
 
 class Allocator {
   public:
-    explicit Allocator(MachineCode& code) : code_(code), intervals_(code.registers.size()), parent_(code.registers.size()) {
+    explicit Allocator(MachineCode& code)
+        : code_(code), intervals_(code.registers.size()), parent_(code.registers.size()) {
         std::iota(parent_.begin(), parent_.end(), 0u);
     }
 
@@ -64,7 +70,8 @@ class Allocator {
             for (const Operand& operand : inst.operands) visit(operand);
             for (const Operand& operand : inst.hidden) visit(operand);
         }
-        // An input may itself be an output: then nothing reads or writes it, but it is there from beginning to end.
+        // An input may itself be an output: then nothing reads or writes it, but it is there from beginning
+        // to end.
         for (const uint32_t reg : code_.outputs) {
             if (reg != kNone) intervals_[reg].cover(writeTime(static_cast<uint32_t>(code_.insts.size())));
         }
@@ -86,8 +93,8 @@ class Allocator {
         return kNone;
     }
 
-    /// Growing for one loop can make an interval meet another: inner loops come later in the list, outer ones contain
-    /// what they grow into, and siblings are met by another round.
+    /// Growing for one loop can make an interval meet another: inner loops come later in the list, outer ones
+    /// contain what they grow into, and siblings are met by another round.
     void coverLoops() {
         for (uint32_t reg = 0; reg < intervals_.size(); ++reg) {
             Interval& interval = intervals_[reg];
@@ -125,13 +132,16 @@ class Allocator {
         const Interval& source = intervals_[find(from)];
         const Interval& target = intervals_[find(to)];
         if (source.end != readTime(position)) return false;
-        // The source ends where the target begins: nothing of the target exists yet that the source could destroy.
+        // The source ends where the target begins: nothing of the target exists yet that the source could
+        // destroy.
         if (target.begin == writeTime(position)) return true;
-        // The next value of a loop's phi, when the loop has one way back: it is computed for all lanes after the phi was
-        // read for the last time in this round, and lanes that left the loop do not read the phi again.
+        // The next value of a loop's phi, when the loop has one way back: it is computed for all lanes after
+        // the phi was read for the last time in this round, and lanes that left the loop do not read the phi
+        // again.
         if (find(from) != from || facts_[from].writes != 1 || facts_[from].masked) return false;
         const MachineLoop* loop = loopOfPhi(to, position);
-        if (loop == nullptr || loop->backEdges != 1 || code_.registers[from].loop != loop->header) return false;
+        if (loop == nullptr || loop->backEdges != 1 || code_.registers[from].loop != loop->header)
+            return false;
         return facts_[to].lastRead <= facts_[from].lastWrite && facts_[from].lastWrite >= loop->begin;
     }
 
@@ -187,6 +197,8 @@ class Allocator {
 
 }  // namespace
 
-Allocation allocate(MachineCode& code) { return Allocator(code).run(); }
+Allocation allocate(MachineCode& code) {
+    return Allocator(code).run();
+}
 
 }  // namespace vernier::batch

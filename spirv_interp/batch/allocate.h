@@ -1,5 +1,5 @@
-// Register allocation: rows for virtual registers, by linear scan over live intervals that cover whole loops where a value
-// must survive them.
+// Register allocation: rows for virtual registers, by linear scan over live intervals that cover whole loops
+// where a value must survive them.
 #pragma once
 
 #include <vector>
@@ -13,8 +13,8 @@ struct Allocation {
     uint32_t rows = 0;
 };
 
-/// Joins registers at both ends of moves where that makes the move needless (marking it dead), and gives every register
-/// its rows.
+/// Joins registers at both ends of moves where that makes the move needless (marking it dead), and gives
+/// every register its rows.
 Allocation allocate(MachineCode& code);
 
 }  // namespace vernier::batch

@@ -2,6 +2,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "spirv_interp/batch/arithmetic.cpp"
 #include "base/simd_targets.h"
+
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -14,23 +15,31 @@ namespace vernier::batch::HWY_NAMESPACE {
 namespace {
 namespace element {
 
-HWY_INLINE VF number(float value) { return hn::Set(kF32, value); }
-HWY_INLINE VI number(int32_t value) { return hn::Set(kI32, value); }
+HWY_INLINE VF number(float value) {
+    return hn::Set(kF32, value);
+}
+HWY_INLINE VI number(int32_t value) {
+    return hn::Set(kI32, value);
+}
 
-/// The smaller operand; a NaN gives way to the other operand (NMin). x86 MINPS returns its second operand when either
-/// is NaN or both are zero, on every instruction set.
-HWY_INLINE VF smaller(VF a, VF b) { return hn::IfThenElse(hn::IsNaN(b), a, hn::Min(a, b)); }
-HWY_INLINE VF larger(VF a, VF b) { return hn::IfThenElse(hn::IsNaN(b), a, hn::Max(a, b)); }
-HWY_INLINE VF clamped(VF x, VF low, VF high) { return smaller(larger(x, low), high); }
+/// The smaller operand; a NaN gives way to the other operand (NMin). x86 MINPS returns its second operand
+/// when either is NaN or both are zero, on every instruction set.
+HWY_INLINE VF smaller(VF a, VF b) {
+    return hn::IfThenElse(hn::IsNaN(b), a, hn::Min(a, b));
+}
+HWY_INLINE VF larger(VF a, VF b) {
+    return hn::IfThenElse(hn::IsNaN(b), a, hn::Max(a, b));
+}
+HWY_INLINE VF clamped(VF x, VF low, VF high) {
+    return smaller(larger(x, low), high);
+}
 
 VERNIER_ELEMENT(fadd, float, float, (V a, V b), return hn::Add(a, b);)
 VERNIER_ELEMENT(fsub, float, float, (V a, V b), return hn::Sub(a, b);)
 VERNIER_ELEMENT(fmul, float, float, (V a, V b), return hn::Mul(a, b);)
 VERNIER_ELEMENT(fdiv, float, float, (V a, V b), return hn::Div(a, b);)
-VERNIER_ELEMENT(frem, float, float, (V a, V b),
-                return hn::Sub(a, hn::Mul(b, hn::Trunc(hn::Div(a, b))));)
-VERNIER_ELEMENT(fmod, float, float, (V a, V b),
-                return hn::Sub(a, hn::Mul(b, hn::Floor(hn::Div(a, b))));)
+VERNIER_ELEMENT(frem, float, float, (V a, V b), return hn::Sub(a, hn::Mul(b, hn::Trunc(hn::Div(a, b))));)
+VERNIER_ELEMENT(fmod, float, float, (V a, V b), return hn::Sub(a, hn::Mul(b, hn::Floor(hn::Div(a, b))));)
 VERNIER_ELEMENT(fneg, float, float, (V a), return hn::Xor(a, number(-0.0f));)
 VERNIER_ELEMENT(ffma, float, float, (V a, V b, V c),
                 return ::vernier::HWY_NAMESPACE::fusedMulAdd(kF32, a, b, c);)
@@ -50,10 +59,10 @@ VERNIER_ELEMENT(fmax, float, float, (V a, V b), return larger(a, b);)
 VERNIER_ELEMENT(fclamp, float, float, (V x, V low, V high), return clamped(x, low, high);)
 VERNIER_ELEMENT(fmix, float, float, (V x, V y, V a),
                 return hn::Add(hn::Mul(x, hn::Sub(number(1.0f), a)), hn::Mul(y, a));)
-VERNIER_ELEMENT(fstep, float, float, (V edge, V x),
-                return hn::IfThenZeroElse(hn::Lt(x, edge), number(1.0f));)
+VERNIER_ELEMENT(fstep, float, float, (V edge, V x), return hn::IfThenZeroElse(hn::Lt(x, edge), number(1.0f));)
 VERNIER_ELEMENT(fsmoothstep, float, float, (V edge0, V edge1, V x),
-                const V t = clamped(hn::Div(hn::Sub(x, edge0), hn::Sub(edge1, edge0)), number(0.0f), number(1.0f));
+                const V t = clamped(hn::Div(hn::Sub(x, edge0), hn::Sub(edge1, edge0)), number(0.0f),
+                                    number(1.0f));
                 return hn::Mul(hn::Mul(t, t), hn::Sub(number(3.0f), hn::Mul(number(2.0f), t)));)
 VERNIER_ELEMENT(fsqrt, float, float, (V a), return hn::Sqrt(a);)
 VERNIER_ELEMENT(finverseSqrt, float, float, (V a), return hn::Div(number(1.0f), hn::Sqrt(a));)
@@ -101,11 +110,13 @@ VERNIER_ELEMENT(ule, uint32_t, uint32_t, (V a, V b), return hn::Not(boolRow(hn::
 VERNIER_ELEMENT(select, uint32_t, uint32_t, (V condition, V yes, V no),
                 return hn::IfVecThenElse(condition, yes, no);)
 
-/// Truncates values in [-2^31, 2^31). The hardware's answer for any other is INT_MIN, which is also right below.
-HWY_INLINE VI truncated(VF a) { return hn::BitCast(kI32, hn::ConvertTo(kI32, a)); }
+/// Truncates values in [-2^31, 2^31). The hardware's answer for any other is INT_MIN, which is also right
+/// below.
+HWY_INLINE VI truncated(VF a) {
+    return hn::BitCast(kI32, hn::ConvertTo(kI32, a));
+}
 
-VERNIER_ELEMENT(ftos, float, int32_t, (V a),
-                const V known = hn::IfThenZeroElse(hn::IsNaN(a), a);
+VERNIER_ELEMENT(ftos, float, int32_t, (V a), const V known = hn::IfThenZeroElse(hn::IsNaN(a), a);
                 const V inside = hn::Max(hn::Min(known, number(0x1.fffffep30f)), number(-0x1p31f));
                 const auto tooLarge = hn::RebindMask(kI32, hn::Ge(known, number(0x1p31f)));
                 return hn::IfThenElse(tooLarge, number(INT32_MAX), truncated(inside));)
@@ -115,7 +126,8 @@ VERNIER_ELEMENT(ftou, float, uint32_t, (V a),
                 const V inside = hn::Min(positive, number(0x1.fffffep31f));
                 const auto upper = hn::Ge(inside, number(0x1p31f));
                 const VI low = truncated(hn::Sub(inside, hn::IfThenElseZero(upper, number(0x1p31f))));
-                const VU value = hn::Xor(hn::BitCast(kU32, low), hn::And(boolRow(upper), hn::Set(kU32, 0x80000000u)));
+                const VU value = hn::Xor(hn::BitCast(kU32, low),
+                                         hn::And(boolRow(upper), hn::Set(kU32, 0x80000000u)));
                 return hn::Or(value, boolRow(hn::Ge(positive, number(0x1p32f))));)
 VERNIER_ELEMENT(stof, int32_t, float, (V a), return hn::ConvertTo(kF32, a);)
 // Both halves are exact as floats, so their sum is rounded once.
@@ -133,7 +145,8 @@ const Inst* runDot(Frame& frame, const Inst* inst) {
     const auto row = [&](size_t k) HWY_ATTR { return Source<float, false>(frame, (*inst)[1 + 2 * k]); };
     const auto factor = [&](size_t k) HWY_ATTR { return Source<float, kScalar>(frame, (*inst)[2 + 2 * k]); };
     const auto a0 = row(0), a1 = row(1), a2 = row(kTerms > 2 ? 2 : 0), a3 = row(kTerms > 3 ? 3 : 0);
-    const auto b0 = factor(0), b1 = factor(1), b2 = factor(kTerms > 2 ? 2 : 0), b3 = factor(kTerms > 3 ? 3 : 0);
+    const auto b0 = factor(0), b1 = factor(1), b2 = factor(kTerms > 2 ? 2 : 0),
+               b3 = factor(kTerms > 3 ? 3 : 0);
     fillRow(frame, inst->operand[0], [&](size_t lane) HWY_ATTR {
         VF sum = hn::Add(hn::Mul(a0.at(lane), b0.at(lane)), hn::Mul(a1.at(lane), b1.at(lane)));
         if constexpr (kTerms > 2) sum = hn::Add(sum, hn::Mul(a2.at(lane), b2.at(lane)));
@@ -162,8 +175,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace vernier::batch {
 namespace {
-AddHandlers selectArithmetic(Isa isa) { VERNIER_SELECT_ISA(isa, addArithmetic) }
+AddHandlers selectArithmetic(Isa isa) {
+    VERNIER_SELECT_ISA(isa, addArithmetic)
+}
 }  // namespace
-void addArithmetic(Isa isa, HandlerTable& table) { selectArithmetic(isa)(table); }
+void addArithmetic(Isa isa, HandlerTable& table) {
+    selectArithmetic(isa)(table);
+}
 }  // namespace vernier::batch
 #endif

@@ -1,9 +1,10 @@
 // What the batch interpreter executes: instructions, the frame they work on, and the table of their handlers.
 //
-// Registers are *rows*: one 32-bit word per lane, 64-byte aligned, addressed by byte offset. A 64-bit value is two
-// neighbouring rows, low words first. Values that are the same for a whole draw are *scalars*: one word (or two) of a
-// separate file, and instructions have forms that take them as operands, so that they cost no rows. A handler works on
-// all lanes whatever the masks say: only memory, phis and side effects look at masks.
+// Registers are *rows*: one 32-bit word per lane, 64-byte aligned, addressed by byte offset. A 64-bit value
+// is two neighbouring rows, low words first. Values that are the same for a whole draw are *scalars*: one
+// word (or two) of a separate file, and instructions have forms that take them as operands, so that they cost
+// no rows. A handler works on all lanes whatever the masks say: only memory, phis and side effects look at
+// masks.
 #pragma once
 
 #include <array>
@@ -19,7 +20,8 @@
 namespace vernier::batch {
 
 inline constexpr uint32_t kMaxLanes = 128;
-/// Lanes are computed in groups of this many: the widest vector. Row offsets are multiples of 64 bytes for it.
+/// Lanes are computed in groups of this many: the widest vector. Row offsets are multiples of 64 bytes for
+/// it.
 inline constexpr uint32_t kLaneGroup = 16;
 inline constexpr uint32_t kBackEdgeBudget = 1u << 24;
 inline constexpr uint32_t kCurrentMask = 0;
@@ -78,7 +80,8 @@ struct Inst;
 /// Executes one instruction and returns the next; nullptr ends the run.
 using Handler = const Inst* (*)(Frame&, const Inst*);
 
-/// One instruction, or the rest of one: an operation with more than four operands continues in the Insts behind it.
+/// One instruction, or the rest of one: an operation with more than four operands continues in the Insts
+/// behind it.
 struct Inst {
     Handler handler = nullptr;
     uint32_t operand[4] = {};  // byte offset of a row; index of a scalar; mask slot; jump distance; number
@@ -88,10 +91,13 @@ struct Inst {
 static_assert(sizeof(Inst) == 24);
 
 /// How many Insts an operation with this many operands takes.
-inline constexpr size_t instsFor(size_t operands) { return operands <= 4 ? 1 : (operands + 3) / 4; }
+inline constexpr size_t instsFor(size_t operands) {
+    return operands <= 4 ? 1 : (operands + 3) / 4;
+}
 
-/// Operand k + 1 (operand 0 is the destination) of a VECTOR operation is a scalar if bit k of its form is set; so are the
-/// operands of memory operations that say "row or scalar" (there bit k is operand k, counted without the destination).
+/// Operand k + 1 (operand 0 is the destination) of a VECTOR operation is a scalar if bit k of its form is
+/// set; so are the operands of memory operations that say "row or scalar" (there bit k is operand k, counted
+/// without the destination).
 inline constexpr size_t kForms = 8;
 using HandlerTable = std::array<std::array<Handler, kForms>, kOpCount>;
 
@@ -108,7 +114,7 @@ MaskFunctions maskFunctions(Isa isa);
 /// An image instruction: where its operands and results lie.
 struct ImageSite {
     static constexpr uint32_t kNone = ~0u;
-    uint32_t op = 0;  // into Program::imageOps
+    uint32_t op = 0;                                    // into Program::imageOps
     uint32_t imageIndex = kNone, samplerIndex = kNone;  // rows of descriptor indices
     uint32_t coord[4] = {kNone, kNone, kNone, kNone};
     uint32_t dref = kNone, lodOrBias = kNone;
@@ -127,15 +133,15 @@ struct Frame {
     uint32_t lanes = 0;     // lanes to compute, a multiple of kLaneGroup
     uint32_t rowBytes = 0;  // from a row to the next
     LaneMask* masks = nullptr;
-    LaneMask exec;          // lanes that run
-    LaneMask live;          // lanes whose effects count
+    LaneMask exec;  // lanes that run
+    LaneMask live;  // lanes whose effects count
     uint32_t backEdges = 0;
     bool lost = false;
     const ResourceBindings* bindings = nullptr;
     const ir::Program* program = nullptr;
     const ImageSite* imageSites = nullptr;
     const uint32_t* indexedRows = nullptr;
-    uint32_t* local = nullptr;      // word w of lane l at local[w * localStride + l]
+    uint32_t* local = nullptr;  // word w of lane l at local[w * localStride + l]
     uint32_t localStride = 0;
     uint32_t* imageScratch = nullptr;  // kImageScratchRows * kMaxLanes words
     BatchContext::Interpolator interpolator;

@@ -24,8 +24,8 @@ struct Code {
 };
 
 /// Encodes machine code for a batch of `lanes` lanes.
-Code encode(const MachineCode& machine, const Allocation& allocation, const ScalarFile& scalars, const HandlerTable& handlers,
-            uint32_t lanes);
+Code encode(const MachineCode& machine, const Allocation& allocation, const ScalarFile& scalars,
+            const HandlerTable& handlers, uint32_t lanes);
 
 class CompiledProgram final : public BatchProgram {
   public:

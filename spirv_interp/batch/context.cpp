@@ -12,7 +12,8 @@ namespace {
 class Rows {
   public:
     explicit Rows(size_t words)
-        : data_(static_cast<uint32_t*>(::operator new[](std::max<size_t>(words, 1) * sizeof(uint32_t), kAlign))) {
+        : data_(static_cast<uint32_t*>(
+              ::operator new[](std::max<size_t>(words, 1) * sizeof(uint32_t), kAlign))) {
         std::fill_n(data_.get(), words, 0u);
     }
     uint32_t* get() const { return data_.get(); }
@@ -38,7 +39,7 @@ struct BatchContext::Impl {
           live(batch::kMaxLanes),
           scalars(compiled.scalars()),
           masks(std::max(compiled.batch().masks, compiled.draw().masks)),
-          frame(frameFor(compiled.batch(), batchRows)) {}
+          batchFrame(frameFor(compiled.batch(), batchRows)) {}
 
     /// Everything about a frame but its lanes; `code` is one of the program's pieces.
     batch::Frame frameFor(const batch::Code& code, const Rows& rows) {
@@ -63,7 +64,7 @@ struct BatchContext::Impl {
     std::vector<uint32_t> scalars;
     std::vector<batch::LaneMask> masks;
     ResourceBindings bindings;
-    batch::Frame frame;  // of the batch code
+    batch::Frame batchFrame;
 };
 
 BatchContext::BatchContext(std::shared_ptr<const BatchProgram> program)
@@ -92,13 +93,14 @@ float* BatchContext::input(uint32_t slot) {
 const float* BatchContext::output(uint32_t slot) const {
     const auto& outputs = impl_->compiled.batch().outputs;
     if (slot >= outputs.size() || outputs[slot] == batch::kNone) return nullptr;
-    return reinterpret_cast<const float*>(reinterpret_cast<const std::byte*>(impl_->batchRows.get()) + outputs[slot]);
+    return reinterpret_cast<const float*>(reinterpret_cast<const std::byte*>(impl_->batchRows.get()) +
+                                          outputs[slot]);
 }
 
 bool BatchContext::run(uint32_t lanes, const uint32_t* execMask, const uint32_t* storeMask) {
     const batch::Code& code = impl_->compiled.batch();
     lanes = std::min(lanes, code.lanes);
-    batch::Frame& frame = impl_->frame;
+    batch::Frame& frame = impl_->batchFrame;
     frame.lanes = (lanes + batch::kLaneGroup - 1) / batch::kLaneGroup * batch::kLaneGroup;
     frame.backEdges = 0;
     frame.lost = false;
@@ -116,10 +118,12 @@ bool BatchContext::run(uint32_t lanes, const uint32_t* execMask, const uint32_t*
     return !frame.lost;
 }
 
-const uint32_t* BatchContext::liveMask() const { return impl_->live.get(); }
+const uint32_t* BatchContext::liveMask() const {
+    return impl_->live.get();
+}
 
 void BatchContext::setInterpolator(const Interpolator& interpolator) {
-    impl_->frame.interpolator = interpolator;
+    impl_->batchFrame.interpolator = interpolator;
 }
 
 }  // namespace vernier

@@ -15,12 +15,13 @@
 #include "base/simd-inl.h"
 #include "spirv_interp/batch/bytecode.h"
 
-/// Declares a vector operation: `In` is the element type its operands are read as, `Out` the type of its result.
-#define VERNIER_ELEMENT(name, In, Out, parameters, ...)                                                       \
-    struct name {                                                                                             \
-        using InType = In;                                                                                    \
-        using V = hn::Vec<hn::ScalableTag<In>>;                                                               \
-        static HWY_INLINE hn::Vec<hn::ScalableTag<Out>> apply parameters { __VA_ARGS__ }                      \
+/// Declares a vector operation: `In` is the element type its operands are read as, `Out` the type of its
+/// result.
+#define VERNIER_ELEMENT(name, In, Out, parameters, ...)                                  \
+    struct name {                                                                        \
+        using InType = In;                                                               \
+        using V = hn::Vec<hn::ScalableTag<In>>;                                          \
+        static HWY_INLINE hn::Vec<hn::ScalableTag<Out>> apply parameters { __VA_ARGS__ } \
     };
 
 HWY_BEFORE_NAMESPACE();
@@ -71,8 +72,8 @@ class Source<T, true> {
     hn::Vec<hn::ScalableTag<T>> value_;
 };
 
-/// Calls function(lane) for the first lane of every vector and stores what it returns. The row and the count are read
-/// once: for all the compiler knows, storing lanes could change the frame.
+/// Calls function(lane) for the first lane of every vector and stores what it returns. The row and the count
+/// are read once: for all the compiler knows, storing lanes could change the frame.
 template <class F>
 HWY_INLINE void fillRow(const Frame& frame, uint32_t offset, F&& function) {
     auto* row = frame.row<uint32_t>(offset);
@@ -147,7 +148,8 @@ HWY_INLINE void writeLane(const Frame& frame, uint32_t offset, uint32_t lane, T 
     }
 }
 
-/// An operation given as a function of one lane; 4-byte types are rows, 8-byte types pairs of rows, bool is a b1 row.
+/// An operation given as a function of one lane; 4-byte types are rows, 8-byte types pairs of rows, bool is a
+/// b1 row.
 template <auto kFunction>
 struct LaneRunner;
 

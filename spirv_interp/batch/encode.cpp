@@ -11,8 +11,8 @@ namespace {
 
 class Encoder {
   public:
-    Encoder(const MachineCode& machine, const Allocation& allocation, const ScalarFile& scalars, const HandlerTable& handlers,
-            uint32_t lanes)
+    Encoder(const MachineCode& machine, const Allocation& allocation, const ScalarFile& scalars,
+            const HandlerTable& handlers, uint32_t lanes)
         : machine_(machine), allocation_(allocation), scalars_(scalars), handlers_(handlers), lanes_(lanes) {}
 
     Code run() {
@@ -60,12 +60,16 @@ class Encoder {
 
     uint32_t encodeOperand(const Operand& operand, uint32_t here) const {
         switch (operand.kind) {
-            case Operand::Kind::none: return kNone;
-            case Operand::Kind::row: return rowOffset(operand.id, operand.word);
-            case Operand::Kind::label: return places_[machine_.labels[operand.id]] - here;
+            case Operand::Kind::none:
+                return kNone;
+            case Operand::Kind::row:
+                return rowOffset(operand.id, operand.word);
+            case Operand::Kind::label:
+                return places_[machine_.labels[operand.id]] - here;
             case Operand::Kind::scalar:
             case Operand::Kind::mask:
-            case Operand::Kind::number: break;
+            case Operand::Kind::number:
+                break;
         }
         return operand.id;
     }
@@ -88,12 +92,18 @@ class Encoder {
     std::string nameOf(const Operand& operand) const {
         const auto number = [](const char* prefix, uint64_t value) { return prefix + std::to_string(value); };
         switch (operand.kind) {
-            case Operand::Kind::none: return "-";
-            case Operand::Kind::row: return number("r", allocation_.row[operand.id] + operand.word);
-            case Operand::Kind::mask: return number("m", operand.id);
-            case Operand::Kind::label: return number("@", places_[machine_.labels[operand.id]]);
-            case Operand::Kind::number: return std::to_string(operand.id);
-            case Operand::Kind::scalar: break;
+            case Operand::Kind::none:
+                return "-";
+            case Operand::Kind::row:
+                return number("r", allocation_.row[operand.id] + operand.word);
+            case Operand::Kind::mask:
+                return number("m", operand.id);
+            case Operand::Kind::label:
+                return number("@", places_[machine_.labels[operand.id]]);
+            case Operand::Kind::number:
+                return std::to_string(operand.id);
+            case Operand::Kind::scalar:
+                break;
         }
         if (!scalars_.isConstant(operand.id)) return number("s", operand.id);
         char text[16];
@@ -134,8 +144,8 @@ class Encoder {
 
 }  // namespace
 
-Code encode(const MachineCode& machine, const Allocation& allocation, const ScalarFile& scalars, const HandlerTable& handlers,
-            uint32_t lanes) {
+Code encode(const MachineCode& machine, const Allocation& allocation, const ScalarFile& scalars,
+            const HandlerTable& handlers, uint32_t lanes) {
     return Encoder(machine, allocation, scalars, handlers, lanes).run();
 }
 

@@ -2,6 +2,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "spirv_interp/batch/flow.cpp"
 #include "base/simd_targets.h"
+
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -40,7 +41,9 @@ HWY_INLINE hn::Mask<U32> vectorMask(const LaneMask& mask, size_t lane) {
     return hn::LoadMaskBits(kU32, bytes);
 }
 
-inline const Inst* jump(const Inst* inst, uint32_t distance) { return inst + static_cast<int32_t>(distance); }
+inline const Inst* jump(const Inst* inst, uint32_t distance) {
+    return inst + static_cast<int32_t>(distance);
+}
 
 template <bool kScalar>
 const Inst* copy(Frame& frame, const Inst* inst) {
@@ -142,15 +145,16 @@ const Inst* discard(Frame& frame, const Inst* inst) {
     return inst + 1;
 }
 
-const Inst* end(Frame&, const Inst*) { return nullptr; }
+const Inst* end(Frame&, const Inst*) {
+    return nullptr;
+}
 
-/// A quad lies in a 128-bit block: lanes 0 (0,0), 1 (1,0), 2 (0,1), 3 (1,1). Fine derivatives belong to the lane's own
-/// row or column, coarse ones to the first of the quad.
+/// A quad lies in a 128-bit block: lanes 0 (0,0), 1 (1,0), 2 (0,1), 3 (1,1). Fine derivatives belong to the
+/// lane's own row or column, coarse ones to the first of the quad.
 namespace derivative {
 
 VERNIER_ELEMENT(ddxFine, float, float, (V a), return hn::Sub(hn::DupOdd(a), hn::DupEven(a));)
-VERNIER_ELEMENT(ddyFine, float, float, (V a),
-                const hn::RepartitionToWide<U32> pairs;
+VERNIER_ELEMENT(ddyFine, float, float, (V a), const hn::RepartitionToWide<U32> pairs;
                 const auto v = hn::BitCast(pairs, a);
                 const V lower = hn::BitCast(kF32, hn::InterleaveUpper(pairs, v, v));
                 return hn::Sub(lower, hn::BitCast(kF32, hn::InterleaveLower(pairs, v, v)));)
@@ -161,7 +165,8 @@ VERNIER_ELEMENT(ddyCoarse, float, float, (V a), return hn::Sub(hn::Broadcast<2>(
 LaneMask packWords(const uint32_t* words, uint32_t lanes) {
     LaneMask mask;
     for (size_t lane = 0; lane < lanes; lane += hn::Lanes(kU32)) {
-        addLanes(mask, lane, hn::MaskFromVec(hn::BroadcastSignBit(hn::BitCast(kI32, hn::LoadU(kU32, words + lane)))));
+        addLanes(mask, lane,
+                 hn::MaskFromVec(hn::BroadcastSignBit(hn::BitCast(kI32, hn::LoadU(kU32, words + lane)))));
     }
     return mask;
 }
@@ -174,7 +179,9 @@ void spreadWords(const LaneMask& mask, uint32_t* words, uint32_t lanes) {
 
 }  // namespace
 
-MaskFunctions maskFunctions() { return {packWords, spreadWords}; }
+MaskFunctions maskFunctions() {
+    return {packWords, spreadWords};
+}
 
 void addFlow(HandlerTable& table) {
     const auto add = [&](Op op, Handler handler, size_t form = 0) {
@@ -210,10 +217,16 @@ HWY_AFTER_NAMESPACE();
 namespace vernier::batch {
 namespace {
 using GetMaskFunctions = MaskFunctions (*)();
-GetMaskFunctions selectMaskFunctions(Isa isa) { VERNIER_SELECT_ISA(isa, maskFunctions) }
-AddHandlers selectFlow(Isa isa) { VERNIER_SELECT_ISA(isa, addFlow) }
+GetMaskFunctions selectMaskFunctions(Isa isa){VERNIER_SELECT_ISA(isa, maskFunctions)} AddHandlers
+    selectFlow(Isa isa) {
+    VERNIER_SELECT_ISA(isa, addFlow)
+}
 }  // namespace
-void addFlow(Isa isa, HandlerTable& table) { selectFlow(isa)(table); }
-MaskFunctions maskFunctions(Isa isa) { return selectMaskFunctions(isa)(); }
+void addFlow(Isa isa, HandlerTable& table) {
+    selectFlow(isa)(table);
+}
+MaskFunctions maskFunctions(Isa isa) {
+    return selectMaskFunctions(isa)();
+}
 }  // namespace vernier::batch
 #endif

@@ -1,5 +1,5 @@
-// Superinstructions: several IR instructions in one dispatch, with the bits they would give one by one. Found for
-// additions and subtractions whose operands are products used nowhere else.
+// Superinstructions: several IR instructions in one dispatch, with the bits they would give one by one. Found
+// for additions and subtractions whose operands are products used nowhere else.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,8 @@ struct Fusion {
     std::vector<ir::ValueId> operands;  // without the destination
 };
 
-/// By value: it exists only inside the superinstruction of its one user. `definition` and `uses` are by value.
+/// By value: it exists only inside the superinstruction of its one user. `definition` and `uses` are by
+/// value.
 std::vector<bool> fusedValues(const ir::Program& program, const std::vector<const ir::Inst*>& definition,
                               const std::vector<uint32_t>& uses, const std::vector<bool>& scalar);
 

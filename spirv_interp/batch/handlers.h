@@ -8,12 +8,12 @@ namespace vernier::batch {
 
 using AddHandlers = void (*)(HandlerTable&);
 
-void addArithmetic(Isa isa, HandlerTable& table);  // arithmetic.cpp: VECTOR operations, dot products
-void addLaneOps(Isa isa, HandlerTable& table);     // lane_ops.cpp: LANES operations
-void addWide(Isa isa, HandlerTable& table);        // wide.cpp: 64-bit values
+void addArithmetic(Isa isa, HandlerTable& table);           // arithmetic.cpp: VECTOR operations, dot products
+void addLaneOps(Isa isa, HandlerTable& table);              // lane_ops.cpp: LANES operations
+void addWide(Isa isa, HandlerTable& table);                 // wide.cpp: 64-bit values
 void addMath(Isa isa, MathTier tier, HandlerTable& table);  // math.cpp: transcendental functions
-void addFlow(Isa isa, HandlerTable& table);        // flow.cpp: masks, jumps, moves, derivatives
-void addMemory(Isa isa, HandlerTable& table);      // memory.cpp: buffers, local memory, indexed inputs
-void addImages(HandlerTable& table);               // images.cpp: image instructions, interpolation
+void addFlow(Isa isa, HandlerTable& table);                 // flow.cpp: masks, jumps, moves, derivatives
+void addMemory(Isa isa, HandlerTable& table);  // memory.cpp: buffers, local memory, indexed inputs
+void addImages(HandlerTable& table);           // images.cpp: image instructions, interpolation
 
 }  // namespace vernier::batch

@@ -1,5 +1,5 @@
-// Image instructions and interpolation at other places: calls out to the owner of images and planes, one per batch where
-// descriptors do not vary between lanes.
+// Image instructions and interpolation at other places: calls out to the owner of images and planes, one per
+// batch where descriptors do not vary between lanes.
 #include <algorithm>
 
 #include "spirv_interp/batch/handlers.h"
@@ -7,9 +7,10 @@
 namespace vernier::batch {
 namespace {
 
-/// The image of a descriptor index, joined with the sampler of another descriptor where the instruction names one. Without
-/// a call when there is no such descriptor.
-ImageBinding bindingOf(const Frame& frame, const ir::ImageOp& op, uint32_t imageIndex, uint32_t samplerIndex) {
+/// The image of a descriptor index, joined with the sampler of another descriptor where the instruction names
+/// one. Without a call when there is no such descriptor.
+ImageBinding bindingOf(const Frame& frame, const ir::ImageOp& op, uint32_t imageIndex,
+                       uint32_t samplerIndex) {
     const ResourceBindings& bindings = *frame.bindings;
     if (bindings.images == nullptr || imageIndex >= bindings.count[op.imageResource]) return {};
     const ImageBinding& image = bindings.images[bindings.base[op.imageResource] + imageIndex];
@@ -22,7 +23,9 @@ ImageBinding bindingOf(const Frame& frame, const ir::ImageOp& op, uint32_t image
 class ImageRunner {
   public:
     ImageRunner(Frame& frame, const ImageSite& site)
-        : frame_(frame), site_(site), op_(frame.program->imageOps[site.op]),
+        : frame_(frame),
+          site_(site),
+          op_(frame.program->imageOps[site.op]),
           active_(site.effects ? frame.masks[kCurrentMask] & frame.live : frame.masks[kCurrentMask]) {
         call_.op = &op_;
         call_.lanes = frame.lanes;
@@ -121,7 +124,8 @@ const Inst* interpolate(Frame& frame, const Inst* inst) {
     if (frame.interpolator.at == nullptr) {
         std::fill_n(result, frame.lanes, 0.0f);
     } else {
-        frame.interpolator.at(frame.interpolator.self, in[3], in[4], frame.lanes, rowAt(in[1]), rowAt(in[2]), result);
+        frame.interpolator.at(frame.interpolator.self, in[3], in[4], frame.lanes, rowAt(in[1]), rowAt(in[2]),
+                              result);
     }
     return inst + instsFor(5);
 }

@@ -2,6 +2,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "spirv_interp/batch/lane_ops.cpp"
 #include "base/simd_targets.h"
+
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -32,11 +33,21 @@ constexpr auto& findUMsb = scalar::findUMsb<uint32_t>;
 constexpr auto& addCarry = scalar::addCarry<uint32_t>;
 constexpr auto& subBorrow = scalar::subBorrow<uint32_t>;
 constexpr auto& fldexp = scalar::ldexp<float>;
-float ffrexpMantissa(float x) { return scalar::frexp(x).mantissa; }
-int32_t ffrexpExponent(float x) { return scalar::frexp(x).exponent; }
-uint32_t packHalf(float low, float high) { return scalar::toHalf(low) | scalar::toHalf(high) << 16; }
-float unpackHalfLow(uint32_t halves) { return scalar::fromHalf(halves & 0xFFFFu); }
-float unpackHalfHigh(uint32_t halves) { return scalar::fromHalf(halves >> 16); }
+float ffrexpMantissa(float x) {
+    return scalar::frexp(x).mantissa;
+}
+int32_t ffrexpExponent(float x) {
+    return scalar::frexp(x).exponent;
+}
+uint32_t packHalf(float low, float high) {
+    return scalar::toHalf(low) | scalar::toHalf(high) << 16;
+}
+float unpackHalfLow(uint32_t halves) {
+    return scalar::fromHalf(halves & 0xFFFFu);
+}
+float unpackHalfHigh(uint32_t halves) {
+    return scalar::fromHalf(halves >> 16);
+}
 /// Denormal halves become zeros, as OpQuantizeToF16 asks.
 float quantizeF16(float x) {
     const uint32_t half = scalar::toHalf(x);
@@ -57,8 +68,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace vernier::batch {
 namespace {
-AddHandlers selectLaneOps(Isa isa) { VERNIER_SELECT_ISA(isa, addLaneOps) }
+AddHandlers selectLaneOps(Isa isa) {
+    VERNIER_SELECT_ISA(isa, addLaneOps)
+}
 }  // namespace
-void addLaneOps(Isa isa, HandlerTable& table) { selectLaneOps(isa)(table); }
+void addLaneOps(Isa isa, HandlerTable& table) {
+    selectLaneOps(isa)(table);
+}
 }  // namespace vernier::batch
 #endif

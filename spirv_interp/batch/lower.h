@@ -1,6 +1,6 @@
-// From the IR to machine code. A program becomes two pieces: draw-rate code, straight-line, run once per draw on a batch of
-// one lane group, which leaves its results in the scalar file; and the code of a batch, with lane masks for its control
-// flow.
+// From the IR to machine code. A program becomes two pieces: draw-rate code, straight-line, run once per draw
+// on a batch of one lane group, which leaves its results in the scalar file; and the code of a batch, with
+// lane masks for its control flow.
 #pragma once
 
 #include <vector>
@@ -22,8 +22,8 @@ struct LoweredProgram {
 /// `program` must verify. An operation on types it is not defined for is refused.
 Result<LoweredProgram> lower(const ir::Program& program);
 
-/// Moves that happen at once, put in an order in which none destroys the source of another. `fresh` makes a register for
-/// a cycle.
+/// Moves that happen at once, put in an order in which none destroys the source of another. `fresh` makes a
+/// register for a cycle.
 struct Move {
     Operand to;    // written row
     Operand from;  // row or scalar

@@ -1,5 +1,5 @@
-// Machine code before register allocation: the operations of ops.def on virtual registers. lower.h makes it from the IR,
-// allocate.h gives its registers rows, encode.h turns it into Insts.
+// Machine code before register allocation: the operations of ops.def on virtual registers. lower.h makes it
+// from the IR, allocate.h gives its registers rows, encode.h turns it into Insts.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,9 @@ inline constexpr uint32_t kNone = ~0u;
 struct Operand {
     enum class Kind : uint8_t { none, row, scalar, mask, label, number };
     Kind kind = Kind::none;
-    uint8_t word = 0;     // of a wide register: 1 = high
-    bool written = false; // a row that the operation writes
-    uint32_t id = 0;      // virtual register, scalar, mask slot, label or number
+    uint8_t word = 0;      // of a wide register: 1 = high
+    bool written = false;  // a row that the operation writes
+    uint32_t id = 0;       // virtual register, scalar, mask slot, label or number
 
     static Operand read(uint32_t reg, uint8_t word = 0) { return {Kind::row, word, false, reg}; }
     static Operand write(uint32_t reg, uint8_t word = 0) { return {Kind::row, word, true, reg}; }
@@ -42,15 +42,15 @@ struct MachineInst {
 /// A register of `lanes` words, or two of them for 64-bit values.
 struct VirtualRegister {
     bool wide = false;
-    /// Header of the innermost loop whose every round defines the register anew; kNone outside loops. A register that is
-    /// alive somewhere in a loop that is not its own must survive all rounds of it.
+    /// Header of the innermost loop whose every round defines the register anew; kNone outside loops. A
+    /// register that is alive somewhere in a loop that is not its own must survive all rounds of it.
     uint32_t loop = kNone;
     uint32_t phiOf = kNone;  // header of the loop whose phi it is
 };
 
 struct MachineLoop {
-    uint32_t header = 0;        // IR block
-    uint32_t parent = kNone;    // header of the next loop out
+    uint32_t header = 0;          // IR block
+    uint32_t parent = kNone;      // header of the next loop out
     uint32_t begin = 0, end = 0;  // positions of its first and last instruction
     uint32_t backEdges = 0;
 };
@@ -58,13 +58,13 @@ struct MachineLoop {
 struct MachineCode {
     std::vector<MachineInst> insts;
     std::vector<VirtualRegister> registers;
-    std::vector<MachineLoop> loops;      // outer before inner
-    std::vector<uint32_t> labels;        // position
-    uint32_t masks = 1;                  // slots
-    std::vector<uint32_t> inputs;        // by Program::inputs: register, or kNone
-    std::vector<uint32_t> outputs;       // by Program::outputs: register, or kNone
-    std::vector<ImageSite> imageSites;   // rows not filled in yet
-    uint32_t indexedRows = 0;            // length of the table of indexed inputs
+    std::vector<MachineLoop> loops;     // outer before inner
+    std::vector<uint32_t> labels;       // position
+    uint32_t masks = 1;                 // slots
+    std::vector<uint32_t> inputs;       // by Program::inputs: register, or kNone
+    std::vector<uint32_t> outputs;      // by Program::outputs: register, or kNone
+    std::vector<ImageSite> imageSites;  // rows not filled in yet
+    uint32_t indexedRows = 0;           // length of the table of indexed inputs
 };
 
 /// Calls function(field) for every row of an image site, in the order of MachineInst::hidden.

@@ -1,10 +1,11 @@
-// Transcendental functions on vectors, written once for every tier and included once per SIMD target. Only + - * / sqrt,
-// rounding and bit operations, never fused, so that every instruction set gives the same bits. What a lane gets depends on
-// that lane alone.
+// Transcendental functions on vectors, written once for every tier and included once per SIMD target. Only +
+// - * / sqrt, rounding and bit operations, never fused, so that every instruction set gives the same bits.
+// What a lane gets depends on that lane alone.
 //
 // A Tier names the lanes it computes in and its polynomials (math_coefficients.h):
 //   Fast      float lanes, short polynomials: about 2^-12 relative
-//   Standard  float lanes: well inside the precision table of the Vulkan specification ("Precision and Operation of SPIR-V
+//   Standard  float lanes: well inside the precision table of the Vulkan specification ("Precision and
+//   Operation of SPIR-V
 //             Instructions")
 //   Fine      double lanes, rounded to float at the end
 #if defined(VERNIER_BATCH_MATH_INL_H) == defined(HWY_TARGET_TOGGLE)
@@ -37,8 +38,8 @@ struct Fine : coefficients::Fine {
     using T = double;
 };
 
-/// Constants of a lane type. The parts of pi/2 and ln 2 have so few bits that their products with the multiples that
-/// occur are exact (Cody and Waite, "Software Manual for the Elementary Functions", 1980).
+/// Constants of a lane type. The parts of pi/2 and ln 2 have so few bits that their products with the
+/// multiples that occur are exact (Cody and Waite, "Software Manual for the Elementary Functions", 1980).
 template <class T>
 struct Lane;
 template <>
@@ -125,8 +126,8 @@ struct Functions {
     }
     static HWY_INLINE V exp(V x) { return expScaled(x, 0); }
 
-    /// x = 2^exponent * mantissa with the mantissa in [sqrt(1/2), sqrt(2)); s = (mantissa - 1) / (mantissa + 1), and
-    /// log(mantissa) = 2 atanh(s) = 2 s + 2 s^3 logarithm(s^2).
+    /// x = 2^exponent * mantissa with the mantissa in [sqrt(1/2), sqrt(2)); s = (mantissa - 1) / (mantissa +
+    /// 1), and log(mantissa) = 2 atanh(s) = 2 s + 2 s^3 logarithm(s^2).
     struct Logarithm {
         V exponent, s;
         HWY_INLINE V ofMantissa() const {
@@ -145,7 +146,8 @@ struct Functions {
         const V mantissa = number(hn::Add(hn::And(moved, setBits(kMantissaBits)), setBits(kRootHalf)));
         // The biased exponent becomes a number by standing in the low mantissa bits of 2^mantissa.
         const T base = static_cast<T>(typename L::Bits{1} << L::kMantissa);
-        const V biased = hn::Sub(number(hn::Or(hn::ShiftRight<L::kMantissa>(moved), bits(set(base)))), set(base));
+        const V biased =
+            hn::Sub(number(hn::Or(hn::ShiftRight<L::kMantissa>(moved), bits(set(base)))), set(base));
         const V bias = choose(denormal, set(T{L::kBias + L::kMantissa + 1}), set(T{L::kBias}));
         return {hn::Sub(biased, bias), hn::Div(hn::Sub(mantissa, set(1)), hn::Add(mantissa, set(1)))};
     }
@@ -195,11 +197,16 @@ struct Functions {
                 // Lanes of their own in double: which lanes share a vector does not matter.
                 using Wide = Functions<Fine>;
                 const hn::Half<DT> half;
-                const auto lower = Wide::reduceFar(hn::PromoteTo(typename Wide::DT(), hn::LowerHalf(half, x)));
-                const auto upper = Wide::reduceFar(hn::PromoteTo(typename Wide::DT(), hn::UpperHalf(half, x)));
-                rest = choose(far, hn::Combine(DT(), hn::DemoteTo(half, upper.rest), hn::DemoteTo(half, lower.rest)),
-                              rest);
-                n = choose(far, hn::Combine(DT(), hn::DemoteTo(half, upper.turns), hn::DemoteTo(half, lower.turns)), n);
+                const auto lower =
+                    Wide::reduceFar(hn::PromoteTo(typename Wide::DT(), hn::LowerHalf(half, x)));
+                const auto upper =
+                    Wide::reduceFar(hn::PromoteTo(typename Wide::DT(), hn::UpperHalf(half, x)));
+                rest = choose(
+                    far, hn::Combine(DT(), hn::DemoteTo(half, upper.rest), hn::DemoteTo(half, lower.rest)),
+                    rest);
+                n = choose(
+                    far, hn::Combine(DT(), hn::DemoteTo(half, upper.turns), hn::DemoteTo(half, lower.turns)),
+                    n);
             } else {
                 rest = choose(far, hn::Mul(x, set(0)), rest);
             }
@@ -209,8 +216,8 @@ struct Functions {
     struct FarAngle {
         V rest, turns;  // turns: multiples of pi/2, in [0, 4)
     };
-    /// Angles up to 2^31; beyond, where neighbouring floats are many turns apart, every angle counts as 0 (and an infinite
-    /// one as NaN).
+    /// Angles up to 2^31; beyond, where neighbouring floats are many turns apart, every angle counts as 0
+    /// (and an infinite one as NaN).
     static HWY_INLINE FarAngle reduceFar(V x) {
         const V known = choose(hn::Gt(hn::Abs(x), set(L::kReducible)), hn::Mul(x, set(0)), x);
         const V n = hn::Round(hn::Mul(known, set(T{0x1.45f306dc9c883p-1})));
@@ -235,7 +242,7 @@ struct Functions {
         const SineCosine k = kernels(angle.rest);
         const VBits quadrant = hn::Add(angle.quadrant, setBits(quarters));
         const V value = choose(isOdd(quadrant), k.cosine, k.sine);
-        const VBits sign = hn::ShiftLeft<L::kMantissa == 23 ? 30 : 62>(hn::And(quadrant, setBits(2)));
+        const VBits sign = hn::ShiftLeft < L::kMantissa == 23 ? 30 : 62 > (hn::And(quadrant, setBits(2)));
         return hn::Xor(value, number(sign));
     }
     static HWY_INLINE V sin(V x) { return turned(x, 0); }
@@ -260,7 +267,8 @@ struct Functions {
     }
     static constexpr T kPi = static_cast<T>(0x1.921fb54442d18p+1);
     /// What is left of pi/2 and pi after rounding to T.
-    static constexpr T kHalfPiLow = sizeof(T) == 4 ? static_cast<T>(-0x1.777a5cp-25) : static_cast<T>(0x1.1a62633145c07p-54);
+    static constexpr T kHalfPiLow =
+        sizeof(T) == 4 ? static_cast<T>(-0x1.777a5cp-25) : static_cast<T>(0x1.1a62633145c07p-54);
     static HWY_INLINE V asin(V x) {
         const V magnitude = hn::Abs(x);
         const Arcsine a = arcsine(magnitude);
@@ -277,7 +285,8 @@ struct Functions {
         return choose(a.upper, far, near);
     }
 
-    /// atan(low / high) for 0 <= low <= high: below tan(pi/8) directly, above as pi/4 + atan((low - high) / (low + high)).
+    /// atan(low / high) for 0 <= low <= high: below tan(pi/8) directly, above as pi/4 + atan((low - high) /
+    /// (low + high)).
     static HWY_INLINE V arctangent(V low, V high) {
         const M upper = hn::Gt(low, hn::Mul(high, set(T{0x1.a8279ap-2})));
         const V numerator = choose(upper, hn::Sub(low, high), low);
@@ -292,7 +301,8 @@ struct Functions {
         const M infinite = hn::Eq(largest, inf), huge = hn::Gt(largest, set(L::kLargest));
         const V shrink = choose(huge, set(T{0.25}), set(1));
         // inf / inf is taken as 1, anything else / inf as 0.
-        const V low = choose(infinite, hn::IfThenElseZero(hn::Eq(least, inf), set(1)), hn::Mul(least, shrink));
+        const V low =
+            choose(infinite, hn::IfThenElseZero(hn::Eq(least, inf), set(1)), hn::Mul(least, shrink));
         const V high = choose(infinite, set(1), hn::Mul(largest, shrink));
         V angle = arctangent(low, high);
         angle = choose(hn::Gt(a, b), hn::Sub(set(kPi / 2), hn::Sub(angle, set(kHalfPiLow))), angle);
@@ -310,7 +320,8 @@ struct Functions {
         return choose(hn::IsNaN(x), x, hn::Or(hn::Abs(angle), signOf(x)));
     }
 
-    /// From half of e^|x|, which stays finite as long as the results do; near zero, where that cancels, by a polynomial.
+    /// From half of e^|x|, which stays finite as long as the results do; near zero, where that cancels, by a
+    /// polynomial.
     static HWY_INLINE V sinh(V x) {
         const V a = hn::Abs(x);
         const V half = expScaled(a, -1);
@@ -338,7 +349,8 @@ struct Functions {
         const V correction = hn::Div(lost, w);
         return choose(hn::Lt(u, set(L::kLargest)), hn::Add(log(w), correction), log(u));
     }
-    /// sign(x) log(|x| + sqrt(x^2 + 1)); written with log1p to keep the accuracy of small x, as log(2 |x|) for large.
+    /// sign(x) log(|x| + sqrt(x^2 + 1)); written with log1p to keep the accuracy of small x, as log(2 |x|)
+    /// for large.
     static HWY_INLINE V asinh(V x) {
         const V a = hn::Abs(x);
         const V square = hn::Mul(a, a);

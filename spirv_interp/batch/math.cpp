@@ -2,6 +2,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "spirv_interp/batch/math.cpp"
 #include "base/simd_targets.h"
+
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -13,7 +14,8 @@ HWY_BEFORE_NAMESPACE();
 namespace vernier::batch::HWY_NAMESPACE {
 namespace {
 
-/// Calls `Function`, written for the lanes of `Tier`, with float vectors: for tiers in double, half a vector at a time.
+/// Calls `Function`, written for the lanes of `Tier`, with float vectors: for tiers in double, half a vector
+/// at a time.
 template <class Tier, class Function, class... V>
 HWY_INLINE VF callFor(V... operands) {
     if constexpr (sizeof(typename Tier::T) == sizeof(float)) {
@@ -37,13 +39,13 @@ struct Element {
 };
 
 /// Functions<Tier>::name as a type.
-#define VERNIER_MATH(irName, name)                                  \
-    template <class Tier>                                           \
-    struct irName {                                                 \
-        template <class... V>                                       \
-        static HWY_INLINE auto apply(V... operands) {               \
-            return math::Functions<Tier>::name(operands...);        \
-        }                                                           \
+#define VERNIER_MATH(irName, name)                           \
+    template <class Tier>                                    \
+    struct irName {                                          \
+        template <class... V>                                \
+        static HWY_INLINE auto apply(V... operands) {        \
+            return math::Functions<Tier>::name(operands...); \
+        }                                                    \
     };
 namespace function {
 VERNIER_MATH(fsin, sin)
@@ -76,9 +78,15 @@ void addTier(HandlerTable& table) {
 
 }  // namespace
 
-void addFastMath(HandlerTable& table) { addTier<math::Fast>(table); }
-void addStandardMath(HandlerTable& table) { addTier<math::Standard>(table); }
-void addFineMath(HandlerTable& table) { addTier<math::Fine>(table); }
+void addFastMath(HandlerTable& table) {
+    addTier<math::Fast>(table);
+}
+void addStandardMath(HandlerTable& table) {
+    addTier<math::Standard>(table);
+}
+void addFineMath(HandlerTable& table) {
+    addTier<math::Fine>(table);
+}
 
 }  // namespace vernier::batch::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -86,17 +94,21 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace vernier::batch {
 namespace {
-AddHandlers selectFast(Isa isa) { VERNIER_SELECT_ISA(isa, addFastMath) }
-AddHandlers selectStandard(Isa isa) { VERNIER_SELECT_ISA(isa, addStandardMath) }
-AddHandlers selectFine(Isa isa) { VERNIER_SELECT_ISA(isa, addFineMath) }
+AddHandlers selectFast(Isa isa){VERNIER_SELECT_ISA(isa, addFastMath)} AddHandlers
+    selectStandard(Isa isa){VERNIER_SELECT_ISA(isa, addStandardMath)} AddHandlers selectFine(Isa isa) {
+    VERNIER_SELECT_ISA(isa, addFineMath)
+}
 }  // namespace
 
 void addMath(Isa isa, MathTier tier, HandlerTable& table) {
     switch (tier) {
-        case MathTier::fast: return selectFast(isa)(table);
-        case MathTier::standard: return selectStandard(isa)(table);
+        case MathTier::fast:
+            return selectFast(isa)(table);
+        case MathTier::standard:
+            return selectStandard(isa)(table);
         case MathTier::fine:
-        case MathTier::reference: return selectFine(isa)(table);
+        case MathTier::reference:
+            return selectFine(isa)(table);
     }
 }
 }  // namespace vernier::batch

@@ -1,8 +1,9 @@
-// Buffers, invocation-local memory and indexed inputs. No address outside a buffer is ever formed: an offset is checked
-// against the size of the binding first. Stores and atomics work in lane order.
+// Buffers, invocation-local memory and indexed inputs. No address outside a buffer is ever formed: an offset
+// is checked against the size of the binding first. Stores and atomics work in lane order.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "spirv_interp/batch/memory.cpp"
 #include "base/simd_targets.h"
+
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -24,7 +25,8 @@ inline BufferBinding bufferOf(const Frame& frame, uint32_t resource, uint32_t in
     return buffer.data == nullptr ? BufferBinding{} : buffer;
 }
 
-/// The word at a byte offset, or nullptr outside the buffer. Offsets are whole words: the low two bits are dropped.
+/// The word at a byte offset, or nullptr outside the buffer. Offsets are whole words: the low two bits are
+/// dropped.
 inline uint32_t* wordAt(const BufferBinding& buffer, uint32_t offset) {
     offset &= ~3u;
     if (buffer.size < 4 || offset > buffer.size - 4) return nullptr;
@@ -67,7 +69,8 @@ void spreadWord(const Frame& frame, uint32_t row, uint32_t value) {
 
 /// Loads one word per lane from one buffer.
 template <bool kScalar>
-void gather(const Frame& frame, uint32_t row, const BufferBinding& buffer, const LaneSource<kScalar>& offsets) {
+void gather(const Frame& frame, uint32_t row, const BufferBinding& buffer,
+            const LaneSource<kScalar>& offsets) {
     if (buffer.size < 4 || offsets.isUniform(frame.lanes)) {
         spreadWord(frame, row, loadWord(buffer, offsets.at(0)));
         return;
@@ -107,7 +110,9 @@ const Inst* loadBuffer(Frame& frame, const Inst* inst) {
     return inst + 1;
 }
 
-LaneMask effectLanes(const Frame& frame) { return frame.masks[kCurrentMask] & frame.live; }
+LaneMask effectLanes(const Frame& frame) {
+    return frame.masks[kCurrentMask] & frame.live;
+}
 
 template <size_t kForm>
 const Inst* storeBuffer(Frame& frame, const Inst* inst) {
@@ -136,7 +141,8 @@ template <class F>
 uint32_t exchangeBy(uint32_t* word, F&& change) {
     std::atomic_ref target(*word);
     uint32_t old = target.load(std::memory_order_relaxed);
-    while (!target.compare_exchange_weak(old, change(old), std::memory_order_acq_rel, std::memory_order_relaxed)) {
+    while (!target.compare_exchange_weak(old, change(old), std::memory_order_acq_rel,
+                                         std::memory_order_relaxed)) {
     }
     return old;
 }
@@ -145,21 +151,36 @@ uint32_t atomic(ir::AtomicOp operation, uint32_t* word, uint32_t value, uint32_t
     std::atomic_ref target(*word);
     const auto asSigned = [](uint32_t x) { return static_cast<int32_t>(x); };
     switch (operation) {
-        case ir::AtomicOp::add: return target.fetch_add(value);
-        case ir::AtomicOp::sub: return target.fetch_sub(value);
-        case ir::AtomicOp::iand: return target.fetch_and(value);
-        case ir::AtomicOp::ior: return target.fetch_or(value);
-        case ir::AtomicOp::ixor: return target.fetch_xor(value);
-        case ir::AtomicOp::exchange: return target.exchange(value);
-        case ir::AtomicOp::load: return target.load();
-        case ir::AtomicOp::store: target.store(value); return 0;
+        case ir::AtomicOp::add:
+            return target.fetch_add(value);
+        case ir::AtomicOp::sub:
+            return target.fetch_sub(value);
+        case ir::AtomicOp::iand:
+            return target.fetch_and(value);
+        case ir::AtomicOp::ior:
+            return target.fetch_or(value);
+        case ir::AtomicOp::ixor:
+            return target.fetch_xor(value);
+        case ir::AtomicOp::exchange:
+            return target.exchange(value);
+        case ir::AtomicOp::load:
+            return target.load();
+        case ir::AtomicOp::store:
+            target.store(value);
+            return 0;
         case ir::AtomicOp::smin:
-            return exchangeBy(word, [&](uint32_t old) { return asSigned(old) < asSigned(value) ? old : value; });
+            return exchangeBy(word,
+                              [&](uint32_t old) { return asSigned(old) < asSigned(value) ? old : value; });
         case ir::AtomicOp::smax:
-            return exchangeBy(word, [&](uint32_t old) { return asSigned(old) > asSigned(value) ? old : value; });
-        case ir::AtomicOp::umin: return exchangeBy(word, [&](uint32_t old) { return old < value ? old : value; });
-        case ir::AtomicOp::umax: return exchangeBy(word, [&](uint32_t old) { return old > value ? old : value; });
-        case ir::AtomicOp::compareExchange: target.compare_exchange_strong(comparator, value); return comparator;
+            return exchangeBy(word,
+                              [&](uint32_t old) { return asSigned(old) > asSigned(value) ? old : value; });
+        case ir::AtomicOp::umin:
+            return exchangeBy(word, [&](uint32_t old) { return old < value ? old : value; });
+        case ir::AtomicOp::umax:
+            return exchangeBy(word, [&](uint32_t old) { return old > value ? old : value; });
+        case ir::AtomicOp::compareExchange:
+            target.compare_exchange_strong(comparator, value);
+            return comparator;
     }
     return 0;
 }
@@ -245,8 +266,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace vernier::batch {
 namespace {
-AddHandlers selectMemory(Isa isa) { VERNIER_SELECT_ISA(isa, addMemory) }
+AddHandlers selectMemory(Isa isa) {
+    VERNIER_SELECT_ISA(isa, addMemory)
+}
 }  // namespace
-void addMemory(Isa isa, HandlerTable& table) { selectMemory(isa)(table); }
+void addMemory(Isa isa, HandlerTable& table) {
+    selectMemory(isa)(table);
+}
 }  // namespace vernier::batch
 #endif

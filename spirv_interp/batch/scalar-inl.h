@@ -1,5 +1,5 @@
-// Integer and float operations on one value, for the lane-at-a-time handlers of both widths. Total functions: no input is
-// undefined behaviour.
+// Integer and float operations on one value, for the lane-at-a-time handlers of both widths. Total functions:
+// no input is undefined behaviour.
 #if defined(VERNIER_BATCH_SCALAR_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef VERNIER_BATCH_SCALAR_INL_H
 #undef VERNIER_BATCH_SCALAR_INL_H

@@ -24,7 +24,9 @@ constexpr std::array<OpFacts, kOpCount> kFacts{{
 #include "spirv_interp/batch/ops.def"
 }};
 
-const OpFacts& factsOf(Op op) { return kFacts[static_cast<size_t>(op)]; }
+const OpFacts& factsOf(Op op) {
+    return kFacts[static_cast<size_t>(op)];
+}
 
 /// The elementwise operation with this name.
 std::optional<Op> elementNamed(std::string_view name, std::string_view suffix) {
@@ -38,10 +40,18 @@ std::optional<Op> elementNamed(std::string_view name, std::string_view suffix) {
 
 }  // namespace
 
-std::string_view opName(Op op) { return factsOf(op).name; }
-size_t operandCount(Op op) { return factsOf(op).operands; }
-bool isVectorOp(Op op) { return factsOf(op).family == Family::vector; }
-bool isWideOp(Op op) { return factsOf(op).family == Family::wide; }
+std::string_view opName(Op op) {
+    return factsOf(op).name;
+}
+size_t operandCount(Op op) {
+    return factsOf(op).operands;
+}
+bool isVectorOp(Op op) {
+    return factsOf(op).family == Family::vector;
+}
+bool isWideOp(Op op) {
+    return factsOf(op).family == Family::wide;
+}
 
 std::optional<Op> elementOp(const ir::Program& program, const ir::Inst& inst) {
     const auto operands = program.operandsOf(inst);
@@ -49,10 +59,14 @@ std::optional<Op> elementOp(const ir::Program& program, const ir::Inst& inst) {
     const bool wideFrom = ir::isWide(operandType), wideTo = ir::isWide(inst.type);
     switch (inst.op) {
         // A b1 is a word of zeros or ones: logic on it is logic on integers.
-        case ir::Op::band: return Op::iand;
-        case ir::Op::bor: return Op::ior;
-        case ir::Op::bxor: return Op::ixor;
-        case ir::Op::bnot: return Op::inot;
+        case ir::Op::band:
+            return Op::iand;
+        case ir::Op::bor:
+            return Op::ior;
+        case ir::Op::bxor:
+            return Op::ixor;
+        case ir::Op::bnot:
+            return Op::inot;
         case ir::Op::ieq:
         case ir::Op::ine:
             if (operandType == ir::Type::b1) return inst.op == ir::Op::ieq ? Op::ieq : Op::ine;
@@ -60,15 +74,19 @@ std::optional<Op> elementOp(const ir::Program& program, const ir::Inst& inst) {
         case ir::Op::zext:
             if (operandType == ir::Type::b1) return wideTo ? Op::boolTo64 : Op::boolToInt;
             return Op::zextTo64;
-        case ir::Op::sext: return Op::sextTo64;
+        case ir::Op::sext:
+            return Op::sextTo64;
         case ir::Op::ftos:
         case ir::Op::ftou:
         case ir::Op::stof:
         case ir::Op::utof:
         case ir::Op::ftof:
-            return elementNamed(ir::opInfo(inst.op).name,
-                                wideFrom && wideTo ? "64" : wideFrom ? "From64" : wideTo ? "To64" : "");
-        default: break;
+            return elementNamed(ir::opInfo(inst.op).name, wideFrom && wideTo ? "64"
+                                                          : wideFrom         ? "From64"
+                                                          : wideTo           ? "To64"
+                                                                             : "");
+        default:
+            break;
     }
     return elementNamed(ir::opInfo(inst.op).name, wideFrom ? "64" : "");
 }

@@ -1,5 +1,5 @@
-// Control flow: hand-written cases, and random structured programs against the plain evaluator, on every instruction set,
-// for many lane counts and masks.
+// Control flow: hand-written cases, and random structured programs against the plain evaluator, on every
+// instruction set, for many lane counts and masks.
 #include <random>
 
 #include <gtest/gtest.h>
@@ -42,11 +42,13 @@ void checkAgainstEvaluator(const ir::Program& program, const std::vector<std::ve
         for (const auto& words : inputs) own.push_back(words[lane]);
         const test::Evaluation expected = test::evaluateInvocation(program, own, uniform);
         const bool stored = setup.store.empty() || setup.store[lane] != 0;
-        ASSERT_EQ(run.live[lane], stored && !expected.killed && !expected.demoted ? ~0u : 0u) << "lane " << lane;
+        ASSERT_EQ(run.live[lane], stored && !expected.killed && !expected.demoted ? ~0u : 0u)
+            << "lane " << lane;
         if (expected.killed) continue;
         for (uint32_t slot = 0; slot < program.outputs.size(); ++slot) {
             ASSERT_EQ(run.outputs[slot][lane], expected.outputs[slot])
-                << "lane " << lane << " output " << slot << " of " << setup.lanes << " lanes on " << isaName(setup.isa);
+                << "lane " << lane << " output " << slot << " of " << setup.lanes << " lanes on "
+                << isaName(setup.isa);
         }
     }
 }
@@ -76,13 +78,16 @@ TEST(BatchFlow, RandomStructuredPrograms) {
                 setup.store[lane] = random() % 4 != 0 ? setup.exec[lane] : 0u;
             }
         }
-        // Helpers differ from the evaluator's invocations only in what isHelper tells, which these programs do not ask.
+        // Helpers differ from the evaluator's invocations only in what isHelper tells, which these programs
+        // do not ask.
         for (const Isa isa : test::isas()) {
             setup.isa = isa;
             checkAgainstEvaluator(program, inputs, uniform, setup);
             if (HasFatalFailure()) {
-                FAIL() << "seed " << seed << "\n" << ir::print(program)
-                       << (*BatchProgram::compile(program, {isa, MathTier::standard, setup.capacity}))->disassemble();
+                FAIL() << "seed " << seed << "\n"
+                       << ir::print(program)
+                       << (*BatchProgram::compile(program, {isa, MathTier::standard, setup.capacity}))
+                              ->disassemble();
             }
         }
     }

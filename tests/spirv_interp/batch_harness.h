@@ -20,7 +20,8 @@ bool sameBits(const std::vector<float>& a, const std::vector<float>& b);
 ir::Program parseProgram(const std::string& text);
 
 /// `op` on f32 rows, through a program of its own.
-std::vector<float> evaluate(ir::Op op, const std::vector<std::vector<float>>& operands, Isa isa, MathTier tier);
+std::vector<float> evaluate(ir::Op op, const std::vector<std::vector<float>>& operands, Isa isa,
+                            MathTier tier);
 
 /// What a run gave: words of every output by slot, and the live mask.
 struct RunResult {
@@ -33,14 +34,15 @@ struct RunResult {
 struct RunSetup {
     Isa isa = Isa::sse4;
     MathTier tier = MathTier::standard;
-    uint32_t capacity = 64;  // BatchOptions::lanes
-    uint32_t lanes = 64;     // lanes to run
+    uint32_t capacity = 64;             // BatchOptions::lanes
+    uint32_t lanes = 64;                // lanes to run
     std::vector<uint32_t> exec, store;  // empty: all
     ResourceBindings bindings;
     BatchContext::Interpolator interpolator;
 };
 
 /// Runs once; inputs[slot][lane] are words.
-RunResult runBatch(const ir::Program& program, const std::vector<std::vector<uint32_t>>& inputs, const RunSetup& setup);
+RunResult runBatch(const ir::Program& program, const std::vector<std::vector<uint32_t>>& inputs,
+                   const RunSetup& setup);
 
 }  // namespace vernier::test

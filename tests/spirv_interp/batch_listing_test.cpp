@@ -7,7 +7,8 @@ namespace vernier {
 namespace {
 
 std::string listing(const std::string& text) {
-    const auto compiled = BatchProgram::compile(test::parseProgram(text), {Isa::sse4, MathTier::standard, 64});
+    const auto compiled =
+        BatchProgram::compile(test::parseProgram(text), {Isa::sse4, MathTier::standard, 64});
     return compiled.ok() ? (*compiled)->disassemble() : compiled.error().message;
 }
 
@@ -34,7 +35,104 @@ b0:
   storeOutput #0 %11
   ret
 )"),
-              "");
+              R"(registers 2
+input 0 r0
+input 1 r1
+output 0 r0
+draw:
+    0  loadBuffer r0, 0x00000000, 0x00000000, 0
+    1  keepScalar 0, r0
+    2  loadBuffer r1, 0x00000000, 0x00000004, 0
+    3  fmul r0, r0, r1
+    4  keepScalar 1, r0
+    5  end
+batch:
+    0  dot2Scalar r0, r0, s0, r1, s1
+    2  fclamp r0, r0, 0x00000000, 0x3f800000
+    3  end
+)");
+}
+
+TEST(BatchListing, LoopsKeepTheirCounterInPlaceAndUniformBranchesNeedNoRow) {
+    EXPECT_EQ(listing(R"(program fragment "main"
+input 0 i32 user 0.0 flat center
+output 0 i32 user 0.0
+resource 0 uniformBuffer 0.0 x1 read
+b0:
+  %0 i32 = input #0
+  %1 i32 = constant 0
+  %2 i32 = constant 1
+  %3 i32 = loadBuffer #0 %1 %1
+  %4 b1 = ieq.i32 %3 %1
+  branch %4 b1 b2
+b1 <- b0:
+  kill
+b2 <- b0:
+  jump b3
+b3 loop b5 <- b2 b4:
+  %5 i32 = phi %1 %7
+  %6 b1 = slt.i32 %5 %0
+  branch %6 b4 b5
+b4 <- b3:
+  %7 i32 = iadd %5 %2
+  jump b3
+b5 <- b3:
+  %8 i32 = phi %5
+  storeOutput #0 %8
+  ret
+)"),
+              R"(registers 4
+input 0 r0
+output 0 r2
+draw:
+    0  loadBuffer r0, 0x00000000, 0x00000000, 0
+    1  ieq r0, r0, 0x00000000
+    2  keepScalar 0, r0
+    3  end
+batch:
+    0  splitScalar s0, m2, m3
+    1  enter m2, @3
+    2  discard
+    3  enter m3, @6
+    4  broadcastMasked r1, 0x00000000, m0
+    5  leave m4
+    6  enter m4, @16
+    7  slt r3, r1, r0
+    8  split r3, m5, m7
+    9  skipEmpty m7, @12
+   10  copyMasked r2, r1, m7
+   11  follow m6, m7
+   12  enter m5, @15
+   13  iadd r1, r1, 0x00000001
+   14  leave m4
+   15  repeat m4, @6
+   16  enter m6, @17
+   17  end
+)");
+}
+
+TEST(BatchListing, SwappedPhisGoThroughATemporary) {
+    const std::string text = listing(R"(program fragment "main"
+input 0 i32 user 0.0 flat center
+input 1 i32 user 0.1 flat center
+output 0 i32 user 0.0
+b0:
+  %0 i32 = input #0
+  %1 i32 = input #1
+  jump b1
+b1 loop b3 <- b0 b2:
+  %2 i32 = phi %0 %3
+  %3 i32 = phi %1 %2
+  %4 b1 = slt.i32 %2 %3
+  branch %4 b2 b3
+b2 <- b1:
+  jump b1
+b3 <- b1:
+  %5 i32 = phi %2
+  storeOutput #0 %5
+  ret
+)");
+    EXPECT_NE(text.find("copy r3, r0\n"), std::string::npos) << text;
 }
 
 }  // namespace

@@ -38,39 +38,62 @@ F maximum(F a, F b) {
 
 template <class F>
 uint64_t floatOp(Op op, const std::vector<uint64_t>& v) {
-    const F a = floatOf<F>(v[0]), b = v.size() > 1 ? floatOf<F>(v[1]) : F{}, c = v.size() > 2 ? floatOf<F>(v[2]) : F{};
+    const F a = floatOf<F>(v[0]), b = v.size() > 1 ? floatOf<F>(v[1]) : F{},
+            c = v.size() > 2 ? floatOf<F>(v[2]) : F{};
     const F one = 1, zero = 0;
     switch (op) {
-        case Op::fadd: return bitsOf(a + b);
-        case Op::fsub: return bitsOf(a - b);
-        case Op::fmul: return bitsOf(a * b);
-        case Op::fdiv: return bitsOf(a / b);
-        case Op::frem: return bitsOf(a - b * std::trunc(a / b));
-        case Op::fmod: return bitsOf(a - b * std::floor(a / b));
-        case Op::fneg: return bitsOf(-a);
-        case Op::ffma: return bitsOf(std::fma(a, b, c));
-        case Op::fabs: return bitsOf(std::fabs(a));
-        case Op::fsign: return bitsOf(a > 0 ? one : a < 0 ? -one : zero);
-        case Op::ffloor: return bitsOf(std::floor(a));
-        case Op::fceil: return bitsOf(std::ceil(a));
-        case Op::ftrunc: return bitsOf(std::trunc(a));
-        case Op::froundEven: return bitsOf(std::nearbyint(a));
+        case Op::fadd:
+            return bitsOf(a + b);
+        case Op::fsub:
+            return bitsOf(a - b);
+        case Op::fmul:
+            return bitsOf(a * b);
+        case Op::fdiv:
+            return bitsOf(a / b);
+        case Op::frem:
+            return bitsOf(a - b * std::trunc(a / b));
+        case Op::fmod:
+            return bitsOf(a - b * std::floor(a / b));
+        case Op::fneg:
+            return bitsOf(-a);
+        case Op::ffma:
+            return bitsOf(std::fma(a, b, c));
+        case Op::fabs:
+            return bitsOf(std::fabs(a));
+        case Op::fsign:
+            return bitsOf(a > 0 ? one : a < 0 ? -one : zero);
+        case Op::ffloor:
+            return bitsOf(std::floor(a));
+        case Op::fceil:
+            return bitsOf(std::ceil(a));
+        case Op::ftrunc:
+            return bitsOf(std::trunc(a));
+        case Op::froundEven:
+            return bitsOf(std::nearbyint(a));
         case Op::ffract: {
             const F part = a - std::floor(a);
             return bitsOf(part >= one ? std::nextafter(one, zero) : part);
         }
-        case Op::fmin: return bitsOf(minimum(a, b));
-        case Op::fmax: return bitsOf(maximum(a, b));
-        case Op::fclamp: return bitsOf(minimum(maximum(a, b), c));
-        case Op::fmix: return bitsOf(a * (one - c) + b * c);
-        case Op::fstep: return bitsOf(b < a ? zero : one);
+        case Op::fmin:
+            return bitsOf(minimum(a, b));
+        case Op::fmax:
+            return bitsOf(maximum(a, b));
+        case Op::fclamp:
+            return bitsOf(minimum(maximum(a, b), c));
+        case Op::fmix:
+            return bitsOf(a * (one - c) + b * c);
+        case Op::fstep:
+            return bitsOf(b < a ? zero : one);
         case Op::fsmoothstep: {
             const F t = minimum(maximum((c - a) / (b - a), zero), one);
             return bitsOf(t * t * (F{3} - F{2} * t));
         }
-        case Op::fsqrt: return bitsOf(std::sqrt(a));
-        case Op::finverseSqrt: return bitsOf(one / std::sqrt(a));
-        case Op::fldexp: return bitsOf(std::ldexp(a, static_cast<int32_t>(v[1])));
+        case Op::fsqrt:
+            return bitsOf(std::sqrt(a));
+        case Op::finverseSqrt:
+            return bitsOf(one / std::sqrt(a));
+        case Op::fldexp:
+            return bitsOf(std::ldexp(a, static_cast<int32_t>(v[1])));
         case Op::ffrexpMantissa: {
             int exponent = 0;
             return bitsOf(std::isfinite(a) ? std::frexp(a, &exponent) : a);
@@ -80,17 +103,28 @@ uint64_t floatOp(Op op, const std::vector<uint64_t>& v) {
             if (std::isfinite(a)) (void)std::frexp(a, &exponent);
             return static_cast<uint32_t>(exponent);
         }
-        case Op::foeq: return a == b ? kTrue : 0;
-        case Op::fone: return !std::isunordered(a, b) && a != b ? kTrue : 0;
-        case Op::folt: return a < b ? kTrue : 0;
-        case Op::fole: return a <= b ? kTrue : 0;
-        case Op::fueq: return std::isunordered(a, b) || a == b ? kTrue : 0;
-        case Op::fune: return std::isunordered(a, b) || a != b ? kTrue : 0;
-        case Op::fult: return std::isunordered(a, b) || a < b ? kTrue : 0;
-        case Op::fule: return std::isunordered(a, b) || a <= b ? kTrue : 0;
-        case Op::fisnan: return std::isnan(a) ? kTrue : 0;
-        case Op::fisinf: return std::isinf(a) ? kTrue : 0;
-        default: std::abort();
+        case Op::foeq:
+            return a == b ? kTrue : 0;
+        case Op::fone:
+            return !std::isunordered(a, b) && a != b ? kTrue : 0;
+        case Op::folt:
+            return a < b ? kTrue : 0;
+        case Op::fole:
+            return a <= b ? kTrue : 0;
+        case Op::fueq:
+            return std::isunordered(a, b) || a == b ? kTrue : 0;
+        case Op::fune:
+            return std::isunordered(a, b) || a != b ? kTrue : 0;
+        case Op::fult:
+            return std::isunordered(a, b) || a < b ? kTrue : 0;
+        case Op::fule:
+            return std::isunordered(a, b) || a <= b ? kTrue : 0;
+        case Op::fisnan:
+            return std::isnan(a) ? kTrue : 0;
+        case Op::fisinf:
+            return std::isinf(a) ? kTrue : 0;
+        default:
+            std::abort();
     }
 }
 
@@ -106,34 +140,57 @@ uint64_t integerOp(Op op, const std::vector<uint64_t>& v) {
     const unsigned offset = v.size() > 2 ? static_cast<unsigned>(v[v.size() - 2]) : 0;
     const unsigned count = v.size() > 2 ? static_cast<unsigned>(v[v.size() - 1]) : 0;
     switch (op) {
-        case Op::iadd: return word(a + b);
-        case Op::isub: return word(a - b);
-        case Op::imul: return word(static_cast<WideU>(a) * b);
-        case Op::smulHigh: return word((static_cast<WideS>(sa) * sb) >> kBits);
-        case Op::umulHigh: return word((static_cast<WideU>(a) * b) >> kBits);
-        case Op::sdiv: return b == 0 ? 0 : word(static_cast<WideS>(sa) / sb);
-        case Op::udiv: return b == 0 ? 0 : word(a / b);
-        case Op::srem: return b == 0 ? 0 : word(static_cast<WideS>(sa) % sb);
+        case Op::iadd:
+            return word(a + b);
+        case Op::isub:
+            return word(a - b);
+        case Op::imul:
+            return word(static_cast<WideU>(a) * b);
+        case Op::smulHigh:
+            return word((static_cast<WideS>(sa) * sb) >> kBits);
+        case Op::umulHigh:
+            return word((static_cast<WideU>(a) * b) >> kBits);
+        case Op::sdiv:
+            return b == 0 ? 0 : word(static_cast<WideS>(sa) / sb);
+        case Op::udiv:
+            return b == 0 ? 0 : word(a / b);
+        case Op::srem:
+            return b == 0 ? 0 : word(static_cast<WideS>(sa) % sb);
         case Op::smod: {
             if (b == 0) return 0;
             const WideS rest = static_cast<WideS>(sa) % sb;
             return word(rest != 0 && (rest < 0) != (sb < 0) ? rest + sb : rest);
         }
-        case Op::umod: return b == 0 ? 0 : word(a % b);
-        case Op::ineg: return word(U{0} - a);
-        case Op::iabs: return word(sa < 0 ? U{0} - a : a);
-        case Op::isign: return word(sa > 0 ? 1 : sa < 0 ? -1 : 0);
-        case Op::smin: return word(sa < sb ? sa : sb);
-        case Op::smax: return word(sa > sb ? sa : sb);
-        case Op::umin: return word(a < b ? a : b);
-        case Op::umax: return word(a > b ? a : b);
-        case Op::iand: return word(a & b);
-        case Op::ior: return word(a | b);
-        case Op::ixor: return word(a ^ b);
-        case Op::inot: return word(~a);
-        case Op::shl: return word(a << (b % kBits));
-        case Op::lshr: return word(a >> (b % kBits));
-        case Op::ashr: return word(sa >> (b % kBits));
+        case Op::umod:
+            return b == 0 ? 0 : word(a % b);
+        case Op::ineg:
+            return word(U{0} - a);
+        case Op::iabs:
+            return word(sa < 0 ? U{0} - a : a);
+        case Op::isign:
+            return word(sa > 0 ? 1 : sa < 0 ? -1 : 0);
+        case Op::smin:
+            return word(sa < sb ? sa : sb);
+        case Op::smax:
+            return word(sa > sb ? sa : sb);
+        case Op::umin:
+            return word(a < b ? a : b);
+        case Op::umax:
+            return word(a > b ? a : b);
+        case Op::iand:
+            return word(a & b);
+        case Op::ior:
+            return word(a | b);
+        case Op::ixor:
+            return word(a ^ b);
+        case Op::inot:
+            return word(~a);
+        case Op::shl:
+            return word(a << (b % kBits));
+        case Op::lshr:
+            return word(a >> (b % kBits));
+        case Op::ashr:
+            return word(sa >> (b % kBits));
         case Op::bitFieldInsert: {
             U result = a;
             for (unsigned k = 0; k < count && k < kBits && offset < kBits && offset + k < kBits; ++k) {
@@ -177,15 +234,24 @@ uint64_t integerOp(Op op, const std::vector<uint64_t>& v) {
             }
             return word(-1);
         }
-        case Op::addCarry: return (static_cast<WideU>(a) + b) >> kBits != 0 ? 1 : 0;
-        case Op::subBorrow: return a < b ? 1 : 0;
-        case Op::ieq: return a == b ? kTrue : 0;
-        case Op::ine: return a != b ? kTrue : 0;
-        case Op::slt: return sa < sb ? kTrue : 0;
-        case Op::sle: return sa <= sb ? kTrue : 0;
-        case Op::ult: return a < b ? kTrue : 0;
-        case Op::ule: return a <= b ? kTrue : 0;
-        default: std::abort();
+        case Op::addCarry:
+            return (static_cast<WideU>(a) + b) >> kBits != 0 ? 1 : 0;
+        case Op::subBorrow:
+            return a < b ? 1 : 0;
+        case Op::ieq:
+            return a == b ? kTrue : 0;
+        case Op::ine:
+            return a != b ? kTrue : 0;
+        case Op::slt:
+            return sa < sb ? kTrue : 0;
+        case Op::sle:
+            return sa <= sb ? kTrue : 0;
+        case Op::ult:
+            return a < b ? kTrue : 0;
+        case Op::ule:
+            return a <= b ? kTrue : 0;
+        default:
+            std::abort();
     }
 }
 
@@ -193,33 +259,46 @@ template <class I>
 uint64_t saturated(long double x) {
     using U = std::make_unsigned_t<I>;
     if (std::isnan(x)) return 0;
-    if (x >= static_cast<long double>(std::numeric_limits<I>::max())) return static_cast<U>(std::numeric_limits<I>::max());
-    if (x <= static_cast<long double>(std::numeric_limits<I>::min())) return static_cast<U>(std::numeric_limits<I>::min());
+    if (x >= static_cast<long double>(std::numeric_limits<I>::max()))
+        return static_cast<U>(std::numeric_limits<I>::max());
+    if (x <= static_cast<long double>(std::numeric_limits<I>::min()))
+        return static_cast<U>(std::numeric_limits<I>::min());
     return static_cast<U>(static_cast<I>(x));
 }
 
 uint64_t conversion(Op op, Type result, Type operand, const std::vector<uint64_t>& v) {
     const uint64_t a = v[0];
-    const auto asReal = [&] { return operand == Type::f64 ? floatOf<double>(a) : static_cast<double>(floatOf<float>(a)); };
+    const auto asReal = [&] {
+        return operand == Type::f64 ? floatOf<double>(a) : static_cast<double>(floatOf<float>(a));
+    };
     switch (op) {
-        case Op::ftos: return result == Type::i64 ? saturated<int64_t>(asReal()) : saturated<int32_t>(asReal());
-        case Op::ftou: return result == Type::i64 ? saturated<uint64_t>(asReal()) : saturated<uint32_t>(asReal());
+        case Op::ftos:
+            return result == Type::i64 ? saturated<int64_t>(asReal()) : saturated<int32_t>(asReal());
+        case Op::ftou:
+            return result == Type::i64 ? saturated<uint64_t>(asReal()) : saturated<uint32_t>(asReal());
         case Op::stof: {
             const int64_t x = operand == Type::i64 ? static_cast<int64_t>(a) : static_cast<int32_t>(a);
             return result == Type::f64 ? bitsOf(static_cast<double>(x)) : bitsOf(static_cast<float>(x));
         }
-        case Op::utof: return result == Type::f64 ? bitsOf(static_cast<double>(a)) : bitsOf(static_cast<float>(a));
-        case Op::ftof: return result == Type::f64 ? bitsOf(asReal()) : bitsOf(static_cast<float>(asReal()));
-        case Op::zext: return operand == Type::b1 ? a & 1 : a;
+        case Op::utof:
+            return result == Type::f64 ? bitsOf(static_cast<double>(a)) : bitsOf(static_cast<float>(a));
+        case Op::ftof:
+            return result == Type::f64 ? bitsOf(asReal()) : bitsOf(static_cast<float>(asReal()));
+        case Op::zext:
+            return operand == Type::b1 ? a & 1 : a;
         case Op::sext:
             return result == Type::i64 && operand == Type::i32
                        ? static_cast<uint64_t>(static_cast<int64_t>(static_cast<int32_t>(a)))
                        : a;
         case Op::itrunc:
-        case Op::lowWord: return a & 0xFFFFFFFFu;
-        case Op::highWord: return a >> 32;
-        case Op::makeWide: return a | v[1] << 32;
-        default: return a;  // bitcast, copy
+        case Op::lowWord:
+            return a & 0xFFFFFFFFu;
+        case Op::highWord:
+            return a >> 32;
+        case Op::makeWide:
+            return a | v[1] << 32;
+        default:
+            return a;  // bitcast, copy
     }
 }
 
@@ -232,13 +311,20 @@ bool isEvaluated(Op op) {
 
 uint64_t evaluateOp(Op op, Type result, Type operand, const std::vector<uint64_t>& a, uint64_t) {
     switch (op) {
-        case Op::band: return a[0] & a[1];
-        case Op::bor: return a[0] | a[1];
-        case Op::bxor: return a[0] ^ a[1];
-        case Op::bnot: return ~a[0] & kTrue;
-        case Op::select: return a[0] != 0 ? a[1] : a[2];
-        case Op::copy: return a[0];
-        default: break;
+        case Op::band:
+            return a[0] & a[1];
+        case Op::bor:
+            return a[0] | a[1];
+        case Op::bxor:
+            return a[0] ^ a[1];
+        case Op::bnot:
+            return ~a[0] & kTrue;
+        case Op::select:
+            return a[0] != 0 ? a[1] : a[2];
+        case Op::copy:
+            return a[0];
+        default:
+            break;
     }
     if (op >= Op::ftos && op <= Op::highWord) return conversion(op, result, operand, a);
     if (op >= Op::fadd && op <= Op::ffrexpExponent) {
@@ -280,13 +366,26 @@ Evaluation evaluateInvocation(const ir::Program& program, const std::vector<uint
             const auto operands = program.operandsOf(inst);
             const auto at = [&](size_t k) { return values[operands[k]]; };
             switch (inst.op) {
-                case Op::phi: continue;
-                case Op::constant: values[inst.result] = inst.imm; continue;
-                case Op::undef: values[inst.result] = 0; continue;
-                case Op::input: values[inst.result] = inputs[inst.imm]; continue;
-                case Op::storeOutput: result.outputs[inst.imm] = static_cast<uint32_t>(at(0)); continue;
-                case Op::demote: result.demoted = true; continue;
-                case Op::isHelper: values[inst.result] = result.demoted ? kTrue : 0; continue;
+                case Op::phi:
+                    continue;
+                case Op::constant:
+                    values[inst.result] = inst.imm;
+                    continue;
+                case Op::undef:
+                    values[inst.result] = 0;
+                    continue;
+                case Op::input:
+                    values[inst.result] = inputs[inst.imm];
+                    continue;
+                case Op::storeOutput:
+                    result.outputs[inst.imm] = static_cast<uint32_t>(at(0));
+                    continue;
+                case Op::demote:
+                    result.demoted = true;
+                    continue;
+                case Op::isHelper:
+                    values[inst.result] = result.demoted ? kTrue : 0;
+                    continue;
                 case Op::loadBuffer:
                     values[inst.result] = at(0) == 0 && at(1) / 4 < buffer.size() ? buffer[at(1) / 4] : 0;
                     continue;
@@ -294,26 +393,37 @@ Evaluation evaluateInvocation(const ir::Program& program, const std::vector<uint
                     values[inst.result] = at(0) < ir::immHigh(inst) ? local[ir::immLow(inst) + at(0)] : 0;
                     continue;
                 case Op::storeLocal:
-                    if (at(0) < ir::immHigh(inst)) local[ir::immLow(inst) + at(0)] = static_cast<uint32_t>(at(1));
+                    if (at(0) < ir::immHigh(inst))
+                        local[ir::immLow(inst) + at(0)] = static_cast<uint32_t>(at(1));
                     continue;
-                case Op::jump: follow(here, 0); continue;
-                case Op::branch: follow(here, at(0) != 0 ? 0 : 1); continue;
+                case Op::jump:
+                    follow(here, 0);
+                    continue;
+                case Op::branch:
+                    follow(here, at(0) != 0 ? 0 : 1);
+                    continue;
                 case Op::switchOn: {
                     size_t taken = 0;
                     for (size_t k = 0; k < code.cases.size(); ++k) {
-                        if (static_cast<uint32_t>(code.cases[k]) == static_cast<uint32_t>(at(0))) taken = k + 1;
+                        if (static_cast<uint32_t>(code.cases[k]) == static_cast<uint32_t>(at(0)))
+                            taken = k + 1;
                     }
                     follow(here, taken);
                     continue;
                 }
-                case Op::ret: return result;
-                case Op::kill: result.killed = true; return result;
-                default: break;
+                case Op::ret:
+                    return result;
+                case Op::kill:
+                    result.killed = true;
+                    return result;
+                default:
+                    break;
             }
             std::vector<uint64_t> bits;
             for (size_t k = 0; k < operands.size(); ++k) bits.push_back(at(k));
             const size_t typed = inst.op == Op::select ? 1 : 0;
-            values[inst.result] = evaluateOp(inst.op, inst.type, program.valueTypes[operands[typed]], bits, inst.imm);
+            values[inst.result] =
+                evaluateOp(inst.op, inst.type, program.valueTypes[operands[typed]], bits, inst.imm);
         }
     }
 }

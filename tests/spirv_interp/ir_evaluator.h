@@ -1,6 +1,6 @@
-// A plain evaluator of IR programs, one invocation at a time: the judge of the batch interpreter in its tests. Covers
-// everything that does not reach outside the invocation, and loads: no stores, images, derivatives or transcendental
-// functions.
+// A plain evaluator of IR programs, one invocation at a time: the judge of the batch interpreter in its
+// tests. Covers everything that does not reach outside the invocation, and loads: no stores, images,
+// derivatives or transcendental functions.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,8 @@ Evaluation evaluateInvocation(const ir::Program& program, const std::vector<uint
                               const std::vector<uint32_t>& buffer = {});
 
 /// One pure operation on bits.
-uint64_t evaluateOp(ir::Op op, ir::Type result, ir::Type operand, const std::vector<uint64_t>& a, uint64_t imm);
+uint64_t evaluateOp(ir::Op op, ir::Type result, ir::Type operand, const std::vector<uint64_t>& a,
+                    uint64_t imm);
 
 /// Whether evaluateOp knows the operation.
 bool isEvaluated(ir::Op op);

@@ -1,5 +1,5 @@
-// Random structured programs: nested conditionals, loops with several ways out and round, switches, discards, early
-// returns, with every variable passing through phis.
+// Random structured programs: nested conditionals, loops with several ways out and round, switches, discards,
+// early returns, with every variable passing through phis.
 #pragma once
 
 #include <cstdint>

@@ -161,7 +161,9 @@ TEST_F(DriverTest, mandatoryFormats) {
     EXPECT_TRUE((optimal(VK_FORMAT_D24_UNORM_S8_UINT) | optimal(VK_FORMAT_D32_SFLOAT_S8_UINT)) &
                 VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT);
     EXPECT_EQ(optimal(VK_FORMAT_UNDEFINED), 0u);
-    if (!validated()) EXPECT_EQ(optimal(static_cast<VkFormat>(0x7FFFFFF0)), 0u);
+    if (!validated()) {
+        EXPECT_EQ(optimal(static_cast<VkFormat>(0x7FFFFFF0)), 0u);
+    }
 
     VkImageFormatProperties image{};
     EXPECT_EQ(vkGetPhysicalDeviceImageFormatProperties(physicalDevice, VK_FORMAT_R8G8B8A8_UNORM,

@@ -1,0 +1,134 @@
+// The class behind lower(): one pass over the IR that emits machine code. lower.cpp has its values and the
+// two pieces, lower_inst.cpp its instructions, lower_flow.cpp its blocks and edges.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "spirv_interp/batch/lower.h"
+#include "spirv_interp/batch/machine.h"
+#include "spirv_interp/ir/cfg.h"
+#include "spirv_interp/ir/ir.h"
+#include "spirv_interp/ir/ops.h"
+
+namespace vernier::batch {
+
+/// What both pieces share: facts about blocks and values.
+struct Facts {
+    explicit Facts(const ir::Program& p)
+        : program(p),
+          cfg(p),
+          scalar(scalarValues(p)),
+          definition(p.valueTypes.size()),
+          uses(p.valueTypes.size()) {
+        for (const ir::Block& block : p.blocks) {
+            for (const ir::Inst& inst : block.insts) {
+                if (inst.result != ir::kNoValue) definition[inst.result] = &inst;
+                for (const ir::ValueId value : p.operandsOf(inst)) ++uses[value];
+            }
+        }
+    }
+
+    const ir::Program& program;
+    ir::Cfg cfg;
+    std::vector<bool> scalar;
+    std::vector<const ir::Inst*> definition;  // of the first result
+    std::vector<uint32_t> uses;
+};
+
+/// Lowers one piece. In draw-rate code every value but a constant is in a row.
+class Lowerer {
+  public:
+    Lowerer(const Facts& facts, ScalarFile& scalars, std::vector<uint32_t>& scalarIndex, bool draw,
+            MachineCode& code)
+        : facts_(facts),
+          program_(facts.program),
+          scalars_(scalars),
+          scalarIndex_(scalarIndex),
+          draw_(draw),
+          code_(code),
+          registers_(facts.program.valueTypes.size(), kNone) {
+        code_.inputs.assign(program_.inputs.size(), kNone);
+        code_.outputs.assign(program_.outputs.size(), kNone);
+    }
+
+    void lowerBatch();
+    /// Emits the definitions that `wanted` names and everything they need, and keeps them in the scalar file.
+    void lowerDraw(const std::vector<bool>& wanted);
+    /// The name of the first operation there is no way to run; empty if all is well.
+    const std::string& unsupported() const { return unsupported_; }
+
+  private:
+    // Values.
+    bool isScalar(ir::ValueId value) const {
+        const ir::Inst* inst = facts_.definition[value];
+        const bool constant = inst != nullptr && (inst->op == ir::Op::constant || inst->op == ir::Op::undef);
+        return constant || (!draw_ && facts_.scalar[value]);
+    }
+    bool isWide(ir::ValueId value) const { return ir::isWide(program_.valueTypes[value]); }
+    uint32_t scalarOf(ir::ValueId value);
+    uint32_t newRegister(bool wide);
+    uint32_t registerOf(ir::ValueId value);
+    /// A row with the value: its own, or a temporary one into which a scalar is spread.
+    Operand rowOf(ir::ValueId value);
+    Operand wordOf(ir::ValueId value, uint8_t word);
+    Operand operandOf(ir::ValueId value) { return wordOf(value, 0); }
+    Operand target(const ir::Inst& inst) { return Operand::write(registerOf(inst.result)); }
+
+    // Instructions.
+    MachineInst& emit(Op op, std::vector<Operand> operands);
+    void emitMove(const Operand& to, const Operand& from) {
+        emit(from.isScalar() ? Op::broadcast : Op::copy, {to, from});
+    }
+    void lowerInst(const ir::Inst& inst);
+    bool lowerFused(const ir::Inst& inst);
+    void lowerElement(const ir::Inst& inst, Op op);
+    void emitVector(Op op, const Operand& to, std::vector<Operand> from);
+    void lowerWords(const ir::Inst& inst);
+    void lowerImage(const ir::Inst& inst);
+    void lowerAtomic(const ir::Inst& inst);
+    void lowerLocal(const ir::Inst& inst);
+    void lowerOutput(const ir::Inst& inst);
+    void lowerInputIndexed(const ir::Inst& inst);
+    void lowerInterpolation(const ir::Inst& inst);
+
+    // Control flow.
+    void planBlocks();
+    void planOutputs();
+    void lowerTerminator(ir::BlockId block);
+    uint32_t newLabel() {
+        code_.labels.push_back(0);
+        return static_cast<uint32_t>(code_.labels.size() - 1);
+    }
+    void bind(uint32_t label) { code_.labels[label] = static_cast<uint32_t>(code_.insts.size()); }
+    uint32_t maskOf(ir::BlockId block) const { return 1 + block; }
+    std::vector<Move> movesOf(ir::BlockId from, size_t successor);
+    /// Moves for an edge and hands the lanes of `mask` on to its target.
+    void lowerEdge(ir::BlockId from, size_t successor, uint32_t mask);
+    /// The mask slot into which the lanes of an edge go first: the target's own if it has no moves.
+    uint32_t edgeMask(ir::BlockId from, size_t successor);
+    void emitMoves(std::vector<Move> moves, uint32_t mask);
+
+    const Facts& facts_;
+    const ir::Program& program_;
+    ScalarFile& scalars_;
+    std::vector<uint32_t>& scalarIndex_;  // by value
+    const bool draw_;
+    MachineCode& code_;
+    std::vector<uint32_t> registers_;  // by value
+    uint32_t loop_ = kNone;            // header of the loop being lowered
+    uint32_t line_ = 0;
+    std::vector<bool> fused_;    // values that only exist inside a superinstruction
+    std::vector<bool> fallsIn_;  // blocks that run on from the block before, with its mask
+    std::vector<bool> full_;     // blocks that every lane runs first
+    std::vector<uint32_t> endLabels_, loopLabels_, headLabels_;  // by block
+    struct OutputPlan {
+        uint32_t stores = 0;
+        bool alias = false;
+    };
+    std::vector<OutputPlan> outputPlans_;
+    ir::BlockId block_ = 0;
+    std::string unsupported_;
+};
+
+}  // namespace vernier::batch
