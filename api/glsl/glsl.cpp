@@ -25,13 +25,20 @@ struct Output {
 
 std::optional<EShLanguage> languageOf(VkShaderStageFlagBits stage) {
     switch (stage) {
-        case VK_SHADER_STAGE_VERTEX_BIT: return EShLangVertex;
-        case VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT: return EShLangTessControl;
-        case VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT: return EShLangTessEvaluation;
-        case VK_SHADER_STAGE_GEOMETRY_BIT: return EShLangGeometry;
-        case VK_SHADER_STAGE_FRAGMENT_BIT: return EShLangFragment;
-        case VK_SHADER_STAGE_COMPUTE_BIT: return EShLangCompute;
-        default: return std::nullopt;
+        case VK_SHADER_STAGE_VERTEX_BIT:
+            return EShLangVertex;
+        case VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT:
+            return EShLangTessControl;
+        case VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT:
+            return EShLangTessEvaluation;
+        case VK_SHADER_STAGE_GEOMETRY_BIT:
+            return EShLangGeometry;
+        case VK_SHADER_STAGE_FRAGMENT_BIT:
+            return EShLangFragment;
+        case VK_SHADER_STAGE_COMPUTE_BIT:
+            return EShLangCompute;
+        default:
+            return std::nullopt;
     }
 }
 
@@ -42,12 +49,17 @@ struct Environment {
 
 std::optional<Environment> environmentOf(VnGlslTarget target) {
     switch (target) {
-        case VN_GLSL_TARGET_VULKAN_1_0: return {{glslang::EShTargetVulkan_1_0, glslang::EShTargetSpv_1_0}};
+        case VN_GLSL_TARGET_VULKAN_1_0:
+            return {{glslang::EShTargetVulkan_1_0, glslang::EShTargetSpv_1_0}};
         case VN_GLSL_TARGET_DEFAULT:
-        case VN_GLSL_TARGET_VULKAN_1_1: return {{glslang::EShTargetVulkan_1_1, glslang::EShTargetSpv_1_3}};
-        case VN_GLSL_TARGET_VULKAN_1_2: return {{glslang::EShTargetVulkan_1_2, glslang::EShTargetSpv_1_5}};
-        case VN_GLSL_TARGET_VULKAN_1_3: return {{glslang::EShTargetVulkan_1_3, glslang::EShTargetSpv_1_6}};
-        default: return std::nullopt;
+        case VN_GLSL_TARGET_VULKAN_1_1:
+            return {{glslang::EShTargetVulkan_1_1, glslang::EShTargetSpv_1_3}};
+        case VN_GLSL_TARGET_VULKAN_1_2:
+            return {{glslang::EShTargetVulkan_1_2, glslang::EShTargetSpv_1_5}};
+        case VN_GLSL_TARGET_VULKAN_1_3:
+            return {{glslang::EShTargetVulkan_1_3, glslang::EShTargetSpv_1_6}};
+        default:
+            return std::nullopt;
     }
 }
 
@@ -138,10 +150,14 @@ VnGlslResult vnCompileGlsl(const VnGlslDesc* desc, VnGlslOutput** out) {
     }
 }
 
-void vnFreeGlslOutput(VnGlslOutput* output) { delete reinterpret_cast<Output*>(output); }
+void vnFreeGlslOutput(VnGlslOutput* output) {
+    delete reinterpret_cast<Output*>(output);
+}
 
 VnGlslResult vnRetainGlslCompiler(void) {
     return vernier::glsl::retainProcess() ? VN_GLSL_SUCCESS : VN_GLSL_ERROR_OUT_OF_MEMORY;
 }
 
-void vnReleaseGlslCompiler(void) { vernier::glsl::releaseProcess(); }
+void vnReleaseGlslCompiler(void) {
+    vernier::glsl::releaseProcess();
+}

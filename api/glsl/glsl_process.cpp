@@ -8,9 +8,9 @@
 namespace vernier::glsl {
 namespace {
 
-// glslang counts its clients too, but each InitializeProcess() makes its global lock anew, even while another thread holds
-// it in a compilation. So it is called for the first reference only, and the count is kept here. The state is the
-// process's by nature: there is one glslang in it.
+// glslang counts its clients too, but each InitializeProcess() makes its global lock anew, even while another
+// thread holds it in a compilation. So it is called for the first reference only, and the count is kept here.
+// The state is the process's by nature: there is one glslang in it.
 struct ProcessCount {
     std::mutex mutex;
     uint32_t references = 0;

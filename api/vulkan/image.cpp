@@ -144,8 +144,9 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateImageView(VkDevice device, const VkImageVie
         info.format = pCreateInfo->format;
         info.components = pCreateInfo->components;
         info.range = pCreateInfo->subresourceRange;
-        const bool slices = image.info().type == VK_IMAGE_TYPE_3D && info.type != VK_IMAGE_VIEW_TYPE_3D;
-        const uint32_t layers = slices ? image.info().extent.depth : image.info().arrayLayers;
+        const uint32_t mip = std::min(info.range.baseMipLevel, image.info().mipLevels - 1);
+        const uint32_t layers =
+            seesSlices(image, info.type) ? image.level(mip).extent.depth : image.info().arrayLayers;
         if (info.range.levelCount == VK_REMAINING_MIP_LEVELS &&
             info.range.baseMipLevel < image.info().mipLevels) {
             info.range.levelCount = image.info().mipLevels - info.range.baseMipLevel;

@@ -27,18 +27,21 @@ PixelCodes codesOf(const SceneFormat& format, const RenderedImage& image, size_t
 }
 
 /// Two doubles that are the same value up to how the oracle rounded its exact numbers.
-bool same(double a, double b) { return a == b || std::abs(a - b) <= 1e-12 * std::max(std::abs(a), std::abs(b)); }
+bool same(double a, double b) {
+    return a == b || std::abs(a - b) <= 1e-12 * std::max(std::abs(a), std::abs(b));
+}
 
-/// A code is legal when its value lies in low..high, or when the format cannot represent a bound and the code is the
-/// bound's neighbour on the outside: conversion may round either way (Vulkan specification, "Conversion From
-/// Floating-Point to Normalized Fixed-Point").
+/// A code is legal when its value lies in low..high, or when the format cannot represent a bound and the code
+/// is the bound's neighbour on the outside: conversion may round either way (Vulkan specification,
+/// "Conversion From Floating-Point to Normalized Fixed-Point").
 bool isLegal(const FormatComponent& component, uint32_t code, double value, double low, double high) {
     if (isNan(component, code)) return std::isnan(value) || std::isnan(low) || std::isnan(high);
     if (std::isnan(low) || std::isnan(high)) return false;
     const double decoded = decodeComponent(component, code);
     if ((decoded >= low || same(decoded, low)) && (decoded <= high || same(decoded, high))) return true;
     const bool below = decoded < low;
-    const std::optional<uint32_t> inward = codeAtPlace(component, codePlace(component, code) + (below ? 1 : -1));
+    const std::optional<uint32_t> inward =
+        codeAtPlace(component, codePlace(component, code) + (below ? 1 : -1));
     if (!inward) return true;  // the end of the scale: what lies beyond saturates
     const double next = decodeComponent(component, *inward);
     return below ? next > low && !same(next, low) : next < high && !same(next, high);
@@ -46,7 +49,8 @@ bool isLegal(const FormatComponent& component, uint32_t code, double value, doub
 
 bool isLegal(const SceneFormat& format, const PixelCodes& pixel, const OraclePixel& oracle) {
     for (size_t i = 0; i < format.componentCount; ++i) {
-        if (!isLegal(format.components[i], pixel.codes[i], oracle.value[i], oracle.low[i], oracle.high[i])) return false;
+        if (!isLegal(format.components[i], pixel.codes[i], oracle.value[i], oracle.low[i], oracle.high[i]))
+            return false;
     }
     return true;
 }
@@ -106,7 +110,8 @@ void add(ImageDiff& diff, size_t pixel, PixelClass pixelClass, const Distance& a
     }
     const PixelDiff& worst = diff.pixels[size_t{diff.worstY} * diff.extent.width + diff.worstX];
     const bool severer = pixelClass > diff.worstClass;
-    if (severer || (pixelClass == diff.worstClass && std::abs(int64_t{entry.error}) > std::abs(int64_t{worst.error}))) {
+    if (severer ||
+        (pixelClass == diff.worstClass && std::abs(int64_t{entry.error}) > std::abs(int64_t{worst.error}))) {
         diff.worstClass = pixelClass;
         diff.worstX = static_cast<uint32_t>(pixel % diff.extent.width);
         diff.worstY = static_cast<uint32_t>(pixel / diff.extent.width);
@@ -114,12 +119,13 @@ void add(ImageDiff& diff, size_t pixel, PixelClass pixelClass, const Distance& a
 }
 
 std::string describe(VkFormat format, VkExtent2D extent) {
-    return "format " + std::to_string(static_cast<int>(format)) + ", " + std::to_string(extent.width) + " x " +
-           std::to_string(extent.height);
+    return "format " + std::to_string(static_cast<int>(format)) + ", " + std::to_string(extent.width) +
+           " x " + std::to_string(extent.height);
 }
 
 Result<ImageDiff> start(const RenderedImage& image, VkFormat format, VkExtent2D extent) {
-    if (image.format != format || image.extent.width != extent.width || image.extent.height != extent.height) {
+    if (image.format != format || image.extent.width != extent.width ||
+        image.extent.height != extent.height) {
         return invalidArgument("images do not match: " + describe(image.format, image.extent) + " against " +
                                describe(format, extent));
     }
@@ -127,8 +133,8 @@ Result<ImageDiff> start(const RenderedImage& image, VkFormat format, VkExtent2D 
     if (description == nullptr) return unsupported("cannot compare images of " + describe(format, extent));
     const size_t pixels = size_t{extent.width} * extent.height;
     if (pixels == 0 || image.texels.size() != pixels * description->texelBytes) {
-        return invalidArgument("RenderedImage::texels has " + std::to_string(image.texels.size()) + " bytes, not those of " +
-                               describe(format, extent));
+        return invalidArgument("RenderedImage::texels has " + std::to_string(image.texels.size()) +
+                               " bytes, not those of " + describe(format, extent));
     }
     ImageDiff diff;
     diff.extent = extent;
@@ -159,7 +165,8 @@ uint32_t nearestCode(const FormatComponent& component, double value) {
 std::string_view pixelClassName(PixelClass pixelClass) {
     switch (pixelClass) {
 #define VERNIER_NAME(name, text) \
-    case PixelClass::name: return #name;
+    case PixelClass::name:       \
+        return #name;
         VERNIER_PIXEL_CLASSES(VERNIER_NAME)
 #undef VERNIER_NAME
     }
@@ -169,7 +176,8 @@ std::string_view pixelClassName(PixelClass pixelClass) {
 std::string_view pixelClassText(PixelClass pixelClass) {
     switch (pixelClass) {
 #define VERNIER_TEXT(name, text) \
-    case PixelClass::name: return text;
+    case PixelClass::name:       \
+        return text;
         VERNIER_PIXEL_CLASSES(VERNIER_TEXT)
 #undef VERNIER_TEXT
     }
@@ -185,18 +193,20 @@ uint64_t ImageDiff::failures() const {
     return count(PixelClass::undecided) + count(PixelClass::oursWrong) + count(PixelClass::unexplained);
 }
 
-Result<ImageDiff> compareImages(const RenderedImage& ours, const RenderedImage& other, const OracleImage* oracle) {
+Result<ImageDiff> compareImages(const RenderedImage& ours, const RenderedImage& other,
+                                const OracleImage* oracle) {
     if (Result<ImageDiff> check = start(other, ours.format, ours.extent); !check) return check.error();
     if (oracle != nullptr) {
-        if (Result<ImageDiff> check = start(ours, oracle->format, oracle->extent); !check) return check.error();
+        if (Result<ImageDiff> check = start(ours, oracle->format, oracle->extent); !check)
+            return check.error();
     }
     Result<ImageDiff> started = start(ours, ours.format, ours.extent);
     if (!started) return started;
     ImageDiff diff = std::move(started).value();
     diff.hasOracle = oracle != nullptr;
     if (oracle != nullptr && oracle->pixels.size() != diff.pixels.size()) {
-        return invalidArgument("OracleImage::pixels has " + std::to_string(oracle->pixels.size()) + " elements, not " +
-                               std::to_string(diff.pixels.size()));
+        return invalidArgument("OracleImage::pixels has " + std::to_string(oracle->pixels.size()) +
+                               " elements, not " + std::to_string(diff.pixels.size()));
     }
     const SceneFormat& format = *sceneFormat(ours.format);
     for (size_t i = 0; i < diff.pixels.size(); ++i) {
@@ -207,7 +217,8 @@ Result<ImageDiff> compareImages(const RenderedImage& ours, const RenderedImage& 
         if (unknown) ++diff.unknownPixels;
         const bool judged = judge != nullptr && !unknown;
         add(diff, i,
-            classifyPair(apart, judged && isLegal(format, a, *judge), judged && isLegal(format, b, *judge), judge),
+            classifyPair(apart, judged && isLegal(format, a, *judge), judged && isLegal(format, b, *judge),
+                         judge),
             apart);
     }
     return diff;
@@ -219,8 +230,8 @@ Result<ImageDiff> compareWithOracle(const RenderedImage& image, const OracleImag
     ImageDiff diff = std::move(started).value();
     diff.hasOracle = true;
     if (oracle.pixels.size() != diff.pixels.size()) {
-        return invalidArgument("OracleImage::pixels has " + std::to_string(oracle.pixels.size()) + " elements, not " +
-                               std::to_string(diff.pixels.size()));
+        return invalidArgument("OracleImage::pixels has " + std::to_string(oracle.pixels.size()) +
+                               " elements, not " + std::to_string(diff.pixels.size()));
     }
     const SceneFormat& format = *sceneFormat(image.format);
     for (size_t i = 0; i < diff.pixels.size(); ++i) {

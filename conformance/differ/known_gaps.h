@@ -1,5 +1,5 @@
-// What is known to fail, as data: each gap with its reason and its size. A gap that no longer shows fails the run too, so
-// that the list stays true.
+// What is known to fail, as data: each gap with its reason and its size. A gap that no longer shows fails the
+// run too, so that the list stays true.
 #pragma once
 
 #include "base/result.h"
@@ -30,8 +30,8 @@ struct KnownGap {
     std::string reason;
 };
 
-/// Reads {"gaps": [{"scene", "driver", "against" (optional), "class", "max", "reason"}, ...]}. Every field is checked: an
-/// unknown class, a zero max or an empty reason is an error that names the entry.
+/// Reads {"gaps": [{"scene", "driver", "against" (optional), "class", "max", "reason"}, ...]}. Every field is
+/// checked: an unknown class, a zero max or an empty reason is an error that names the entry.
 Result<std::vector<KnownGap>> parseKnownGaps(std::string_view json);
 
 struct GapJudgement {
@@ -47,6 +47,7 @@ struct RunExtent {
     std::vector<std::string> drivers;  // all that were tried
 };
 
-GapJudgement judgeFindings(std::span<const Finding> findings, std::span<const KnownGap> gaps, const RunExtent& run);
+GapJudgement judgeFindings(std::span<const Finding> findings, std::span<const KnownGap> gaps,
+                           const RunExtent& run);
 
 }  // namespace vernier::conformance

@@ -11,7 +11,8 @@ namespace vernier::conformance {
 
 struct ApiOptions {
     VnProfile profile = VN_PROFILE_DEFAULT;
-    uint32_t threads = 0;  // 0: one per usable CPU
+    uint32_t threads = 0;            // 0: one per usable CPU
+    const char* maxIsa = nullptr;    // "sse4", "avx2", "avx512"; nullptr: the best of this CPU
 };
 
 class ApiDriver final : public Driver {
@@ -22,8 +23,8 @@ class ApiDriver final : public Driver {
     std::string name() const override { return "Vernier API"; }
     std::string version() const override;
     std::string limits() const override;
-    /// Plans are made on first use, so that their time shows in the first image; Timing::pipelines is that of programs
-    /// and state objects.
+    /// Plans are made on first use, so that their time shows in the first image; Timing::pipelines is that of
+    /// programs and state objects.
     Result<std::vector<RenderedImage>> render(const Scene& scene, Timing* timing) override;
 
   private:

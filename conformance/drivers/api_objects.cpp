@@ -10,11 +10,17 @@ namespace vernier::conformance {
 namespace {
 
 /// The API's zero stands for a default: NEVER, which is Vulkan's zero, has a name of its own there.
-VkCompareOp explicitCompare(VkCompareOp op) { return op == VK_COMPARE_OP_NEVER ? VN_COMPARE_OP_NEVER : op; }
+VkCompareOp explicitCompare(VkCompareOp op) {
+    return op == VK_COMPARE_OP_NEVER ? VN_COMPARE_OP_NEVER : op;
+}
 
 VnStencilFace stencilFace(const VkStencilOpState& state) {
-    return {state.failOp,           state.passOp,           state.depthFailOp, explicitCompare(state.compareOp),
-            ~state.compareMask & 0xff, ~state.writeMask & 0xff};
+    return {state.failOp,
+            state.passOp,
+            state.depthFailOp,
+            explicitCompare(state.compareOp),
+            ~state.compareMask & 0xff,
+            ~state.writeMask & 0xff};
 }
 
 bool allFactorsZero(const VkPipelineColorBlendAttachmentState& state) {
@@ -91,7 +97,8 @@ Status ApiObjects::createImage(const SceneImage& scene) {
 }
 
 Status ApiObjects::createSampler(const SceneSampler& scene) {
-    // With a highest level of 0 Vulkan always magnifies; the API says it by a view of one level, which may minify.
+    // With a highest level of 0 Vulkan always magnifies; the API says it by a view of one level, which may
+    // minify.
     if (scene.maxLod == 0 && scene.magFilter != scene.minFilter) {
         return unsupported("a sampler of maxLod 0 with two filters cannot be said in the API");
     }
@@ -200,15 +207,17 @@ Result<ApiPipeline> ApiObjects::createPipeline(const ScenePipeline& scene) {
         if (from.blendEnable == VK_TRUE && allFactorsZero(from)) {
             return unsupported("blending with four factors ZERO cannot be said in the API");
         }
-        blend.attachments[i] = {from.blendEnable == VK_TRUE, from.srcColorBlendFactor, from.dstColorBlendFactor,
-                                from.colorBlendOp,           from.srcAlphaBlendFactor, from.dstAlphaBlendFactor,
+        blend.attachments[i] = {from.blendEnable == VK_TRUE, from.srcColorBlendFactor,
+                                from.dstColorBlendFactor,    from.colorBlendOp,
+                                from.srcAlphaBlendFactor,    from.dstAlphaBlendFactor,
                                 from.alphaBlendOp,           ~from.colorWriteMask & 0xf};
     }
     VERNIER_TRY_API(vnCreateBlendState(device_, &blend, &pipeline.blend));
     return pipeline;
 }
 
-Result<VnView> ApiObjects::attachmentView(const Scene& scene, uint32_t image, uint32_t mipLevel, uint32_t layer) {
+Result<VnView> ApiObjects::attachmentView(const Scene& scene, uint32_t image, uint32_t mipLevel,
+                                          uint32_t layer) {
     VnViewDesc desc{};
     desc.image = images_[image];
     desc.aspect = sceneFormat(scene.images[image].format)->aspects;

@@ -1,4 +1,5 @@
-// A scene's objects on Vernier's C API: one per thing the scene names, made once, destroyed with the device or here.
+// A scene's objects on Vernier's C API: one per thing the scene names, made once, destroyed with the device
+// or here.
 #pragma once
 
 #include "base/result.h"
@@ -15,10 +16,10 @@ namespace vernier::conformance {
 Error apiError(VnDevice device, std::string_view call, VnResult result);
 
 /// Leaves the calling function with an Error unless the call succeeds; needs a `device_`.
-#define VERNIER_TRY_API(call)                                                     \
-    do {                                                                          \
-        if (const VnResult tryResult = (call); tryResult != VN_SUCCESS)           \
-            return ::vernier::conformance::apiError(device_, #call, tryResult);   \
+#define VERNIER_TRY_API(call)                                                   \
+    do {                                                                        \
+        if (const VnResult tryResult = (call); tryResult != VN_SUCCESS)         \
+            return ::vernier::conformance::apiError(device_, #call, tryResult); \
     } while (false)
 
 struct ApiPipeline {

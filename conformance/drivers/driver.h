@@ -29,13 +29,14 @@ class Driver {
     /// The limits that bear on pixels (sub-pixel bits, filter precision, ...), one "name value" a line.
     virtual std::string limits() const = 0;
 
-    /// Runs the scene and returns one image per Scene::outputs. `timing` may be nullptr: then the commands run once only.
-    /// A scene that needs what the implementation lacks is an `unsupported` error that names it.
+    /// Runs the scene and returns one image per Scene::outputs. `timing` may be nullptr: then the commands
+    /// run once only. A scene that needs what the implementation lacks is an `unsupported` error that names
+    /// it.
     virtual Result<std::vector<RenderedImage>> render(const Scene& scene, Timing* timing) = 0;
 };
 
-/// Checks what both kinds of driver rely on: indices in range, formats known, data sizes fitting. The error names the
-/// object, the field and the value.
+/// Checks what both kinds of driver rely on: indices in range, formats known, data sizes fitting. The error
+/// names the object, the field and the value.
 Status validateScene(const Scene& scene);
 
 }  // namespace vernier::conformance

@@ -25,7 +25,8 @@ struct FrameTimes {
     uint32_t count = 0;
 };
 
-/// Times `frame`, a function returning Status: at least 5 times, at most 60, and in between until 0.3 s have passed.
+/// Times `frame`, a function returning Status: at least 5 times, at most 60, and in between until 0.3 s have
+/// passed.
 template <class Frame>
 Result<FrameTimes> measureFrames(Frame frame) {
     constexpr size_t kFewest = 5, kMost = 60;

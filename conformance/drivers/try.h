@@ -4,8 +4,7 @@
 #include "base/result.h"
 
 /// Leaves the calling function with the error of a Status.
-#define VERNIER_TRY(expression)                                          \
-    do {                                                                 \
-        if (::vernier::Status tryStatus = (expression); !tryStatus.ok()) \
-            return tryStatus.error();                                    \
+#define VERNIER_TRY(expression)                                                                    \
+    do {                                                                                           \
+        if (::vernier::Status tryStatus = (expression); !tryStatus.ok()) return tryStatus.error(); \
     } while (false)

@@ -9,7 +9,8 @@ namespace {
 std::string resultName(VkResult result) {
     switch (result) {
 #define VERNIER_NAME(name) \
-    case name: return #name;
+    case name:             \
+        return #name;
         VERNIER_NAME(VK_NOT_READY)
         VERNIER_NAME(VK_TIMEOUT)
         VERNIER_NAME(VK_INCOMPLETE)
@@ -28,7 +29,8 @@ std::string resultName(VkResult result) {
         VERNIER_NAME(VK_ERROR_UNKNOWN)
         VERNIER_NAME(VK_ERROR_INVALID_SHADER_NV)
 #undef VERNIER_NAME
-        default: return "VkResult " + std::to_string(static_cast<int>(result));
+        default:
+            return "VkResult " + std::to_string(static_cast<int>(result));
     }
 }
 
@@ -37,15 +39,24 @@ std::string resultName(VkResult result) {
 Error vulkanError(std::string_view call, VkResult result) {
     ErrorCode code = ErrorCode::invalidArgument;
     switch (result) {
-        case VK_ERROR_OUT_OF_HOST_MEMORY: code = ErrorCode::outOfHostMemory; break;
-        case VK_ERROR_OUT_OF_DEVICE_MEMORY: code = ErrorCode::outOfDeviceMemory; break;
-        case VK_ERROR_DEVICE_LOST: code = ErrorCode::deviceLost; break;
+        case VK_ERROR_OUT_OF_HOST_MEMORY:
+            code = ErrorCode::outOfHostMemory;
+            break;
+        case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+            code = ErrorCode::outOfDeviceMemory;
+            break;
+        case VK_ERROR_DEVICE_LOST:
+            code = ErrorCode::deviceLost;
+            break;
         case VK_ERROR_LAYER_NOT_PRESENT:
         case VK_ERROR_EXTENSION_NOT_PRESENT:
         case VK_ERROR_FEATURE_NOT_PRESENT:
         case VK_ERROR_FORMAT_NOT_SUPPORTED:
-        case VK_ERROR_INCOMPATIBLE_DRIVER: code = ErrorCode::unsupported; break;
-        default: break;
+        case VK_ERROR_INCOMPATIBLE_DRIVER:
+            code = ErrorCode::unsupported;
+            break;
+        default:
+            break;
     }
     // Only the function's name: the arguments are this file's own words.
     return {code, std::string(call.substr(0, call.find('('))) + ": " + resultName(result)};
@@ -100,7 +111,8 @@ Status VulkanContext::createInstance(bool validate) {
     return {};
 }
 
-VkBool32 VulkanContext::onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT types,
+VkBool32 VulkanContext::onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                  VkDebugUtilsMessageTypeFlagsEXT types,
                                   const VkDebugUtilsMessengerCallbackDataEXT* data, void* context) {
     // The loader reports other drivers' missing libraries as general errors: not a matter of the scene.
     if ((types & VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT) != 0) {
@@ -127,24 +139,28 @@ Status VulkanContext::createDevice(uint32_t deviceIndex) {
     vkGetPhysicalDeviceQueueFamilyProperties(physicalDevice_, &familyCount, nullptr);
     std::vector<VkQueueFamilyProperties> families(familyCount);
     vkGetPhysicalDeviceQueueFamilyProperties(physicalDevice_, &familyCount, families.data());
-    const auto family = std::find_if(families.begin(), families.end(), [](const VkQueueFamilyProperties& each) {
-        return (each.queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0;
-    });
-    if (family == families.end()) return unsupported(std::string(properties_.deviceName) + " has no graphics queue");
+    const auto family = std::find_if(
+        families.begin(), families.end(),
+        [](const VkQueueFamilyProperties& each) { return (each.queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0; });
+    if (family == families.end())
+        return unsupported(std::string(properties_.deviceName) + " has no graphics queue");
     queueFamily_ = static_cast<uint32_t>(family - families.begin());
 
-    negativeViewports_ = instanceVersion_ >= VK_API_VERSION_1_1 && properties_.apiVersion >= VK_API_VERSION_1_1;
+    negativeViewports_ =
+        instanceVersion_ >= VK_API_VERSION_1_1 && properties_.apiVersion >= VK_API_VERSION_1_1;
     const char* maintenance = VK_KHR_MAINTENANCE_1_EXTENSION_NAME;
     bool useMaintenance = false;
     if (!negativeViewports_) {
         uint32_t extensionCount = 0;
-        VERNIER_TRY_VK(vkEnumerateDeviceExtensionProperties(physicalDevice_, nullptr, &extensionCount, nullptr));
-        std::vector<VkExtensionProperties> extensions(extensionCount);
         VERNIER_TRY_VK(
-            vkEnumerateDeviceExtensionProperties(physicalDevice_, nullptr, &extensionCount, extensions.data()));
-        useMaintenance = std::any_of(extensions.begin(), extensions.end(), [&](const VkExtensionProperties& each) {
-            return std::strcmp(each.extensionName, maintenance) == 0;
-        });
+            vkEnumerateDeviceExtensionProperties(physicalDevice_, nullptr, &extensionCount, nullptr));
+        std::vector<VkExtensionProperties> extensions(extensionCount);
+        VERNIER_TRY_VK(vkEnumerateDeviceExtensionProperties(physicalDevice_, nullptr, &extensionCount,
+                                                            extensions.data()));
+        useMaintenance =
+            std::any_of(extensions.begin(), extensions.end(), [&](const VkExtensionProperties& each) {
+                return std::strcmp(each.extensionName, maintenance) == 0;
+            });
         negativeViewports_ = useMaintenance;
     }
 

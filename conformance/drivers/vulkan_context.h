@@ -1,4 +1,5 @@
-// A Vulkan device for running scenes: instance, device, one queue, and the destruction of whatever was made on it.
+// A Vulkan device for running scenes: instance, device, one queue, and the destruction of whatever was made
+// on it.
 #pragma once
 
 #include "base/result.h"
@@ -42,10 +43,10 @@ class Cleanup {
 Error vulkanError(std::string_view call, VkResult result);
 
 /// Leaves the calling function with an Error unless the Vulkan call succeeds.
-#define VERNIER_TRY_VK(call)                                                                    \
-    do {                                                                                        \
-        if (const VkResult tryResult = (call); tryResult != VK_SUCCESS)                         \
-            return ::vernier::conformance::vulkanError(#call, tryResult);                       \
+#define VERNIER_TRY_VK(call)                                              \
+    do {                                                                  \
+        if (const VkResult tryResult = (call); tryResult != VK_SUCCESS)   \
+            return ::vernier::conformance::vulkanError(#call, tryResult); \
     } while (false)
 
 class VulkanContext {
@@ -54,8 +55,8 @@ class VulkanContext {
     VulkanContext(const VulkanContext&) = delete;
     VulkanContext& operator=(const VulkanContext&) = delete;
 
-    /// Creates the instance through the loader (which honours VK_DRIVER_FILES and VK_ICD_FILENAMES), and the device with
-    /// every core feature it has. To be called once.
+    /// Creates the instance through the loader (which honours VK_DRIVER_FILES and VK_ICD_FILENAMES), and the
+    /// device with every core feature it has. To be called once.
     Status create(const VulkanOptions& options);
 
     VkDevice device() const { return device_; }
@@ -78,7 +79,8 @@ class VulkanContext {
     Status createDevice(uint32_t deviceIndex);
     static VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                                     VkDebugUtilsMessageTypeFlagsEXT types,
-                                                    const VkDebugUtilsMessengerCallbackDataEXT* data, void* context);
+                                                    const VkDebugUtilsMessengerCallbackDataEXT* data,
+                                                    void* context);
 
     std::string validationErrors_;  // outlives the instance, whose destruction may still report
     Cleanup cleanup_;

@@ -10,7 +10,8 @@ namespace vernier::conformance {
 
 class VulkanDriver final : public Driver {
   public:
-    /// Which driver is found is up to the loader: set VK_DRIVER_FILES and VK_ICD_FILENAMES before, once per process.
+    /// Which driver is found is up to the loader: set VK_DRIVER_FILES and VK_ICD_FILENAMES before, once per
+    /// process.
     static Result<std::unique_ptr<VulkanDriver>> create(const VulkanOptions& options);
 
     std::string name() const override;

@@ -17,7 +17,9 @@ inline constexpr double kCodeTolerance = 1e-3;
 /// Value read back after storing: value through the nearest code (ties to even), low through the code below,
 /// high through the code above. Fixed-point formats clamp. NaN in a fixed-point component leaves the
 /// component's whole range.
-Interval quantise(const Component& component, const Interval& number);
+/// `budget` further codes are allowed between the exact number and the stored code of a fixed-point
+/// component: with 1, every code less than or exactly one code away.
+Interval quantise(const Component& component, const Interval& number, double budget = 0);
 
 /// The encoded (not linear) counterpart of an sRGB value and back; used where averaging encoded values is
 /// legal.

@@ -62,6 +62,12 @@ std::optional<Triangle> Triangle::create(const Setup& setup) {
 
     const auto& p = setup.position;
     std::vector<std::array<double, 3>> planes(setup.clipDistances);
+    // The sides of the view volume: nothing is drawn outside the viewport, even where the scissor would allow
+    // it.
+    for (const size_t axis : {0, 1}) {
+        planes.push_back({p[0][3] + p[0][axis], p[1][3] + p[1][axis], p[2][3] + p[2][axis]});
+        planes.push_back({p[0][3] - p[0][axis], p[1][3] - p[1][axis], p[2][3] - p[2][axis]});
+    }
     if (setup.depthClip) {
         planes.push_back({p[0][2], p[1][2], p[2][2]});
         planes.push_back({p[0][3] - p[0][2], p[1][3] - p[1][2], p[2][3] - p[2][2]});

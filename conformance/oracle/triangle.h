@@ -5,8 +5,8 @@
 // top-left ties. What is open is decided on the unsnapped vertices, each free to move by one sub-unit (plus
 // float rounding of the viewport transform). Triangles that cross the eye plane or reach very far out are
 // tested in homogeneous coordinates, unsnapped: new vertices of a clipper would themselves be snapped within
-// the same freedom. Near, far and user clip planes are half-space tests at the sample, open within a sub-unit
-// of the cut.
+// the same freedom. Near, far, the sides of the viewport and user clip planes are half-space tests at the
+// sample, open within a sub-unit of the cut.
 #pragma once
 
 #include "conformance/oracle/coverage.h"
@@ -36,7 +36,7 @@ struct SampleVerdict {
     bool nominalAsWhole = false;  // the declared answer when openAsWhole
     std::array<OpenEdge, 3> edges{};
     uint32_t edgeCount = 0;
-    bool cutOpen = false, cutNominal = false;  // near, far and clip distances together
+    bool cutOpen = false, cutNominal = false;  // all clip planes together
 };
 
 /// A point in sub-units.

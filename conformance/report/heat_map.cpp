@@ -23,14 +23,22 @@ Rgb8 heatColor(int32_t codes, bool dimmed) {
 
 Rgb8 classColor(PixelClass pixelClass) {
     switch (pixelClass) {
-        case PixelClass::equal: return {38, 43, 54};
-        case PixelClass::rounding: return {72, 120, 96};
-        case PixelClass::tolerance: return {86, 170, 140};
-        case PixelClass::edge: return {90, 130, 200};
-        case PixelClass::otherWrong: return {178, 132, 214};
-        case PixelClass::undecided: return {235, 190, 70};
-        case PixelClass::oursWrong: return {240, 130, 50};
-        case PixelClass::unexplained: return {230, 50, 70};
+        case PixelClass::equal:
+            return {38, 43, 54};
+        case PixelClass::rounding:
+            return {72, 120, 96};
+        case PixelClass::tolerance:
+            return {86, 170, 140};
+        case PixelClass::edge:
+            return {90, 130, 200};
+        case PixelClass::otherWrong:
+            return {178, 132, 214};
+        case PixelClass::undecided:
+            return {235, 190, 70};
+        case PixelClass::oursWrong:
+            return {240, 130, 50};
+        case PixelClass::unexplained:
+            return {230, 50, 70};
     }
     return {};
 }
@@ -42,7 +50,8 @@ Picture heatMap(const ImageDiff& diff, uint32_t spread) {
         for (uint32_t x = 0; x < picture.width; ++x) {
             PixelDiff shown = diff.pixels[size_t{y} * picture.width + x];
             for (uint32_t v = y - std::min(y, spread); v <= std::min(y + spread, picture.height - 1); ++v) {
-                for (uint32_t u = x - std::min(x, spread); u <= std::min(x + spread, picture.width - 1); ++u) {
+                for (uint32_t u = x - std::min(x, spread); u <= std::min(x + spread, picture.width - 1);
+                     ++u) {
                     const PixelDiff& near = diff.pixels[size_t{v} * picture.width + u];
                     if (weight(near) > weight(shown)) shown = near;
                 }
@@ -55,7 +64,8 @@ Picture heatMap(const ImageDiff& diff, uint32_t spread) {
 
 Picture classMap(const ImageDiff& diff) {
     Picture picture(diff.extent.width, diff.extent.height);
-    for (size_t i = 0; i < picture.pixels.size(); ++i) picture.pixels[i] = classColor(diff.pixels[i].pixelClass);
+    for (size_t i = 0; i < picture.pixels.size(); ++i)
+        picture.pixels[i] = classColor(diff.pixels[i].pixelClass);
     return picture;
 }
 

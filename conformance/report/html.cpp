@@ -39,7 +39,9 @@ std::string shownName(PixelClass pixelClass, bool ours) {
     return std::string(pixelClassName(pixelClass));
 }
 
-std::string cssColor(Rgb8 color) { return format("#%02x%02x%02x", color.r, color.g, color.b); }
+std::string cssColor(Rgb8 color) {
+    return format("#%02x%02x%02x", color.r, color.g, color.b);
+}
 
 }  // namespace
 
@@ -47,11 +49,21 @@ std::string escapeHtml(std::string_view text) {
     std::string result;
     for (const char c : text) {
         switch (c) {
-            case '&': result += "&amp;"; break;
-            case '<': result += "&lt;"; break;
-            case '>': result += "&gt;"; break;
-            case '"': result += "&quot;"; break;
-            default: result += c; break;
+            case '&':
+                result += "&amp;";
+                break;
+            case '<':
+                result += "&lt;";
+                break;
+            case '>':
+                result += "&gt;";
+                break;
+            case '"':
+                result += "&quot;";
+                break;
+            default:
+                result += c;
+                break;
         }
     }
     return result;
@@ -83,11 +95,14 @@ std::string ratio(double time, double reference) {
     return format("\u00d7\u2009%.2f", time / reference);
 }
 
-std::string precise(double value) { return format("%.9g", value); }
+std::string precise(double value) {
+    return format("%.9g", value);
+}
 
 std::string page(std::string_view title, std::string_view body) {
-    std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-                       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>";
+    std::string html =
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>";
     html += escapeHtml(title);
     html += "</title>\n<style>";
     html += kReportStyle;
@@ -109,35 +124,43 @@ std::string classBar(const std::array<uint64_t, kPixelClassCount>& counts, bool 
         const std::string name = shownName(pixelClass, ours);
         // A class of one pixel must be seen too.
         const double share = 100.0 * static_cast<double>(counts[i]) / static_cast<double>(total);
-        bar += "<i style=\"flex:" + format("%.4f", share) + " 0 auto;background:" +
-               cssColor(classColor(pixelClass)) + "\" title=\"" + name + ": " + grouped(counts[i]) + "\"></i>";
-        words += "<span class=\"" + std::string(ours && isFailure(pixelClass) ? "bad" : "fine") + "\">" + name +
-                 "\u00a0<b>" + grouped(counts[i]) + "</b></span> ";
+        bar += "<i style=\"flex:" + format("%.4f", share) +
+               " 0 auto;background:" + cssColor(classColor(pixelClass)) + "\" title=\"" + name + ": " +
+               grouped(counts[i]) + "\"></i>";
+        words += "<span class=\"" + std::string(ours && isFailure(pixelClass) ? "bad" : "fine") + "\">" +
+                 name + "\u00a0<b>" + grouped(counts[i]) + "</b></span> ";
     }
     return bar + "</div><div class=\"counts\">" + words + "</div>";
 }
 
 std::string legend() {
-    std::string html = "<div class=\"legend\"><div><h3>Why pixels agree or differ</h3><ul class=\"swatches\">";
+    std::string html =
+        "<div class=\"legend\"><div><h3>Why pixels agree or differ</h3><ul class=\"swatches\">";
     for (size_t i = 0; i < kPixelClassCount; ++i) {
         const auto pixelClass = static_cast<PixelClass>(i);
         html += "<li><i style=\"background:" + cssColor(classColor(pixelClass)) + "\"></i><b>" +
-                std::string(pixelClassName(pixelClass)) + "</b> " + escapeHtml(pixelClassText(pixelClass)) + "</li>";
+                std::string(pixelClassName(pixelClass)) + "</b> " + escapeHtml(pixelClassText(pixelClass)) +
+                "</li>";
     }
-    html += "</ul></div><div><h3>Heat maps: ours minus other, in codes (ULP of float formats)</h3>"
-            "<div class=\"scale\">";
+    html +=
+        "</ul></div><div><h3>Heat maps: ours minus other, in codes (ULP of float formats)</h3>"
+        "<div class=\"scale\">";
     const auto step = [&](int32_t codes, const std::string& label) {
-        html += "<span><i style=\"background:" + cssColor(heatColor(codes, false)) + "\"></i>" + label + "</span>";
+        html += "<span><i style=\"background:" + cssColor(heatColor(codes, false)) + "\"></i>" + label +
+                "</span>";
     };
     for (int exponent = 7; exponent >= 0; --exponent) {
-        step(-(1 << exponent), (exponent == 7 ? "\u2264\u2009\u2212" : "\u2212") + std::to_string(1 << exponent));
+        step(-(1 << exponent),
+             (exponent == 7 ? "\u2264\u2009\u2212" : "\u2212") + std::to_string(1 << exponent));
     }
     step(0, "0");
     for (int exponent = 0; exponent < 8; ++exponent) {
         step(1 << exponent, (exponent == 7 ? "\u2265\u2009" : "+") + std::to_string(1 << exponent));
     }
-    html += "</div><p>The scale is the same for every scene. Each pixel shows its component that is furthest off; pixels "
-            "where coverage is legally ambiguous are drawn at a third of their strength.</p></div></div>";
+    html +=
+        "</div><p>The scale is the same for every scene. Each pixel shows its component that is furthest "
+        "off; pixels "
+        "where coverage is legally ambiguous are drawn at a third of their strength.</p></div></div>";
     return html;
 }
 
@@ -155,7 +178,8 @@ bool isOurs(const Report& report, std::string_view driver) {
 
 std::string verdictPill(const ReportScene& scene) {
     if (!scene.judged) return "<span class=\"pill\">not judged</span>";
-    return scene.failed ? "<span class=\"pill bad\">unexplained</span>" : "<span class=\"pill good\">explained</span>";
+    return scene.failed ? "<span class=\"pill bad\">unexplained</span>"
+                        : "<span class=\"pill good\">explained</span>";
 }
 
 }  // namespace vernier::conformance

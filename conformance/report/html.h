@@ -29,8 +29,8 @@ std::string precise(double value);
 /// A whole page with the report's style; `title` is plain text, `body` HTML.
 std::string page(std::string_view title, std::string_view body);
 
-/// A bar with one section per class that occurs, and the counts in words below it. `ours`: the comparison's first driver
-/// is one of ours; otherwise nothing in it is marked as failed.
+/// A bar with one section per class that occurs, and the counts in words below it. `ours`: the comparison's
+/// first driver is one of ours; otherwise nothing in it is marked as failed.
 std::string classBar(const std::array<uint64_t, kPixelClassCount>& counts, bool ours);
 /// What the colours of bars, class maps and heat maps mean.
 std::string legend();

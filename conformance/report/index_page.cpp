@@ -2,6 +2,7 @@
 #include "conformance/report/html.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace vernier::conformance {
 namespace {
@@ -27,18 +28,21 @@ std::string thumbnail(const ReportScene& scene, const ReportDriver& driver, cons
     if (rendering == nullptr) return figure(missing("absent", false), driver.title, "&nbsp;");
     if (!rendering->failure.empty()) return figure(missing(rendering->failure, true), driver.title, "&nbsp;");
     const ReportRendering* reference = renderingOf(scene, "lavapipe");
-    const double referenceTime = reference != nullptr && driver.name != "lavapipe" ? reference->timing.frame : 0;
+    const double referenceTime =
+        reference != nullptr && driver.name != "lavapipe" ? reference->timing.frame : 0;
     const Timing& timing = rendering->timing;
     return figure(imageTag(pictureOf(rendering->images[0], stretch), driver.title), driver.title,
                   duration(timing.frame) + " " + ratio(timing.frame, referenceTime) + "<br>first image " +
                       duration(timing.firstImage));
 }
 
-/// The comparison whose heat map stands for the scene: the worst one of ours, or the first when none is of ours.
+/// The comparison whose heat map stands for the scene: the worst one of ours, or the first when none is of
+/// ours.
 const ReportComparison* headline(const Report& report, const ReportScene& scene) {
     const ReportComparison* chosen = nullptr;
     for (const ReportComparison& each : scene.comparisons) {
-        if (chosen == nullptr || (isOurs(report, each.ours) && each.diff.worstClass > chosen->diff.worstClass)) {
+        if (chosen == nullptr ||
+            (isOurs(report, each.ours) && each.diff.worstClass > chosen->diff.worstClass)) {
             chosen = &each;
         }
     }
@@ -50,23 +54,33 @@ std::string comparisonRows(const Report& report, const ReportScene& scene) {
     std::vector<std::pair<std::pair<std::string, std::string>, std::array<uint64_t, kPixelClassCount>>> rows;
     for (const ReportComparison& each : scene.comparisons) {
         const std::pair key(each.ours, each.other);
-        auto row = std::find_if(rows.begin(), rows.end(), [&](const auto& known) { return known.first == key; });
+        auto row =
+            std::find_if(rows.begin(), rows.end(), [&](const auto& known) { return known.first == key; });
         if (row == rows.end()) row = rows.insert(rows.end(), {key, {}});
         for (size_t i = 0; i < kPixelClassCount; ++i) row->second[i] += each.diff.counts[i];
     }
-    std::string html;
+    std::string ours, others;
     for (const auto& [pair, counts] : rows) {
-        html += "<div>" + escapeHtml(titleOf(report, pair.first)) + " \u2013 " + escapeHtml(titleOf(report, pair.second)) +
-                "</div><div>" + classBar(counts, isOurs(report, pair.first)) + "</div>";
+        const bool judged = isOurs(report, pair.first);
+        (judged ? ours : others) += "<div>" + escapeHtml(titleOf(report, pair.first)) + " \u2013 " +
+                                    escapeHtml(titleOf(report, pair.second)) + "</div><div>" +
+                                    classBar(counts, judged) + "</div>";
+    }
+    std::string html;
+    if (!ours.empty()) html += "<div class=\"compare\">" + ours + "</div>";
+    if (!others.empty()) {
+        html += "<details" + std::string(ours.empty() ? " open" : "") +
+                "><summary>the other drivers among themselves</summary><div class=\"compare\">" + others +
+                "</div></details>";
     }
     return html;
 }
 
 std::string sceneRow(const Report& report, const ReportScene& scene) {
     std::string html = "<section class=\"scene" + std::string(scene.failed ? " failed" : "") +
-                       "\"><div class=\"head\"><a href=\"" + scene.scene.name + ".html\">" + scene.scene.name + "</a>" +
-                       verdictPill(scene) + "<p>" + escapeHtml(scene.scene.description) +
-                       "</p></div><div class=\"strip\">";
+                       "\"><div class=\"head\"><a href=\"" + scene.scene.name + ".html\">" +
+                       scene.scene.name + "</a>" + verdictPill(scene) + "<p>" +
+                       escapeHtml(scene.scene.description) + "</p></div><div class=\"strip\">";
     Stretch stretch;
     for (const auto& [name, rendering] : scene.renderings) {
         if (rendering.failure.empty()) stretch = stretchFor(rendering.images[0]);
@@ -80,11 +94,12 @@ std::string sceneRow(const Report& report, const ReportScene& scene) {
     }
     if (const ReportComparison* worst = headline(report, scene)) {
         html += figure(imageTag(heatMap(worst->diff, 1), "signed difference"), "signed difference",
-                       escapeHtml(titleOf(report, worst->ours)) + " \u2212 " + escapeHtml(titleOf(report, worst->other)));
+                       escapeHtml(titleOf(report, worst->ours)) + " \u2212 " +
+                           escapeHtml(titleOf(report, worst->other)));
     } else {
         html += figure(missing("nothing to compare", false), "signed difference", "&nbsp;");
     }
-    return html + "</div><div class=\"compare\">" + comparisonRows(report, scene) + "</div></section>\n";
+    return html + "</div>" + comparisonRows(report, scene) + "</section>\n";
 }
 
 std::string list(const std::vector<std::string>& lines, const char* style) {
@@ -116,6 +131,13 @@ std::string tiles(const Report& report) {
     return html + "</div>";
 }
 
+/// Whether the driver snaps to fewer sub-pixel bits than the 8 that the oracle calls legal.
+bool isCoarser(const ReportDriver& driver) {
+    constexpr std::string_view kName = "subPixelPrecisionBits ";
+    const size_t at = driver.limits.find(kName);
+    return at != std::string::npos && std::atoi(driver.limits.c_str() + at + kName.size()) < 8;
+}
+
 std::string driverCards(const Report& report) {
     std::string html = "<div class=\"cards\">";
     for (const ReportDriver& driver : report.drivers) {
@@ -127,6 +149,13 @@ std::string driverCards(const Report& report) {
         } else {
             html += escapeHtml(driver.device) + "<br>" + escapeHtml(driver.version) + "<pre>" +
                     escapeHtml(driver.limits) + "</pre>";
+            if (isCoarser(driver)) {
+                html +=
+                    "<p class=\"note\">Declares a coarser sub-pixel grid than the oracle judges by: what is "
+                    "called wrong "
+                    "along its edges, and in values interpolated from its corners, may be within its own "
+                    "promise.</p>";
+            }
         }
         html += "</div>";
     }
@@ -136,17 +165,19 @@ std::string driverCards(const Report& report) {
 }  // namespace
 
 std::string indexPage(const Report& report) {
-    std::string html = "<main><header class=\"top\"><div class=\"marks\"></div><h1>Vernier conformance"
-                       "<small>one scene, every driver, every pixel accounted for</small></h1>"
-                       "<p>Each scene is written once and drawn by every driver below. Where two images differ, the "
-                       "difference is put down to a cause: rounding the format allows, an edge the sub-pixel grid leaves "
-                       "open, the tolerance of interpolation and filtering, or a fault of one side as judged by an exact "
-                       "reference. There is no percentage.</p>" +
-                       tiles(report) + "</header>";
+    std::string html =
+        "<main><header class=\"top\"><div class=\"marks\"></div><h1>Vernier conformance"
+        "<small>one scene, every driver, every pixel accounted for</small></h1>"
+        "<p>Each scene is written once and drawn by every driver below. Where two images differ, the "
+        "difference is put down to a cause: rounding the format allows, an edge the sub-pixel grid leaves "
+        "open, the tolerance of interpolation and filtering, or a fault of one side as judged by an exact "
+        "reference. There is no percentage.</p>" +
+        tiles(report) + "</header>";
     if (!report.judgement.violations.empty()) {
         html += "<h2>Unexplained</h2>" + list(report.judgement.violations, "bad");
     }
-    if (!report.judgement.stale.empty()) html += "<h2>Gaps that pass now</h2>" + list(report.judgement.stale, "bad");
+    if (!report.judgement.stale.empty())
+        html += "<h2>Gaps that pass now</h2>" + list(report.judgement.stale, "bad");
     if (!report.judgement.covered.empty()) html += "<h2>Known gaps</h2>" + list(report.judgement.covered, "");
     html += "<h2>Drivers</h2>" + driverCards(report) + "<h2>Settings</h2><table class=\"facts\">";
     for (const auto& [name, value] : report.facts) {

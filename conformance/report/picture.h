@@ -27,8 +27,8 @@ struct Picture {
     const Rgb8& at(uint32_t x, uint32_t y) const { return pixels[size_t{y} * width + x]; }
 };
 
-/// How values become brightness. Stored codes of 8-bit colour are shown as they are; floats and depth are stretched from
-/// the lowest to the highest value, the same way for all pictures that share a Stretch.
+/// How values become brightness. Stored codes of 8-bit colour are shown as they are; floats and depth are
+/// stretched from the lowest to the highest value, the same way for all pictures that share a Stretch.
 struct Stretch {
     bool active = false;
     double low = 0, high = 1;
@@ -40,8 +40,8 @@ Stretch stretchFor(const RenderedImage& image);
 Picture pictureOf(const RenderedImage& image, const Stretch& stretch);
 Picture pictureOf(const OracleImage& image, const Stretch& stretch);
 
-/// The square of `size` pixels around (x, y), each drawn as `scale` x `scale`, the middle one framed; outside the image is
-/// grey.
+/// The square of `size` pixels around (x, y), each drawn as `scale` x `scale`, the middle one framed; outside
+/// the image is grey.
 Picture magnified(const Picture& picture, uint32_t x, uint32_t y, uint32_t size, uint32_t scale);
 
 /// A PNG file in memory. `text` goes into its "Comment".

@@ -56,8 +56,8 @@ struct Report {
     GapJudgement judgement;
 };
 
-/// Fills in ReportScene::comparisons: every driver of ours against every other one that drew the scene, and every driver
-/// against the oracle. An error means images that cannot be compared.
+/// Fills in ReportScene::comparisons: every driver of ours against every other one that drew the scene, and
+/// every driver against the oracle. An error means images that cannot be compared.
 Status compareScene(ReportScene& scene, const std::vector<ReportDriver>& drivers);
 
 /// What of a scene's comparisons and renderings counts as failed.

@@ -65,7 +65,8 @@ figcaption b { font-weight: 600; } figcaption span { color: var(--soft); }
 .missing { display: flex; align-items: center; justify-content: center; text-align: center; padding: 10px; margin: 0;
     color: var(--soft); font-size: 12px; border-style: dashed; overflow: hidden; overflow-wrap: anywhere; }
 .missing.bad { color: var(--bad); }
-.compare { display: grid; grid-template-columns: minmax(210px, max-content) 1fr; gap: 4px 16px; font-size: 12.5px; align-items: start; }
+.note { font-size: 12.5px; margin: 8px 0 0; color: var(--accent); }
+.compare { display: grid; grid-template-columns: 190px 1fr 190px 1fr; gap: 4px 16px; font-size: 12.5px; align-items: start; }
 .compare > div:nth-child(odd) { color: var(--soft); }
 .bar { display: flex; height: 11px; border-radius: 6px; overflow: hidden; background: var(--line); margin-top: 4px; }
 .bar i { min-width: 4px; }
@@ -89,7 +90,8 @@ pre { background: var(--code); border: 1px solid var(--line); border-radius: 8px
     font: 12.5px/1.5 ui-monospace, "DejaVu Sans Mono", monospace; }
 details { margin: 8px 0; } summary { cursor: pointer; color: var(--soft); }
 ul.plain { margin: 6px 0; padding-left: 20px; } ul.bad li { color: var(--bad); }
-@media (max-width: 900px) { .strip { grid-template-columns: repeat(3, minmax(0, 1fr)); } main { padding: 0 14px 60px; } }
+@media (max-width: 900px) { .strip { grid-template-columns: repeat(3, minmax(0, 1fr)); } main { padding: 0 14px 60px; }
+    .compare { grid-template-columns: 150px 1fr; } }
 )";
 
 const char* const kReportScript = R"(

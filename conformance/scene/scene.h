@@ -1,8 +1,10 @@
-// A conformance scene as plain data: what is uploaded, what is drawn, what is read back. A scene is written once
-// (conformance/scenes) and executed by every driver (conformance/drivers) and by the reference renderer
-// (conformance/oracle). All state uses Vulkan's own enums and structs, so that no driver has to guess a meaning.
+// A conformance scene as plain data: what is uploaded, what is drawn, what is read back. A scene is written
+// once (conformance/scenes) and executed by every driver (conformance/drivers) and by the reference renderer
+// (conformance/oracle). All state uses Vulkan's own enums and structs, so that no driver has to guess a
+// meaning.
 //
-// Conventions: Vulkan clip space (y down, depth 0..1); indices into the vectors below name resources; kNone = absent.
+// Conventions: Vulkan clip space (y down, depth 0..1); indices into the vectors below name resources; kNone =
+// absent.
 #pragma once
 
 #include <vulkan/vulkan_core.h>
@@ -33,8 +35,8 @@ struct SceneImage {
     uint32_t arrayLayers = 1;
     VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
     VkImageUsageFlags usage = 0;  // transfer usage is added by the drivers
-    // Tightly packed initial contents, level-major: data[mip * arrayLayers + layer]; no entries, or an empty entry for a
-    // subresource: undefined contents.
+    // Tightly packed initial contents, level-major: data[mip * arrayLayers + layer]; no entries, or an empty
+    // entry for a subresource: undefined contents.
     std::vector<Bytes> data;
 };
 
@@ -54,8 +56,8 @@ struct SceneSampler {
 
 struct SceneShader {
     VkShaderStageFlagBits stage = VK_SHADER_STAGE_VERTEX_BIT;
-    std::string glsl;              // source, kept for the report
-    std::vector<uint32_t> spirv;   // entry point "main"
+    std::string glsl;             // source, kept for the report
+    std::vector<uint32_t> spirv;  // entry point "main"
     std::vector<VkSpecializationMapEntry> specialization;
     Bytes specializationData;
 };
@@ -88,8 +90,8 @@ struct ScenePipeline {
 
 struct SceneBinding {
     uint32_t set = 0, binding = 0;
-    // UNIFORM_BUFFER, STORAGE_BUFFER: buffer, offset, range. COMBINED_IMAGE_SAMPLER: image, sampler (all mips and layers;
-    // a 2D view when the image has one layer, a 2D array view otherwise).
+    // UNIFORM_BUFFER, STORAGE_BUFFER: buffer, offset, range. COMBINED_IMAGE_SAMPLER: image, sampler (all mips
+    // and layers; a 2D view when the image has one layer, a 2D array view otherwise).
     VkDescriptorType type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     uint32_t buffer = kNone;
     VkDeviceSize offset = 0;
@@ -162,11 +164,12 @@ struct Scene {
     std::vector<SceneShader> shaders;
     std::vector<ScenePipeline> pipelines;
     std::vector<SceneStep> steps;
-    std::vector<uint32_t> outputs;  // images read back at the end (level 0, layer 0, single-sampled), the main one first
+    std::vector<uint32_t>
+        outputs;  // images read back at the end (level 0, layer 0, single-sampled), the main one first
 };
 
-// What a driver hands back for one output image: level 0, layer 0, rows tightly packed, texels in the image's format
-// (for combined depth/stencil formats: the depth aspect, in the packing of vkCmdCopyImageToBuffer).
+// What a driver hands back for one output image: level 0, layer 0, rows tightly packed, texels in the image's
+// format (for combined depth/stencil formats: the depth aspect, in the packing of vkCmdCopyImageToBuffer).
 struct RenderedImage {
     VkFormat format = VK_FORMAT_UNDEFINED;
     VkExtent2D extent{};

@@ -38,7 +38,10 @@ constexpr auto kFormats = std::to_array<SceneFormat>({
     {VERNIER_FORMAT(R8G8B8A8_SRGB), 4, 4, kColor, eightBits(srgb, false)},
     {VERNIER_FORMAT(B8G8R8A8_UNORM), 4, 4, kColor, eightBits(unorm, true)},
     {VERNIER_FORMAT(B8G8R8A8_SRGB), 4, 4, kColor, eightBits(srgb, true)},
-    {VERNIER_FORMAT(A2B10G10R10_UNORM_PACK32), 4, 4, kColor,
+    {VERNIER_FORMAT(A2B10G10R10_UNORM_PACK32),
+     4,
+     4,
+     kColor,
      {{{unorm, 0, 10}, {unorm, 10, 10}, {unorm, 20, 10}, {unorm, 30, 2}}}},
     {VERNIER_FORMAT(R5G6B5_UNORM_PACK16), 2, 3, kColor, {{{unorm, 11, 5}, {unorm, 5, 6}, {unorm, 0, 5}, {}}}},
     {VERNIER_FORMAT(R16_UNORM), 2, 1, kColor, uniform(unorm, 16, 1)},
@@ -87,7 +90,9 @@ const SceneFormat* sceneFormat(VkFormat format) {
     return found == kFormats.end() ? nullptr : &*found;
 }
 
-std::span<const SceneFormat> sceneFormats() { return kFormats; }
+std::span<const SceneFormat> sceneFormats() {
+    return kFormats;
+}
 
 uint32_t componentCode(const FormatComponent& component, std::span<const std::byte> texel) {
     // No component crosses more than four bytes: at most 32 bits, and those start at a byte.
@@ -102,15 +107,20 @@ uint32_t componentCode(const FormatComponent& component, std::span<const std::by
 double decodeComponent(const FormatComponent& component, uint32_t code) {
     const double unormMax = static_cast<double>((uint64_t{1} << component.bits) - 1);
     switch (component.kind) {
-        case unorm: return code / unormMax;
-        case srgb: return srgbValue(code / unormMax);
+        case unorm:
+            return code / unormMax;
+        case srgb:
+            return srgbValue(code / unormMax);
         case snorm: {
             const double max = static_cast<double>((uint64_t{1} << (component.bits - 1)) - 1);
             return std::max(-1.0, static_cast<double>(signedCode(code, component.bits)) / max);
         }
-        case uint: return code;
-        case sint: return static_cast<double>(signedCode(code, component.bits));
-        case sfloat: return component.bits == 16 ? halfValue(code) : std::bit_cast<float>(code);
+        case uint:
+            return code;
+        case sint:
+            return static_cast<double>(signedCode(code, component.bits));
+        case sfloat:
+            return component.bits == 16 ? halfValue(code) : std::bit_cast<float>(code);
     }
     return 0;
 }
@@ -119,13 +129,15 @@ int64_t codePlace(const FormatComponent& component, uint32_t code) {
     switch (component.kind) {
         case unorm:
         case srgb:
-        case uint: return code;
+        case uint:
+            return code;
         case snorm: {
             // The two lowest codes both mean -1.
             const int64_t lowest = -((int64_t{1} << (component.bits - 1)) - 1);
             return std::max(lowest, signedCode(code, component.bits));
         }
-        case sint: return signedCode(code, component.bits);
+        case sint:
+            return signedCode(code, component.bits);
         case sfloat: {
             const uint32_t signBit = 1u << (component.bits - 1);
             const int64_t magnitude = code & (signBit - 1);
@@ -141,7 +153,8 @@ std::optional<uint32_t> codeAtPlace(const FormatComponent& component, int64_t pl
     switch (component.kind) {
         case unorm:
         case srgb:
-        case uint: return within(0, all - 1) ? std::optional(static_cast<uint32_t>(place)) : std::nullopt;
+        case uint:
+            return within(0, all - 1) ? std::optional(static_cast<uint32_t>(place)) : std::nullopt;
         case snorm:
         case sint: {
             const int64_t lowest = component.kind == snorm ? 1 - half : -half;

@@ -17,14 +17,14 @@ enum class ComponentKind : uint8_t { unorm, snorm, srgb, uint, sint, sfloat };
 
 struct FormatComponent {
     ComponentKind kind = ComponentKind::unorm;
-    uint8_t bit = 0;   // first bit in the little-endian texel
+    uint8_t bit = 0;  // first bit in the little-endian texel
     uint8_t bits = 0;
 };
 
 struct SceneFormat {
     VkFormat format = VK_FORMAT_UNDEFINED;
-    std::string_view name;      // of the VkFormat, without the prefix
-    uint8_t texelBytes = 0;     // as copied to a buffer; for combined formats those of the depth aspect
+    std::string_view name;   // of the VkFormat, without the prefix
+    uint8_t texelBytes = 0;  // as copied to a buffer; for combined formats those of the depth aspect
     uint8_t componentCount = 0;
     VkImageAspectFlags aspects = VK_IMAGE_ASPECT_COLOR_BIT;
     std::array<FormatComponent, 4> components{};  // in the order R, G, B, A (or D)
@@ -42,11 +42,13 @@ uint32_t componentCode(const FormatComponent& component, std::span<const std::by
 /// The value a component's bits stand for; linear for sRGB.
 double decodeComponent(const FormatComponent& component, uint32_t code);
 
-/// The codes of a component in the order of their values, as consecutive integers: two codes whose places differ by one
-/// are neighbours. -0 and +0 of floats share a place; NaN codes have none and must not be asked for.
+/// The codes of a component in the order of their values, as consecutive integers: two codes whose places
+/// differ by one are neighbours. -0 and +0 of floats share a place; NaN codes have none and must not be asked
+/// for.
 int64_t codePlace(const FormatComponent& component, uint32_t code);
 
-/// The code at a place, +0 for the place of zero; nothing beyond the lowest and highest value (infinities are values).
+/// The code at a place, +0 for the place of zero; nothing beyond the lowest and highest value (infinities are
+/// values).
 std::optional<uint32_t> codeAtPlace(const FormatComponent& component, int64_t place);
 
 bool isNan(const FormatComponent& component, uint32_t code);

@@ -1,4 +1,5 @@
-// Scenes about what keeps a fragment from the target: scissor, viewport, depth, stencil, discard, sample coverage.
+// Scenes about what keeps a fragment from the target: scissor, viewport, depth, stencil, discard, sample
+// coverage.
 #include "conformance/scenes/recorder.h"
 #include "conformance/scenes/scenes.h"
 #include "conformance/scenes/shapes.h"
@@ -57,14 +58,16 @@ std::vector<Vertex> pinwheel(int count, double radius, float z) {
 Result<Scene> scissor_viewport() {
     constexpr VkExtent2D kExtent{251, 255};
     SceneRecorder record("scissor_viewport",
-                         "One pinwheel in nine views: small and fractional viewports, negative height, a reversed depth range, "
+                         "One pinwheel in nine views: small and fractional viewports, negative height, a "
+                         "reversed depth range, "
                          "and scissors down to one pixel and to nothing; 251 x 255 pixels.");
     const uint32_t target = record.colorTarget("color", kRgba8, kExtent);
     const uint32_t depth = record.depthTarget("depth", VK_FORMAT_D32_SFLOAT, kExtent);
     std::vector<Vertex> vertices = pinwheel(7, 1.25, 0.5f);
     // A mark that tells up from down.
     const glm::vec3 mark(0.98f, 0.97f, 0.9f);
-    vertices.insert(vertices.end(), {{{-0.2f, -0.5f, 0.4f}, mark}, {{0.2f, -0.5f, 0.4f}, mark}, {{0, -0.9f, 0.4f}, mark}});
+    vertices.insert(vertices.end(),
+                    {{{-0.2f, -0.5f, 0.4f}, mark}, {{0.2f, -0.5f, 0.4f}, mark}, {{0, -0.9f, 0.4f}, mark}});
     const auto count = static_cast<uint32_t>(vertices.size());
     const uint32_t buffer = record.vertexBuffer("pinwheel", vertices);
     const uint32_t less = pipeline(record).depth(VK_COMPARE_OP_LESS);
@@ -79,7 +82,9 @@ Result<Scene> scissor_viewport() {
     view(less).viewport(168, 85, 83, 85).scissor(209, 120, 1, 50);
     view(less).viewport(168, 85, 83, 85).scissor(180, 127, 60, 1);
     view(less).viewport(168, 85, 83, 85).scissor(200, 100, 0, 0);
-    view(less).viewport(0, 170, 40, 85).scissor(0, 170, 83, 85);    // cut at the view volume, not by the scissor
+    view(less)
+        .viewport(0, 170, 40, 85)
+        .scissor(0, 170, 83, 85);  // cut at the view volume, not by the scissor
     view(less).viewport(-40, 200, 250, 250).scissor(84, 170, 83, 85);  // partly off the target
     view(less).viewport(168, 170, 83, 42.5f).scissor(168, 170, 83, 42);
     view(less).viewport(168, 255, 83, -42.5f).scissor(168, 213, 83, 42);
@@ -89,9 +94,10 @@ Result<Scene> scissor_viewport() {
 }
 
 Result<Scene> depth_intersect() {
-    SceneRecorder record("depth_intersect",
-                         "Three leaning sheets cut through one another; the depth test decides every pixel, then a "
-                         "GREATER pass without depth writes tints what lies behind a fourth.");
+    SceneRecorder record(
+        "depth_intersect",
+        "Three leaning sheets cut through one another; the depth test decides every pixel, then a "
+        "GREATER pass without depth writes tints what lies behind a fourth.");
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
     const uint32_t depth = record.depthTarget("depth", VK_FORMAT_D32_SFLOAT, kSceneExtent);
     std::vector<Vertex> vertices;
@@ -105,7 +111,9 @@ Result<Scene> depth_intersect() {
         vertices.insert(vertices.end(), {a, b, c, c, b, d});
     }
     const glm::vec3 tint(0.85f, 0.95f, 0.9f);
-    vertices.insert(vertices.end(), {{{-0.6f, -0.6f, 0.35f}, tint}, {{0.9f, 0.0f, 0.6f}, tint}, {{-0.4f, 0.8f, 0.45f}, tint}});
+    vertices.insert(
+        vertices.end(),
+        {{{-0.6f, -0.6f, 0.35f}, tint}, {{0.9f, 0.0f, 0.6f}, tint}, {{-0.4f, 0.8f, 0.45f}, tint}});
     const uint32_t less = pipeline(record).depth(VK_COMPARE_OP_LESS);
     VkPipelineColorBlendAttachmentState half{};
     half.blendEnable = VK_TRUE;
@@ -127,14 +135,16 @@ Result<Scene> depth_intersect() {
 }
 
 Result<Scene> stencil_winding() {
-    SceneRecorder record("stencil_winding",
-                         "Two-sided stencil operations count how often a self-crossing star winds around each pixel; further "
-                         "passes paint by count, with compare and write masks.");
+    SceneRecorder record(
+        "stencil_winding",
+        "Two-sided stencil operations count how often a self-crossing star winds around each pixel; further "
+        "passes paint by count, with compare and write masks.");
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
     const uint32_t stencil = record.depthTarget("stencil", VK_FORMAT_D32_SFLOAT_S8_UINT, kSceneExtent);
     const auto op = [](VkCompareOp compare, VkStencilOp pass, uint32_t reference, uint32_t compareMask,
                        uint32_t writeMask) {
-        return VkStencilOpState{VK_STENCIL_OP_KEEP, pass, VK_STENCIL_OP_KEEP, compare, compareMask, writeMask, reference};
+        return VkStencilOpState{VK_STENCIL_OP_KEEP, pass,      VK_STENCIL_OP_KEEP, compare,
+                                compareMask,        writeMask, reference};
     };
     // A {7/3} star and a ring wound the other way, as fans from a point outside: only the winding matters.
     std::vector<Vertex> star;
@@ -152,13 +162,15 @@ Result<Scene> stencil_winding() {
     const std::array<glm::vec3, 4> palette{
         {{0.95f, 0.75f, 0.25f}, {0.93f, 0.45f, 0.3f}, {0.72f, 0.2f, 0.4f}, {0.25f, 0.65f, 0.7f}}};
     for (const glm::vec3 color : palette) {
-        cover.insert(cover.end(), {{{-1, -1, 0}, color}, {{3, -1, 0}, color * 0.6f}, {{-1, 3, 0}, color * 0.8f}});
+        cover.insert(cover.end(),
+                     {{{-1, -1, 0}, color}, {{3, -1, 0}, color * 0.6f}, {{-1, 3, 0}, color * 0.8f}});
     }
     constexpr uint32_t kCountBits = 0x0f, kMarkBit = 0x80;
-    const uint32_t count = pipeline(record)
-                               .stencil(op(VK_COMPARE_OP_ALWAYS, VK_STENCIL_OP_INCREMENT_AND_WRAP, 0, 0xff, kCountBits),
-                                        op(VK_COMPARE_OP_ALWAYS, VK_STENCIL_OP_DECREMENT_AND_WRAP, 0, 0xff, kCountBits))
-                               .writeMask(0);
+    const uint32_t count =
+        pipeline(record)
+            .stencil(op(VK_COMPARE_OP_ALWAYS, VK_STENCIL_OP_INCREMENT_AND_WRAP, 0, 0xff, kCountBits),
+                     op(VK_COMPARE_OP_ALWAYS, VK_STENCIL_OP_DECREMENT_AND_WRAP, 0, 0xff, kCountBits))
+            .writeMask(0);
     const uint32_t starBuffer = record.vertexBuffer("star", star);
     const uint32_t coverBuffer = record.vertexBuffer("cover", cover);
     std::vector<uint32_t> paints;
@@ -179,9 +191,10 @@ Result<Scene> stencil_winding() {
 }
 
 Result<Scene> alpha_test() {
-    SceneRecorder record("alpha_test",
-                         "Three tilted sheets of leaves in front of one another: discard cuts them out, and what is "
-                         "discarded writes no depth.");
+    SceneRecorder record(
+        "alpha_test",
+        "Three tilted sheets of leaves in front of one another: discard cuts them out, and what is "
+        "discarded writes no depth.");
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
     const uint32_t depth = record.depthTarget("depth", VK_FORMAT_D16_UNORM, kSceneExtent);
     struct LeafVertex {
@@ -190,7 +203,8 @@ Result<Scene> alpha_test() {
         glm::vec3 color;
     };
     std::vector<LeafVertex> vertices;
-    const std::array<glm::vec3, 3> colors{{{0.86f, 0.42f, 0.2f}, {0.45f, 0.65f, 0.28f}, {0.16f, 0.4f, 0.36f}}};
+    const std::array<glm::vec3, 3> colors{
+        {{0.86f, 0.42f, 0.2f}, {0.45f, 0.65f, 0.28f}, {0.16f, 0.4f, 0.36f}}};
     for (int sheet = 0; sheet < 3; ++sheet) {  // front to back
         const auto i = static_cast<float>(sheet);
         const glm::vec2 shift(0.13f * i - 0.1f, 0.1f - 0.09f * i);
@@ -203,7 +217,8 @@ Result<Scene> alpha_test() {
         const LeafVertex c = corner(-1, 1, 1, 0.25f + 0.2f * i), d = corner(1, 1, 1.1f, 0.3f + 0.2f * i);
         vertices.insert(vertices.end(), {a, b, c, c, b, d});
     }
-    const uint32_t leaves = record.pipeline(record.vertex(R"(#version 450
+    const uint32_t leaves = record
+                                .pipeline(record.vertex(R"(#version 450
 layout(location = 0) in vec4 position;
 layout(location = 1) in vec2 uv;
 layout(location = 2) in vec3 color;
@@ -215,7 +230,7 @@ void main() {
     vColor = color;
 }
 )"),
-                                            record.fragment(R"(#version 450
+                                          record.fragment(R"(#version 450
 layout(location = 0) in vec2 vUv;
 layout(location = 1) in vec3 vColor;
 layout(location = 0) out vec4 color;
@@ -241,9 +256,10 @@ void main() {
 
 Result<Scene> msaa_resolve() {
     constexpr VkSampleCountFlagBits kSamples = VK_SAMPLE_COUNT_4_BIT;
-    SceneRecorder record("msaa_resolve",
-                         "Thin spokes and a depth-tested disc with four samples a pixel at the standard positions, resolved "
-                         "by averaging.");
+    SceneRecorder record(
+        "msaa_resolve",
+        "Thin spokes and a depth-tested disc with four samples a pixel at the standard positions, resolved "
+        "by averaging.");
     const uint32_t multisampled = record.colorTarget("multisampled", kRgba8, kSceneExtent, kSamples);
     const uint32_t resolved = record.colorTarget("resolved", kRgba8, kSceneExtent);
     const uint32_t depth = record.depthTarget("depth", VK_FORMAT_D32_SFLOAT, kSceneExtent, kSamples);
@@ -251,7 +267,8 @@ Result<Scene> msaa_resolve() {
     constexpr int kSpokes = 23;
     for (int spoke = 0; spoke < kSpokes; ++spoke) {
         const double turns = (spoke + 0.37) / kSpokes;
-        const glm::vec3 color = spoke % 2 == 0 ? glm::vec3(0.96f, 0.66f, 0.24f) : glm::vec3(0.3f, 0.7f, 0.83f);
+        const glm::vec3 color =
+            spoke % 2 == 0 ? glm::vec3(0.96f, 0.66f, 0.24f) : glm::vec3(0.3f, 0.7f, 0.83f);
         vertices.push_back({{0.013f, -0.021f, 0.3f}, color});
         vertices.push_back({{onCircle(turns - 0.004, 0.96), 0.5f}, color});
         vertices.push_back({{onCircle(turns + 0.004, 0.96), 0.5f}, color});

@@ -1,4 +1,5 @@
-// Scenes about getting primitives onto the screen: assembly, interpolation, instancing, clipping, shared edges.
+// Scenes about getting primitives onto the screen: assembly, interpolation, instancing, clipping, shared
+// edges.
 #include "conformance/scenes/recorder.h"
 #include "conformance/scenes/scenes.h"
 #include "conformance/scenes/shapes.h"
@@ -25,13 +26,15 @@ glm::vec2 onCircle(double turns, double radius) {
 }  // namespace
 
 Result<Scene> solid() {
-    SceneRecorder record("solid", "One triangle of one colour over a cleared target: coverage and nothing else.");
+    SceneRecorder record("solid",
+                         "One triangle of one colour over a cleared target: coverage and nothing else.");
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
-    const uint32_t pipeline = record.pipeline(record.vertex(R"(#version 450
+    const uint32_t pipeline = record
+                                  .pipeline(record.vertex(R"(#version 450
 layout(location = 0) in vec2 position;
 void main() { gl_Position = vec4(position, 0.0, 1.0); }
 )"),
-                                              record.fragment(R"(#version 450
+                                            record.fragment(R"(#version 450
 layout(location = 0) out vec4 color;
 void main() { color = vec4(0.957, 0.545, 0.196, 1.0); }
 )"))
@@ -47,7 +50,8 @@ void main() { color = vec4(0.957, 0.545, 0.196, 1.0); }
 
 Result<Scene> gouraud() {
     constexpr VkExtent2D kExtent{253, 241};
-    SceneRecorder record("gouraud", "Red, green and blue corners interpolated over a triangle; 253 x 241 pixels.");
+    SceneRecorder record("gouraud",
+                         "Red, green and blue corners interpolated over a triangle; 253 x 241 pixels.");
     const uint32_t target = record.colorTarget("color", kRgba8, kExtent);
     const uint32_t pipeline = colorPipeline(record);
     const uint32_t vertices =
@@ -61,8 +65,9 @@ Result<Scene> gouraud() {
 }
 
 Result<Scene> interpolation_modes() {
-    SceneRecorder record("interpolation_modes",
-                         "The same tilted quad with smooth, noperspective and flat colours, from left to right.");
+    SceneRecorder record(
+        "interpolation_modes",
+        "The same tilted quad with smooth, noperspective and flat colours, from left to right.");
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
     const uint32_t vertexShader = record.vertex(R"(#version 450
 layout(location = 0) in vec4 position;
@@ -83,7 +88,8 @@ void main() {
         glm::vec3 color;
     };
     // The far edge is at w = 4: a quad leaning back, two triangles of different provoking colours.
-    const Vertex a{{-0.85f, 0.9f, 0.1f, 1}, {0.98f, 0.85f, 0.24f}}, b{{0.85f, 0.9f, 0.1f, 1}, {0.9f, 0.2f, 0.35f}};
+    const Vertex a{{-0.85f, 0.9f, 0.1f, 1}, {0.98f, 0.85f, 0.24f}},
+        b{{0.85f, 0.9f, 0.1f, 1}, {0.9f, 0.2f, 0.35f}};
     const Vertex c{{-2.2f, -3.5f, 2, 4}, {0.15f, 0.3f, 0.7f}}, d{{2.2f, -3.5f, 2, 4}, {0.1f, 0.75f, 0.6f}};
     const uint32_t vertices = record.vertexBuffer("quad", std::vector<Vertex>{a, b, c, d, c, b});
     std::vector<uint32_t> pipelines;
@@ -102,9 +108,7 @@ void main() {
     }
     record.pass(kSceneExtent).color(target, {0.93f, 0.93f, 0.9f, 1});
     for (size_t i = 0; i < pipelines.size(); ++i) {
-        record.draw(pipelines[i], 6)
-            .vertices(vertices)
-            .viewport(2 + 84 * static_cast<float>(i), 20, 84, 216);
+        record.draw(pipelines[i], 6).vertices(vertices).viewport(2 + 84 * static_cast<float>(i), 20, 84, 216);
     }
     record.output(target);
     return record.finish();
@@ -114,9 +118,10 @@ Result<Scene> indexed_strip() {
     constexpr VkExtent2D kExtent{255, 257};
     constexpr uint32_t kColumns = 24, kRibbons = 7;
     constexpr uint16_t kRestart = 0xffff;
-    SceneRecorder record("indexed_strip",
-                         "Ribbons as one triangle strip with 16-bit indices and restarts, below a hexagon as a list with "
-                         "32-bit indices, a first index and a vertex offset; 255 x 257 pixels.");
+    SceneRecorder record(
+        "indexed_strip",
+        "Ribbons as one triangle strip with 16-bit indices and restarts, below a hexagon as a list with "
+        "32-bit indices, a first index and a vertex offset; 255 x 257 pixels.");
     const uint32_t target = record.colorTarget("color", kRgba8, kExtent);
     std::vector<ColorVertex> vertices;
     std::vector<uint16_t> strip;
@@ -137,10 +142,12 @@ Result<Scene> indexed_strip() {
     const auto hexagonBase = static_cast<int32_t>(vertices.size());
     vertices.push_back({{0, 0}, {1, 0.98f, 0.9f}});
     for (int corner = 0; corner < 6; ++corner) {
-        vertices.push_back({onCircle(corner / 6.0, 0.31), {0.86f, 0.24f, 0.3f + 0.1f * static_cast<float>(corner)}});
+        vertices.push_back(
+            {onCircle(corner / 6.0, 0.31), {0.86f, 0.24f, 0.3f + 0.1f * static_cast<float>(corner)}});
     }
     std::vector<uint32_t> list{99999, 99999};  // skipped by the first index
-    for (uint32_t corner = 0; corner < 6; ++corner) list.insert(list.end(), {0, corner + 1, (corner + 1) % 6 + 1});
+    for (uint32_t corner = 0; corner < 6; ++corner)
+        list.insert(list.end(), {0, corner + 1, (corner + 1) % 6 + 1});
 
     const uint32_t stripPipeline = colorPipeline(record).topology(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP, true);
     const uint32_t listPipeline = colorPipeline(record);
@@ -161,9 +168,10 @@ Result<Scene> indexed_strip() {
 
 Result<Scene> instancing() {
     constexpr uint32_t kRows = 6, kSkipped = 3;
-    SceneRecorder record("instancing",
-                         "36 darts placed and turned by per-instance attributes, tinted by gl_InstanceIndex, with a first "
-                         "instance other than 0.");
+    SceneRecorder record(
+        "instancing",
+        "36 darts placed and turned by per-instance attributes, tinted by gl_InstanceIndex, with a first "
+        "instance other than 0.");
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
     struct Instance {
         glm::vec2 offset, turn;
@@ -177,7 +185,8 @@ Result<Scene> instancing() {
                              onCircle(std::sqrt(x * x + y * y) / 9, 0.19),
                              {40 + 40 * i % 200, 90 + 26 * (i / kRows), 230 - 30 * (i % kRows), 255}});
     }
-    const uint32_t pipeline = record.pipeline(record.vertex(R"(#version 450
+    const uint32_t pipeline = record
+                                  .pipeline(record.vertex(R"(#version 450
 layout(location = 0) in vec2 position;
 layout(location = 1) in vec2 offset;
 layout(location = 2) in vec2 turn;
@@ -190,7 +199,7 @@ void main() {
     vColor = tint.rgb * shade * (0.7 + 0.3 * position.x);
 }
 )"),
-                                              record.fragment(kColorFragmentGlsl))
+                                            record.fragment(kColorFragmentGlsl))
                                   .binding(sizeof(glm::vec2))
                                   .attribute(VK_FORMAT_R32G32_SFLOAT, 0)
                                   .binding(sizeof(Instance), VK_VERTEX_INPUT_RATE_INSTANCE)
@@ -198,8 +207,8 @@ void main() {
                                   .attribute(VK_FORMAT_R32G32_SFLOAT, offsetof(Instance, turn))
                                   .attribute(VK_FORMAT_R8G8B8A8_UNORM, offsetof(Instance, color));
     const uint32_t dart = record.vertexBuffer(
-        "dart",
-        std::vector<glm::vec2>{{0.9f, 0}, {-0.7f, 0.62f}, {-0.3f, 0}, {0.9f, 0}, {-0.3f, 0}, {-0.7f, -0.62f}});
+        "dart", std::vector<glm::vec2>{
+                    {0.9f, 0}, {-0.7f, 0.62f}, {-0.3f, 0}, {0.9f, 0}, {-0.3f, 0}, {-0.7f, -0.62f}});
     const uint32_t instanceBuffer = record.vertexBuffer("instances", instances);
     record.pass(kSceneExtent).color(target, {0.95f, 0.94f, 0.91f, 1});
     record.draw(pipeline, 6).vertices(dart, 0).vertices(instanceBuffer, 1).instances(kRows * kRows, kSkipped);
@@ -208,7 +217,8 @@ void main() {
 }
 
 Result<Scene> push_constants() {
-    SceneRecorder record("push_constants", "Eighteen hexagons, each with its own transform and colours in push constants.");
+    SceneRecorder record("push_constants",
+                         "Eighteen hexagons, each with its own transform and colours in push constants.");
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
     struct Constants {
         glm::vec4 transform;  // column-major 2x2
@@ -223,7 +233,8 @@ layout(push_constant) uniform Constants {
     vec2 offset;
 } push;
 )";
-    const uint32_t pipeline = record.pipeline(record.vertex(std::string(kBlock) + R"(
+    const uint32_t pipeline = record
+                                  .pipeline(record.vertex(std::string(kBlock) + R"(
 layout(location = 0) in vec3 corner;
 layout(location = 0) out float rim;
 void main() {
@@ -231,7 +242,7 @@ void main() {
     rim = corner.z;
 }
 )"),
-                                              record.fragment(std::string(kBlock) + R"(
+                                            record.fragment(std::string(kBlock) + R"(
 layout(location = 0) in float rim;
 layout(location = 0) out vec4 color;
 void main() { color = mix(push.inner, push.outer, rim); }
@@ -265,10 +276,11 @@ void main() { color = mix(push.inner, push.outer, rim); }
 Result<Scene> shared_edges() {
     constexpr int kSpokes = 96, kRings = 6;
     SceneRecorder record("shared_edges",
-                         "A fan of thin cells in six rings: its cells share every edge and cover the target beyond its borders, adding 1 to a count each. "
+                         "A fan of thin cells in six rings: its cells share every edge and cover the target "
+                         "beyond its borders, adding 1 to a count each. "
                          "Every count must be 1: black is a hole, magenta a pixel hit twice.");
-    const uint32_t counts = record.colorTarget("counts", kRgba8, kSceneExtent, VK_SAMPLE_COUNT_1_BIT,
-                                               VK_IMAGE_USAGE_SAMPLED_BIT);
+    const uint32_t counts =
+        record.colorTarget("counts", kRgba8, kSceneExtent, VK_SAMPLE_COUNT_1_BIT, VK_IMAGE_USAGE_SAMPLED_BIT);
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
     SceneRandom random(2024);
     const glm::vec2 center(0.13f, -0.09f);
@@ -288,7 +300,9 @@ Result<Scene> shared_edges() {
     }
     for (int ring = 0; ring < kRings; ++ring) {
         for (int spoke = 0; spoke < kSpokes; ++spoke) {
-            const auto at = [&](int r, int s) { return points[static_cast<size_t>(r * kSpokes + s % kSpokes)]; };
+            const auto at = [&](int r, int s) {
+                return points[static_cast<size_t>(r * kSpokes + s % kSpokes)];
+            };
             // Multiples of 1/255 add up without rounding: red counts, green and blue are the cell's colour.
             const glm::vec3 color(1.0f / 255, static_cast<float>(60 + random.next() % 120) / 255,
                                   static_cast<float>(90 + ring * 20) / 255);
@@ -306,9 +320,8 @@ Result<Scene> shared_edges() {
     add.srcColorBlendFactor = add.dstColorBlendFactor = VK_BLEND_FACTOR_ONE;
     add.srcAlphaBlendFactor = add.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
     add.colorWriteMask = 0xf;
-    const uint32_t countPipeline =
-        record
-            .pipeline(record.vertex(R"(#version 450
+    const uint32_t countPipeline = record
+                                       .pipeline(record.vertex(R"(#version 450
 layout(location = 0) in vec2 position;
 layout(location = 1) in vec3 color;
 layout(location = 0) flat out vec3 vColor;
@@ -317,16 +330,17 @@ void main() {
     vColor = color;
 }
 )"),
-                      record.fragment(R"(#version 450
+                                                 record.fragment(R"(#version 450
 layout(location = 0) flat in vec3 vColor;
 layout(location = 0) out vec4 color;
 void main() { color = vec4(vColor, 0.0); }
 )"))
-            .binding(sizeof(ColorVertex))
-            .attribute(VK_FORMAT_R32G32_SFLOAT, offsetof(ColorVertex, position))
-            .attribute(VK_FORMAT_R32G32B32_SFLOAT, offsetof(ColorVertex, color))
-            .blend(add);
-    const uint32_t showPipeline = record.pipeline(record.vertex(kCoverVertexGlsl), record.fragment(R"(#version 450
+                                       .binding(sizeof(ColorVertex))
+                                       .attribute(VK_FORMAT_R32G32_SFLOAT, offsetof(ColorVertex, position))
+                                       .attribute(VK_FORMAT_R32G32B32_SFLOAT, offsetof(ColorVertex, color))
+                                       .blend(add);
+    const uint32_t showPipeline =
+        record.pipeline(record.vertex(kCoverVertexGlsl), record.fragment(R"(#version 450
 layout(binding = 0) uniform sampler2D counts;
 layout(location = 0) out vec4 color;
 void main() {
@@ -348,9 +362,10 @@ void main() {
 }
 
 Result<Scene> near_plane() {
-    SceneRecorder record("near_plane",
-                         "A corridor whose walls run from far ahead to behind the eye: every polygon crosses the near plane, "
-                         "some have vertices with negative w.");
+    SceneRecorder record(
+        "near_plane",
+        "A corridor whose walls run from far ahead to behind the eye: every polygon crosses the near plane, "
+        "some have vertices with negative w.");
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
     const uint32_t depth = record.depthTarget("depth", VK_FORMAT_D32_SFLOAT, kSceneExtent);
     struct Vertex {
@@ -373,7 +388,8 @@ Result<Scene> near_plane() {
     vertices.insert(vertices.end(), {{{-1.1f, -0.4f, 1.5f}, {0.9f, 0.95f, 0.6f}},
                                      {{0.4f, -0.8f, -2.2f}, {0.2f, 0.8f, 0.5f}},
                                      {{1.5f, 0.2f, -5.0f}, {0.95f, 0.3f, 0.4f}}});
-    const uint32_t pipeline = record.pipeline(record.vertex(R"(#version 450
+    const uint32_t pipeline = record
+                                  .pipeline(record.vertex(R"(#version 450
 layout(push_constant) uniform Constants { mat4 camera; } push;
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 color;
@@ -383,7 +399,7 @@ void main() {
     vColor = color;
 }
 )"),
-                                              record.fragment(kColorFragmentGlsl))
+                                            record.fragment(kColorFragmentGlsl))
                                   .binding(sizeof(Vertex))
                                   .attribute(VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position))
                                   .attribute(VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, color))

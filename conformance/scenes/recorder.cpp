@@ -166,7 +166,8 @@ DrawRecorder& DrawRecorder::texture(uint32_t binding, uint32_t image, uint32_t s
     return *this;
 }
 
-DrawRecorder& DrawRecorder::viewport(float x, float y, float width, float height, float minDepth, float maxDepth) {
+DrawRecorder& DrawRecorder::viewport(float x, float y, float width, float height, float minDepth,
+                                     float maxDepth) {
     draw_->viewport = {x, y, width, height, minDepth, maxDepth};
     return *this;
 }
@@ -185,7 +186,9 @@ uint32_t SceneRecorder::addBuffer(std::string_view name, VkBufferUsageFlags usag
     return append(scene_.buffers, {std::string(name), usage, std::move(data)});
 }
 
-uint32_t SceneRecorder::addImage(SceneImage image) { return append(scene_.images, std::move(image)); }
+uint32_t SceneRecorder::addImage(SceneImage image) {
+    return append(scene_.images, std::move(image));
+}
 
 uint32_t SceneRecorder::colorTarget(std::string_view name, VkFormat format, VkExtent2D extent,
                                     VkSampleCountFlagBits samples, VkImageUsageFlags moreUsage) {
@@ -221,7 +224,8 @@ uint32_t SceneRecorder::texture(std::string_view name, VkFormat format, VkExtent
     return addImage(std::move(image));
 }
 
-uint32_t SceneRecorder::mipmappedTexture(std::string_view name, VkFormat format, VkExtent2D extent, Bytes level0) {
+uint32_t SceneRecorder::mipmappedTexture(std::string_view name, VkFormat format, VkExtent2D extent,
+                                         Bytes level0) {
     SceneImage image;
     image.name = name;
     image.format = format;
@@ -235,7 +239,9 @@ uint32_t SceneRecorder::mipmappedTexture(std::string_view name, VkFormat format,
     return index;
 }
 
-uint32_t SceneRecorder::sampler(const SceneSampler& sampler) { return append(scene_.samplers, sampler); }
+uint32_t SceneRecorder::sampler(const SceneSampler& sampler) {
+    return append(scene_.samplers, sampler);
+}
 
 uint32_t SceneRecorder::sampler(VkFilter filter, VkSamplerAddressMode address) {
     SceneSampler state;
@@ -249,9 +255,8 @@ uint32_t SceneRecorder::shader(VkShaderStageFlagBits stage, std::string_view gls
     SceneShader shader;
     shader.stage = stage;
     shader.glsl = glsl;
-    const std::string name =
-        scene_.name + "/shader" + std::to_string(scene_.shaders.size()) +
-        (stage == VK_SHADER_STAGE_VERTEX_BIT ? ".vert" : ".frag");
+    const std::string name = scene_.name + "/shader" + std::to_string(scene_.shaders.size()) +
+                             (stage == VK_SHADER_STAGE_VERTEX_BIT ? ".vert" : ".frag");
     VnGlslDesc desc{};
     desc.stage = stage;
     desc.source = shader.glsl.c_str();
@@ -272,7 +277,8 @@ uint32_t SceneRecorder::shader(VkShaderStageFlagBits stage, std::string_view gls
 void SceneRecorder::specialize(uint32_t shader, uint32_t id, uint32_t value) {
     SceneShader& target = scene_.shaders[shader];
     const auto bytes = bytesOf(std::span<const uint32_t>(&value, 1));
-    target.specialization.push_back({id, static_cast<uint32_t>(target.specializationData.size()), bytes.size()});
+    target.specialization.push_back(
+        {id, static_cast<uint32_t>(target.specializationData.size()), bytes.size()});
     target.specializationData.insert(target.specializationData.end(), bytes.begin(), bytes.end());
 }
 
@@ -296,13 +302,16 @@ DrawRecorder SceneRecorder::draw(uint32_t pipeline, uint32_t count) {
     SceneDraw draw;
     draw.pipeline = pipeline;
     draw.count = count;
-    draw.viewport = {0, 0, static_cast<float>(pass.extent.width), static_cast<float>(pass.extent.height), 0, 1};
+    draw.viewport = {0, 0, static_cast<float>(pass.extent.width), static_cast<float>(pass.extent.height),
+                     0, 1};
     draw.scissor = {{0, 0}, pass.extent};
     pass.draws.push_back(std::move(draw));
     return DrawRecorder(pass.draws.back());
 }
 
-void SceneRecorder::output(uint32_t image) { scene_.outputs.push_back(image); }
+void SceneRecorder::output(uint32_t image) {
+    scene_.outputs.push_back(image);
+}
 
 Result<Scene> SceneRecorder::finish() {
     if (!status_.ok()) return status_.error();

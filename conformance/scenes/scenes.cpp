@@ -14,7 +14,9 @@ constexpr auto kScenes = std::to_array<SceneEntry>({
 
 }  // namespace
 
-std::span<const SceneEntry> allScenes() { return kScenes; }
+std::span<const SceneEntry> allScenes() {
+    return kScenes;
+}
 
 const SceneEntry* findScene(std::string_view name) {
     const auto found = std::find_if(kScenes.begin(), kScenes.end(),

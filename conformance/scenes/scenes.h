@@ -8,40 +8,40 @@
 #include <string_view>
 
 // X(function), grouped by the file that defines it; the function's name is the scene's name.
-#define VERNIER_SCENES(X)  \
-    /* geometry.cpp */     \
-    X(solid)               \
-    X(gouraud)             \
-    X(interpolation_modes) \
-    X(indexed_strip)       \
-    X(instancing)          \
-    X(push_constants)      \
-    X(shared_edges)        \
-    X(near_plane)          \
+#define VERNIER_SCENES(X)    \
+    /* geometry.cpp */       \
+    X(solid)                 \
+    X(gouraud)               \
+    X(interpolation_modes)   \
+    X(indexed_strip)         \
+    X(instancing)            \
+    X(push_constants)        \
+    X(shared_edges)          \
+    X(near_plane)            \
     /* fragment_tests.cpp */ \
-    X(scissor_viewport)    \
-    X(depth_intersect)     \
-    X(stencil_winding)     \
-    X(alpha_test)          \
-    X(msaa_resolve)        \
-    /* color_output.cpp */ \
-    X(blend_modes)         \
-    X(srgb)                \
-    X(multiple_targets)    \
-    /* texturing.cpp */    \
-    X(texture_nearest)     \
-    X(texture_bilinear)    \
-    X(texture_lod)         \
-    X(texture_trilinear)   \
-    X(copy_and_blit)       \
-    X(blit_mirrored)       \
-    /* multi_pass.cpp */   \
-    X(render_to_texture)   \
-    X(shadow_map)          \
-    /* shading.cpp */      \
-    X(lit_model)           \
-    X(derivatives)         \
-    X(julia)               \
+    X(scissor_viewport)      \
+    X(depth_intersect)       \
+    X(stencil_winding)       \
+    X(alpha_test)            \
+    X(msaa_resolve)          \
+    /* color_output.cpp */   \
+    X(blend_modes)           \
+    X(srgb)                  \
+    X(multiple_targets)      \
+    /* texturing.cpp */      \
+    X(texture_nearest)       \
+    X(texture_bilinear)      \
+    X(texture_lod)           \
+    X(texture_trilinear)     \
+    X(copy_and_blit)         \
+    X(blit_mirrored)         \
+    /* multi_pass.cpp */     \
+    X(render_to_texture)     \
+    X(shadow_map)            \
+    /* shading.cpp */        \
+    X(lit_model)             \
+    X(derivatives)           \
+    X(julia)                 \
     X(integer_noise)
 
 namespace vernier::conformance {

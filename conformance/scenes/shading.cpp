@@ -15,7 +15,8 @@ constexpr VkFormat kRgba8 = VK_FORMAT_R8G8B8A8_UNORM;
 
 Result<Mesh> loadObj(const std::string& text) {
     tinyobj::ObjReader reader;
-    if (!reader.ParseFromString(text, "")) return invalidArgument("the OBJ text does not load: " + reader.Error());
+    if (!reader.ParseFromString(text, ""))
+        return invalidArgument("the OBJ text does not load: " + reader.Error());
     const tinyobj::attrib_t& attributes = reader.GetAttrib();
     Mesh mesh;
     std::map<std::tuple<int, int, int>, uint16_t> known;
@@ -28,8 +29,9 @@ Result<Mesh> loadObj(const std::string& text) {
                 const float* position = &attributes.vertices[3 * static_cast<size_t>(index.vertex_index)];
                 const float* normal = &attributes.normals[3 * static_cast<size_t>(index.normal_index)];
                 const float* uv = &attributes.texcoords[2 * static_cast<size_t>(index.texcoord_index)];
-                mesh.vertices.push_back(
-                    {{position[0], position[1], position[2]}, {normal[0], normal[1], normal[2]}, {uv[0], uv[1]}});
+                mesh.vertices.push_back({{position[0], position[1], position[2]},
+                                         {normal[0], normal[1], normal[2]},
+                                         {uv[0], uv[1]}});
             }
             mesh.indices.push_back(entry->second);
         }
@@ -40,7 +42,9 @@ Result<Mesh> loadObj(const std::string& text) {
 }  // namespace
 
 Result<Scene> lit_model() {
-    SceneRecorder record("lit_model", "A torus knot read from OBJ text, lit by two half-Lambert lights from a uniform buffer.");
+    SceneRecorder record(
+        "lit_model",
+        "A torus knot read from OBJ text, lit by two half-Lambert lights from a uniform buffer.");
     Result<Mesh> loaded = loadObj(torusKnotObj(160, 14));
     if (!loaded) return loaded.error();
     const Mesh& mesh = loaded.value();
@@ -51,7 +55,8 @@ Result<Scene> lit_model() {
         glm::vec4 direction[2];
         glm::vec4 color[2];
     };
-    const uint32_t pipeline = record.pipeline(record.vertex(R"(#version 450
+    const uint32_t pipeline = record
+                                  .pipeline(record.vertex(R"(#version 450
 layout(binding = 0) uniform Frame {
     mat4 camera;
     vec4 direction[2];
@@ -68,7 +73,7 @@ void main() {
     vUv = uv;
 }
 )"),
-                                              record.fragment(R"(#version 450
+                                            record.fragment(R"(#version 450
 layout(binding = 0) uniform Frame {
     mat4 camera;
     vec4 direction[2];
@@ -97,10 +102,10 @@ void main() {
                                   .attribute(VK_FORMAT_R32G32_SFLOAT, offsetof(SolidVertex, uv))
                                   .cull(VK_CULL_MODE_BACK_BIT, VK_FRONT_FACE_COUNTER_CLOCKWISE)
                                   .depth(VK_COMPARE_OP_LESS);
-    const uint32_t frame = record.uniformBuffer(
-        "frame", Frame{cameraMatrix({1.1, 3.3, 3.4}, {0.06, -0.1, 0}, 45, 1, 1, 12),
-                       {{0.36f, 0.8f, 0.48f, 0}, {-0.8f, -0.36f, 0.48f, 0}},
-                       {{0.98f, 0.95f, 0.88f, 0}, {0.12f, 0.22f, 0.42f, 0}}});
+    const uint32_t frame =
+        record.uniformBuffer("frame", Frame{cameraMatrix({1.1, 3.3, 3.4}, {0.06, -0.1, 0}, 45, 1, 1, 12),
+                                            {{0.36f, 0.8f, 0.48f, 0}, {-0.8f, -0.36f, 0.48f, 0}},
+                                            {{0.98f, 0.95f, 0.88f, 0}, {0.12f, 0.22f, 0.42f, 0}}});
     const uint32_t vertices = record.vertexBuffer("knot", mesh.vertices);
     const uint32_t indices = record.indexBuffer("knot indices", mesh.indices);
     record.pass(kSceneExtent).color(target, {0.1f, 0.12f, 0.17f, 1}).depthStencil(depth);
@@ -114,14 +119,18 @@ void main() {
 }
 
 Result<Scene> derivatives() {
-    SceneRecorder record("derivatives", "A grid on a plane in perspective, its lines kept one pixel wide by dFdx and dFdy.");
+    SceneRecorder record("derivatives",
+                         "A grid on a plane in perspective, its lines kept one pixel wide by dFdx and dFdy.");
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
     const glm::mat4 camera = cameraMatrix({0.4, 1.2, 3}, {-0.2, 0.1, -1}, 55, 1, 0.2, 60);
     const auto at = [&](float x, float z) {
         return TexturedVertex{camera * glm::vec4(x, 0, z, 1), {x * 2.0f, z * 2.0f}};
     };
-    const std::vector<TexturedVertex> floor{at(-9, 2.9f), at(9, 2.9f), at(-9, -22), at(-9, -22), at(9, 2.9f), at(9, -22)};
-    const uint32_t pipeline = record.pipeline(record.vertex(kTexturedVertexGlsl), record.fragment(R"(#version 450
+    const std::vector<TexturedVertex> floor{at(-9, 2.9f), at(9, 2.9f), at(-9, -22),
+                                            at(-9, -22),  at(9, 2.9f), at(9, -22)};
+    const uint32_t pipeline =
+        record
+            .pipeline(record.vertex(kTexturedVertexGlsl), record.fragment(R"(#version 450
 layout(location = 0) in vec2 vUv;
 layout(location = 0) out vec4 color;
 void main() {
@@ -134,9 +143,9 @@ void main() {
     color = vec4(mix(ground, vec3(0.85, 0.3, 0.25), ink), 1.0);
 }
 )"))
-                                  .binding(sizeof(TexturedVertex))
-                                  .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(TexturedVertex, position))
-                                  .attribute(VK_FORMAT_R32G32_SFLOAT, offsetof(TexturedVertex, uv));
+            .binding(sizeof(TexturedVertex))
+            .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(TexturedVertex, position))
+            .attribute(VK_FORMAT_R32G32_SFLOAT, offsetof(TexturedVertex, uv));
     const uint32_t buffer = record.vertexBuffer("floor", floor);
     record.pass(kSceneExtent).color(target, {0.11f, 0.16f, 0.23f, 1});
     record.draw(pipeline, 6).vertices(buffer);
@@ -146,7 +155,8 @@ void main() {
 
 Result<Scene> julia() {
     SceneRecorder record("julia",
-                         "Escape times of a quadratic map: up to 96 turns of a loop that every pixel leaves at another time. All "
+                         "Escape times of a quadratic map: up to 96 turns of a loop that every pixel leaves "
+                         "at another time. All "
                          "arithmetic is precise, so every driver must count alike.");
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
     const uint32_t fragmentShader = record.fragment(R"(#version 450
@@ -184,9 +194,10 @@ void main() {
 
 Result<Scene> integer_noise() {
     constexpr VkExtent2D kExtent{239, 211};
-    SceneRecorder record("integer_noise",
-                         "Five octaves of value noise from an integer hash, banded like a map: integer arithmetic, shifts and "
-                         "switches; 239 x 211 pixels.");
+    SceneRecorder record(
+        "integer_noise",
+        "Five octaves of value noise from an integer hash, banded like a map: integer arithmetic, shifts and "
+        "switches; 239 x 211 pixels.");
     const uint32_t target = record.colorTarget("color", kRgba8, kExtent);
     const uint32_t pipeline = record.pipeline(record.vertex(kCoverVertexGlsl), record.fragment(R"(#version 450
 layout(location = 0) out vec4 color;

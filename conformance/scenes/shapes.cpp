@@ -58,7 +58,8 @@ Mesh cubeMesh() {
                 const glm::vec3 position = normal + u * (2 * uv.x - 1) + v * (2 * uv.y - 1);
                 mesh.vertices.push_back({position, normal, uv});
             }
-            for (const int corner : {0, 1, 2, 0, 2, 3}) mesh.indices.push_back(static_cast<uint16_t>(base + corner));
+            for (const int corner : {0, 1, 2, 0, 2, 3})
+                mesh.indices.push_back(static_cast<uint16_t>(base + corner));
         }
     }
     return mesh;
@@ -166,14 +167,30 @@ Bytes spritePicture() {
     std::vector<glm::u8vec4> picture;
     for (const char code : kRows) {
         switch (code) {
-            case 'o': picture.push_back({27, 31, 59, 255}); break;
-            case 's': picture.push_back({242, 193, 78, 255}); break;
-            case 'w': picture.push_back({252, 252, 247, 255}); break;
-            case 'k': picture.push_back({20, 20, 24, 255}); break;
-            case 'r': picture.push_back({218, 65, 103, 255}); break;
-            case 'b': picture.push_back({63, 136, 197, 255}); break;
-            case 'g': picture.push_back({95, 173, 86, 255}); break;
-            default: picture.push_back({219, 235, 240, 255}); break;
+            case 'o':
+                picture.push_back({27, 31, 59, 255});
+                break;
+            case 's':
+                picture.push_back({242, 193, 78, 255});
+                break;
+            case 'w':
+                picture.push_back({252, 252, 247, 255});
+                break;
+            case 'k':
+                picture.push_back({20, 20, 24, 255});
+                break;
+            case 'r':
+                picture.push_back({218, 65, 103, 255});
+                break;
+            case 'b':
+                picture.push_back({63, 136, 197, 255});
+                break;
+            case 'g':
+                picture.push_back({95, 173, 86, 255});
+                break;
+            default:
+                picture.push_back({219, 235, 240, 255});
+                break;
         }
     }
     return texels(picture);

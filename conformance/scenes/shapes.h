@@ -35,8 +35,10 @@ struct Mesh {
     std::vector<uint16_t> indices;
 };
 
-/// World to Vulkan clip space (y down, depth 0..1); the field of view is vertical, in degrees. Computed in double.
-glm::mat4 cameraMatrix(glm::dvec3 eye, glm::dvec3 target, double fieldOfView, double aspect, double nearZ, double farZ);
+/// World to Vulkan clip space (y down, depth 0..1); the field of view is vertical, in degrees. Computed in
+/// double.
+glm::mat4 cameraMatrix(glm::dvec3 eye, glm::dvec3 target, double fieldOfView, double aspect, double nearZ,
+                       double farZ);
 glm::mat4 orthographicMatrix(glm::dvec3 eye, glm::dvec3 target, double halfSize, double nearZ, double farZ);
 
 /// A pseudo-random sequence, the same everywhere (PCG-XSH-RR; O'Neill, "PCG", 2014).
@@ -52,7 +54,8 @@ class SceneRandom {
     uint64_t state_;
 };
 
-/// A cube of edge 2 around the origin, outward faces counter-clockwise seen from outside in a right-handed world.
+/// A cube of edge 2 around the origin, outward faces counter-clockwise seen from outside in a right-handed
+/// world.
 Mesh cubeMesh();
 /// A ball of radius 1 around the origin.
 Mesh sphereMesh(uint32_t slices, uint32_t stacks);
@@ -69,7 +72,8 @@ inline constexpr VkExtent2D kSpriteExtent{12, 12};
 /// Position (vec2) and colour (vec3) straight through.
 extern const char* const kColorVertexGlsl;
 extern const char* const kColorFragmentGlsl;
-/// Clip position (vec4) and texture coordinate (vec2) straight through; one combined image sampler at binding 0.
+/// Clip position (vec4) and texture coordinate (vec2) straight through; one combined image sampler at binding
+/// 0.
 extern const char* const kTexturedVertexGlsl;
 extern const char* const kTexturedFragmentGlsl;
 /// One triangle over the whole viewport from gl_VertexIndex, without inputs or outputs.

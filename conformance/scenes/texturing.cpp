@@ -12,7 +12,8 @@ namespace {
 constexpr VkFormat kRgba8 = VK_FORMAT_R8G8B8A8_UNORM;
 
 constexpr std::array kAddressModes{VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT,
-                                   VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER};
+                                   VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                   VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER};
 
 PipelineRecorder texturedPipeline(SceneRecorder& record, const char* fragmentGlsl = kTexturedFragmentGlsl) {
     return record.pipeline(record.vertex(kTexturedVertexGlsl), record.fragment(fragmentGlsl))
@@ -31,10 +32,9 @@ Result<Scene> addressModes(SceneRecorder record, uint32_t texture, VkFilter filt
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
     const uint32_t pipeline = texturedPipeline(record);
     // A slightly turned square; the coordinates are odd enough to keep texel borders off pixel centres.
-    const uint32_t vertices = record.vertexBuffer("quad", quad({{-0.93f, -0.81f, 0, 1}, {-0.713f, -0.631f}},
-                                                               {{0.87f, -0.95f, 0, 1}, {1.671f, -0.749f}},
-                                                               {{-0.83f, 0.93f, 0, 1}, {-0.617f, 1.583f}},
-                                                               {{0.95f, 0.83f, 0, 1}, {1.739f, 1.467f}}));
+    const uint32_t vertices = record.vertexBuffer(
+        "quad", quad({{-0.93f, -0.81f, 0, 1}, {-0.713f, -0.631f}}, {{0.87f, -0.95f, 0, 1}, {1.671f, -0.749f}},
+                     {{-0.83f, 0.93f, 0, 1}, {-0.617f, 1.583f}}, {{0.95f, 0.83f, 0, 1}, {1.739f, 1.467f}}));
     record.pass(kSceneExtent).color(target, {0.13f, 0.15f, 0.2f, 1});
     for (uint32_t i = 0; i < kAddressModes.size(); ++i) {
         SceneSampler state;
@@ -54,34 +54,44 @@ Result<Scene> addressModes(SceneRecorder record, uint32_t texture, VkFilter filt
 
 constexpr VkImageSubresourceLayers kColorLayer{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
 
-SceneBlitImage spriteBlit(uint32_t sprite, uint32_t target, VkOffset2D from0, VkOffset2D from1, VkOffset2D to0,
-                          VkOffset2D to1, VkFilter filter) {
-    VkImageBlit region{kColorLayer, {{from0.x, from0.y, 0}, {from1.x, from1.y, 1}},
-                       kColorLayer, {{to0.x, to0.y, 0}, {to1.x, to1.y, 1}}};
+SceneBlitImage spriteBlit(uint32_t sprite, uint32_t target, VkOffset2D from0, VkOffset2D from1,
+                          VkOffset2D to0, VkOffset2D to1, VkFilter filter) {
+    VkImageBlit region{kColorLayer,
+                       {{from0.x, from0.y, 0}, {from1.x, from1.y, 1}},
+                       kColorLayer,
+                       {{to0.x, to0.y, 0}, {to1.x, to1.y, 1}}};
     return {sprite, target, region, filter};
 }
 
 }  // namespace
 
 Result<Scene> texture_nearest() {
-    SceneRecorder record("texture_nearest", "A 12 x 12 sprite magnified without filtering under the four address modes.");
+    SceneRecorder record("texture_nearest",
+                         "A 12 x 12 sprite magnified without filtering under the four address modes.");
     const uint32_t texture = record.texture("sprite", kRgba8, kSpriteExtent, {spritePicture()});
     return addressModes(std::move(record), texture, VK_FILTER_NEAREST, VK_BORDER_COLOR_FLOAT_OPAQUE_BLACK);
 }
 
 Result<Scene> texture_bilinear() {
-    SceneRecorder record("texture_bilinear", "Random texels, 5 x 7, magnified with a linear filter under the four address modes.");
+    SceneRecorder record(
+        "texture_bilinear",
+        "Random texels, 5 x 7, magnified with a linear filter under the four address modes.");
     const uint32_t texture = record.texture("noise", kRgba8, {5, 7}, {noisePicture({5, 7}, 11)});
     return addressModes(std::move(record), texture, VK_FILTER_LINEAR, VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE);
 }
 
 Result<Scene> texture_lod() {
     SceneRecorder record("texture_lod",
-                         "Explicit levels of detail from -1 to 6 over levels of six colours: nearest level above, blended levels "
+                         "Explicit levels of detail from -1 to 6 over levels of six colours: nearest level "
+                         "above, blended levels "
                          "in the middle, biased and clamped levels below.");
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
-    const std::array<glm::u8vec4, 6> colors{
-        {{231, 111, 81, 255}, {244, 162, 97, 255}, {233, 196, 106, 255}, {138, 177, 125, 255}, {42, 157, 143, 255}, {38, 70, 83, 255}}};
+    const std::array<glm::u8vec4, 6> colors{{{231, 111, 81, 255},
+                                             {244, 162, 97, 255},
+                                             {233, 196, 106, 255},
+                                             {138, 177, 125, 255},
+                                             {42, 157, 143, 255},
+                                             {38, 70, 83, 255}}};
     std::vector<Bytes> levels;
     for (uint32_t level = 0; level < colors.size(); ++level) {
         const VkExtent2D extent{32u >> level, 32u >> level};
@@ -98,10 +108,9 @@ void main() {
     color = textureLod(picture, vUv, lod);
 }
 )");
-    const uint32_t vertices = record.vertexBuffer("quad", quad({{-1, -1, 0, 1}, {0.013f, 0.017f}},
-                                                               {{1, -1, 0, 1}, {8.013f, 0.017f}},
-                                                               {{-1, 1, 0, 1}, {0.013f, 2.517f}},
-                                                               {{1, 1, 0, 1}, {8.013f, 2.517f}}));
+    const uint32_t vertices = record.vertexBuffer(
+        "quad", quad({{-1, -1, 0, 1}, {0.013f, 0.017f}}, {{1, -1, 0, 1}, {8.013f, 0.017f}},
+                     {{-1, 1, 0, 1}, {0.013f, 2.517f}}, {{1, 1, 0, 1}, {8.013f, 2.517f}}));
     SceneSampler state;
     state.magFilter = state.minFilter = VK_FILTER_NEAREST;
     std::array<SceneSampler, 3> samplers{state, state, state};
@@ -123,11 +132,13 @@ void main() {
 }
 
 Result<Scene> texture_trilinear() {
-    SceneRecorder record("texture_trilinear",
-                         "A checkered floor to the horizon through generated mip levels with a trilinear filter, and a wall "
-                         "that picks the nearest level.");
-    const uint32_t texture = record.mipmappedTexture(
-        "checker", kRgba8, {128, 128}, checkerPicture({128, 128}, 16, {236, 226, 208, 255}, {62, 76, 110, 255}));
+    SceneRecorder record(
+        "texture_trilinear",
+        "A checkered floor to the horizon through generated mip levels with a trilinear filter, and a wall "
+        "that picks the nearest level.");
+    const uint32_t texture =
+        record.mipmappedTexture("checker", kRgba8, {128, 128},
+                                checkerPicture({128, 128}, 16, {236, 226, 208, 255}, {62, 76, 110, 255}));
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
     SceneSampler state;
     state.magFilter = state.minFilter = VK_FILTER_LINEAR;
@@ -154,15 +165,17 @@ Result<Scene> texture_trilinear() {
 }
 
 Result<Scene> copy_and_blit() {
-    SceneRecorder record("copy_and_blit",
-                         "A sprite scaled up by nearest and by linear blits, scaled down, and copied; then copied onward from "
-                         "the target itself.");
+    SceneRecorder record(
+        "copy_and_blit",
+        "A sprite scaled up by nearest and by linear blits, scaled down, and copied; then copied onward from "
+        "the target itself.");
     const uint32_t sprite = record.texture("sprite", kRgba8, kSpriteExtent, {spritePicture()});
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
     const uint32_t result = record.colorTarget("result", kRgba8, kSceneExtent);
     record.pass(kSceneExtent).color(target, {0.17f, 0.24f, 0.31f, 1});
     record.pass(kSceneExtent).color(result, {0.86f, 0.92f, 0.94f, 1});
-    const auto copy = [&](uint32_t from, uint32_t to, VkOffset3D at, VkOffset3D destination, VkExtent3D extent) {
+    const auto copy = [&](uint32_t from, uint32_t to, VkOffset3D at, VkOffset3D destination,
+                          VkExtent3D extent) {
         record.copy({from, to, {kColorLayer, at, kColorLayer, destination, extent}});
     };
     record.blit(spriteBlit(sprite, target, {0, 0}, {12, 12}, {8, 8}, {116, 116}, VK_FILTER_NEAREST));
@@ -178,7 +191,8 @@ Result<Scene> copy_and_blit() {
 }
 
 Result<Scene> blit_mirrored() {
-    SceneRecorder record("blit_mirrored", "Blits that turn the picture over, across, down and both, nearest and linear.");
+    SceneRecorder record("blit_mirrored",
+                         "Blits that turn the picture over, across, down and both, nearest and linear.");
     const uint32_t sprite = record.texture("sprite", kRgba8, kSpriteExtent, {spritePicture()});
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
     record.pass(kSceneExtent).color(target, {0.17f, 0.24f, 0.31f, 1});

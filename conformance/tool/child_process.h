@@ -9,10 +9,13 @@ namespace vernier::conformance {
 
 struct ChildResult {
     bool ok = false;      // exited with 0
-    std::string failure;  // what it said, or "signal 11 (Segmentation fault)", "no end after 60 s" with its last output
+    std::string failure;  // what it said, or "signal 11 (Segmentation fault)", "no end after 60 s" with its
+                          // last output
 };
 
-/// Runs this executable with `arguments` and waits at most `timeoutSeconds`; then it is killed. Its output goes to `log`.
-ChildResult runChild(const std::vector<std::string>& arguments, const std::filesystem::path& log, double timeoutSeconds);
+/// Runs this executable with `arguments` and waits at most `timeoutSeconds`; then it is killed. Its output
+/// goes to `log`.
+ChildResult runChild(const std::vector<std::string>& arguments, const std::filesystem::path& log,
+                     double timeoutSeconds);
 
 }  // namespace vernier::conformance

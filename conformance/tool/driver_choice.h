@@ -15,8 +15,8 @@
 namespace vernier::conformance {
 
 struct DriverChoice {
-    std::string name;   // as on the command line: "api", "icd", "lavapipe", "swiftshader"
-    std::string title;  // for the report
+    std::string name;                // as on the command line: "api", "icd", "lavapipe", "swiftshader"
+    std::string title;               // for the report
     std::filesystem::path manifest;  // of the Vulkan driver; empty: Vernier's own API
     bool ours = false;
 
@@ -37,9 +37,10 @@ struct DriverPaths {
 /// All drivers in the order of the report, present or not.
 std::vector<DriverChoice> driverChoices(const DriverPaths& paths);
 
-/// Creates the driver in this process. For Vulkan drivers it sets the loader's environment variables first, so that a
-/// process can use one only.
-Result<std::unique_ptr<Driver>> createDriver(const DriverChoice& choice, const DriverPaths& paths, bool validate);
+/// Creates the driver in this process. For Vulkan drivers it sets the loader's environment variables first,
+/// so that a process can use one only.
+Result<std::unique_ptr<Driver>> createDriver(const DriverChoice& choice, const DriverPaths& paths,
+                                             bool validate);
 
 /// The oracle's images of a scene; `unsupported` in a build without the oracle.
 Result<std::vector<OracleImage>> judgeScene(const Scene& scene);

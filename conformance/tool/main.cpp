@@ -1,4 +1,5 @@
-// vernier-conformance: draws the conformance scenes, compares what the drivers made of them, and writes the report.
+// vernier-conformance: draws the conformance scenes, compares what the drivers made of them, and writes the
+// report.
 #include "conformance/report/picture.h"
 #include "conformance/scenes/scenes.h"
 #include "conformance/tool/driver_choice.h"
@@ -22,8 +23,8 @@ int fail(const Error& error) {
 int list(const std::vector<DriverChoice>& choices) {
     std::printf("drivers:\n");
     for (const DriverChoice& choice : choices) {
-        std::printf("  %-12s %s%s%s\n", choice.name.c_str(), choice.title.c_str(), choice.present() ? "" : " - absent: ",
-                    choice.absence.c_str());
+        std::printf("  %-12s %s%s%s\n", choice.name.c_str(), choice.title.c_str(),
+                    choice.present() ? "" : " - absent: ", choice.absence.c_str());
     }
     std::printf("scenes:\n");
     for (const SceneEntry& entry : allScenes()) {
@@ -46,8 +47,8 @@ Status writePictures(const Rendering& rendering, const std::filesystem::path& di
         const RenderedImage& image = rendering.images[i];
         const Result<std::string> png = encodePng(pictureOf(image, stretchFor(image)));
         if (!png) return png.error();
-        Status status = writeFile(directory / (rendering.scene + "." + std::to_string(i) + ".png"), png.value().data(),
-                                  png.value().size());
+        Status status = writeFile(directory / (rendering.scene + "." + std::to_string(i) + ".png"),
+                                  png.value().data(), png.value().size());
         if (!status) return status;
     }
     return {};
@@ -56,7 +57,8 @@ Status writePictures(const Rendering& rendering, const std::filesystem::path& di
 int render(const std::vector<DriverChoice>& choices, const DriverPaths& paths, const RenderOptions& options) {
     const auto choice = std::find_if(choices.begin(), choices.end(),
                                      [&](const DriverChoice& each) { return each.name == options.driver; });
-    if (choice == choices.end()) return fail(invalidArgument("--driver: no driver is called '" + options.driver + "'"));
+    if (choice == choices.end())
+        return fail(invalidArgument("--driver: no driver is called '" + options.driver + "'"));
     const SceneEntry* entry = findScene(options.scene);
     if (entry == nullptr) return fail(invalidArgument("--scene: no scene is called '" + options.scene + "'"));
     const Result<Scene> scene = entry->build();
@@ -98,30 +100,37 @@ int run(int argc, char** argv) {
     app.add_option("--swiftshader", paths.swiftShader, "Manifest of SwiftShader")->capture_default_str();
 
     RenderOptions renderOptions;
-    app.add_option("--profile", paths.profile, "Accuracy of the api driver: draft, fast, standard, fine or reference");
+    app.add_option("--profile", paths.profile,
+                   "Accuracy of the api driver: draft, fast, standard, fine or reference");
 
     CLI::App* listCommand = app.add_subcommand("list", "Name the drivers and the scenes");
     CLI::App* renderCommand = app.add_subcommand("render", "Draw one scene with one driver");
-    renderCommand->add_option("--driver", renderOptions.driver, "api, icd, lavapipe or swiftshader")->required();
+    renderCommand->add_option("--driver", renderOptions.driver, "api, icd, lavapipe or swiftshader")
+        ->required();
     renderCommand->add_option("--scene", renderOptions.scene, "Name of the scene")->required();
-    renderCommand->add_option("--out", renderOptions.out, "Folder for the raw images and the timings")->required();
-    renderCommand->add_flag("--validate", renderOptions.validate, "Fail on any error of VK_LAYER_KHRONOS_validation");
+    renderCommand->add_option("--out", renderOptions.out, "Folder for the raw images and the timings")
+        ->required();
+    renderCommand->add_flag("--validate", renderOptions.validate,
+                            "Fail on any error of VK_LAYER_KHRONOS_validation");
     renderCommand->add_flag("--png", renderOptions.png, "Write a PNG file beside each raw image");
 
-    CLI::App* oracleCommand = app.add_subcommand("oracle", "Compute what the specification permits in one scene");
+    CLI::App* oracleCommand =
+        app.add_subcommand("oracle", "Compute what the specification permits in one scene");
     std::string oracleScene;
     std::filesystem::path oracleOut;
     oracleCommand->add_option("--scene", oracleScene, "Name of the scene")->required();
     oracleCommand->add_option("--out", oracleOut, "File for the result")->required();
 
-    CLI::App* runCommand = app.add_subcommand("run", "Draw all scenes with all drivers, compare, and write the report");
+    CLI::App* runCommand =
+        app.add_subcommand("run", "Draw all scenes with all drivers, compare, and write the report");
     RunOptions runOptions;
     bool withoutOracle = false;
     runCommand->add_option("--out", runOptions.out, "Folder for the report")->capture_default_str();
     runCommand->add_option("--known-gaps", runOptions.knownGaps, "JSON file of known gaps");
     runCommand->add_option("--scene", runOptions.scenes, "Only these scenes");
     runCommand->add_option("--driver", runOptions.drivers, "Only these drivers");
-    runCommand->add_option("--timeout", runOptions.timeoutSeconds, "Seconds per scene and driver")->capture_default_str();
+    runCommand->add_option("--timeout", runOptions.timeoutSeconds, "Seconds per scene and driver")
+        ->capture_default_str();
     runCommand->add_option("--oracle-timeout", runOptions.oracleTimeoutSeconds, "Seconds per scene")
         ->capture_default_str();
     runCommand->add_flag("--validate", runOptions.validate, "Run with VK_LAYER_KHRONOS_validation");
@@ -133,8 +142,9 @@ int run(int argc, char** argv) {
     if (*renderCommand) return render(choices, paths, renderOptions);
     if (*oracleCommand) return judge(oracleScene, oracleOut);
     runOptions.oracle = !withoutOracle;
-    runOptions.commonArguments = {"--icd", paths.icd.string(), "--lavapipe", paths.lavapipe.string(), "--swiftshader",
-                                  paths.swiftShader.string(), "--profile", paths.profile};
+    runOptions.commonArguments = {
+        "--icd",         paths.icd.string(),         "--lavapipe", paths.lavapipe.string(),
+        "--swiftshader", paths.swiftShader.string(), "--profile",  paths.profile};
     const Result<bool> passed = runComparison(choices, runOptions);
     if (!passed) return fail(passed.error());
     return passed.value() ? 0 : 1;
@@ -143,4 +153,6 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace vernier::conformance
 
-int main(int argc, char** argv) { return vernier::conformance::run(argc, argv); }
+int main(int argc, char** argv) {
+    return vernier::conformance::run(argc, argv);
+}

@@ -1,5 +1,5 @@
-// One scene drawn by one driver, as it travels from the child process that drew it to the one that compares: a JSON file
-// with names and times beside one raw file per image.
+// One scene drawn by one driver, as it travels from the child process that drew it to the one that compares:
+// a JSON file with names and times beside one raw file per image.
 #pragma once
 
 #include "base/result.h"
@@ -18,7 +18,8 @@ struct Rendering {
     std::vector<RenderedImage> images;
 };
 
-/// Writes <directory>/<scene>.json and <directory>/<scene>.<n>.raw (texels as in RenderedImage), creating the directory.
+/// Writes <directory>/<scene>.json and <directory>/<scene>.<n>.raw (texels as in RenderedImage), creating the
+/// directory.
 Status saveRendering(const Rendering& rendering, const std::filesystem::path& directory);
 
 /// Reads what saveRendering() wrote.

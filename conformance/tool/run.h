@@ -17,12 +17,13 @@ struct RunOptions {
     std::vector<std::string> drivers;  // empty: all that are present
     bool validate = false;
     bool oracle = true;
-    double timeoutSeconds = 60;         // per scene and driver
-    double oracleTimeoutSeconds = 180;  // per scene
+    double timeoutSeconds = 60;                // per scene and driver
+    double oracleTimeoutSeconds = 180;         // per scene
     std::vector<std::string> commonArguments;  // handed on to every child
 };
 
-/// Returns whether every pixel of ours is explained and no known gap is stale. An error means that the run itself failed.
+/// Returns whether every pixel of ours is explained and no known gap is stale. An error means that the run
+/// itself failed.
 Result<bool> runComparison(const std::vector<DriverChoice>& choices, const RunOptions& options);
 
 }  // namespace vernier::conformance

@@ -15,10 +15,12 @@ RenderTarget targetOf(const ImageView* view) {
     const Image& image = view->image();
     const LevelLayout& level = image.level(range.baseMipLevel);
     target.format = view->info().format;
-    target.data = image.address(range.baseMipLevel, range.baseArrayLayer);
+    const bool slices = seesSlices(image, view->info().type);
+    target.data = slices ? image.address(range.baseMipLevel, 0, range.baseArrayLayer)
+                         : image.address(range.baseMipLevel, range.baseArrayLayer);
     target.rowPitch = level.rowPitch;
     target.samplePitch = level.samplePitch;
-    target.layerPitch = image.layerPitch();
+    target.layerPitch = slices ? level.slicePitch : image.layerPitch();
     target.extent = view->extent();
     target.samples = image.info().samples;
     return target;

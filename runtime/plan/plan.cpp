@@ -200,8 +200,12 @@ void planFragments(const GraphicsState& state, const ir::Program& fragment, Isa 
     plan.runsFragments = !plan.colors.empty() || fragment.hasSideEffects || decidesTests || fragment.canDiscard;
     plan.usesQuads = fragment.usesQuads;
     plan.keepsCoverage = !fragment.canDiscard && plan.sampleMaskSlot == kNoSlot && !plan.alphaToCoverage && !decidesTests;
-    for (const BuiltinSlot& builtin : plan.fragmentBuiltins)
+    bool readsCoverage = false;
+    for (const BuiltinSlot& builtin : plan.fragmentBuiltins) {
         plan.usesFragCoord |= builtin.builtin == ir::Builtin::fragCoord;
+        readsCoverage |= builtin.builtin == ir::Builtin::sampleMaskIn;
+    }
+    plan.coverageIsFull = plan.samples == 1 && plan.keepsCoverage && !plan.usesQuads && !readsCoverage;
     plan.ordered = decidesTests ||
                    std::any_of(plan.colors.begin(), plan.colors.end(), [](const ColorPlan& c) { return c.readsDestination; });
 }

@@ -109,6 +109,7 @@ struct Plan {
     bool ordered = false;         // a batch holds each pixel once: blending or a late depth test
     bool preciseInterpolation = false;  // double
     bool keepsCoverage = true;    // nothing after the early tests drops a sample
+    bool coverageIsFull = false;  // every lane of a batch is one covered sample, and stays so
     bool usesFragCoord = false;
     uint32_t samples = 1;
     uint32_t sampleMask = ~0u;

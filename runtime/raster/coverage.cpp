@@ -47,6 +47,18 @@ uint64_t rectangleMask(int32_t x0, int32_t y0, int32_t x1, int32_t y1) {
     return rows & (row * 0x0101010101010101u);
 }
 
+/// first, first + step, first + 2 * step, ...
+template <class D>
+HWY_INLINE hn::Vec<D> rowOfEdge(D d, int32_t first, int32_t step) {
+    return hn::Add(hn::Set(d, first), hn::Mul(hn::Iota(d, 0), hn::Set(d, step)));
+}
+template <class D>
+HWY_INLINE hn::Vec<D> rowOfEdge(D d, int64_t first, int64_t step) {  // not every target multiplies 64-bit lanes
+    alignas(64) int64_t row[hn::MaxLanes(D())];
+    for (size_t n = 0; n < hn::MaxLanes(D()); ++n) row[n] = first + step * static_cast<int64_t>(n);
+    return hn::Load(d, row);
+}
+
 /// Pixels [.., y0..y1] of a block whose first pixel has the edge values `c`.
 template <class T>
 uint64_t blockMask(const T c[3], const T a[3], const T b[3], int32_t y0, int32_t y1) {
@@ -57,9 +69,7 @@ uint64_t blockMask(const T c[3], const T a[3], const T b[3], int32_t y0, int32_t
     for (uint32_t x = 0; x < 8; x += kLanes) {
         V edge[3], step[3];
         for (int e = 0; e < 3; ++e) {
-            alignas(64) T row[8];
-            for (uint32_t n = 0; n < kLanes; ++n) row[n] = static_cast<T>(c[e] + b[e] * y0 + a[e] * static_cast<T>(x + n));
-            edge[e] = hn::Load(d, row);
+            edge[e] = rowOfEdge(d, static_cast<T>(c[e] + b[e] * y0 + a[e] * static_cast<T>(x)), a[e]);
             step[e] = hn::Set(d, b[e]);
         }
         for (int32_t y = y0; y <= y1; ++y) {

@@ -112,15 +112,18 @@ uint32_t testBlocks(const DepthTestInput& in, BlockCoverage* blocks, uint32_t co
         uint64_t any = 0;
         const int32_t blockX = in.tileX + block.x, blockY = in.tileY + block.y;
         for (uint32_t s = 0; s < in.samples; ++s) {
-            uint64_t covered = block.masks[s], passed = 0;
+            const uint64_t covered = block.masks[s];
+            uint64_t passed = 0;
+            if (covered == 0) continue;
             const VF ox = hn::Set(f, positions[s].x() - planes.fractionX);
             const VF oy = hn::Set(f, positions[s].y() - planes.fractionY);
-            for (int32_t row = 0; covered != 0; ++row, covered >>= 8) {
-                if ((covered & 0xFF) == 0) continue;
+            const int32_t firstRow = static_cast<int32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(covered)) >> 3;
+            const int32_t lastRow = static_cast<int32_t>(63 - hwy::Num0BitsAboveMS1Bit_Nonzero64(covered)) >> 3;
+            for (int32_t row = firstRow; row <= lastRow; ++row) {
                 std::byte* texels = in.target.texel(blockX, blockY + row, s);
                 const VF y = hn::Set(f, static_cast<float>(blockY + row - planes.anchorY));
                 for (uint32_t x = 0; x < 8; x += kLanes) {
-                    const uint8_t bits = static_cast<uint8_t>((covered & 0xFF) >> x);
+                    const uint8_t bits = static_cast<uint8_t>((covered >> (8 * row) & 0xFF) >> x);
                     const uint8_t maskBytes[8] = {bits};
                     const VF column = hn::ConvertTo(f, hn::Iota(i, blockX + static_cast<int32_t>(x) - planes.anchorX));
                     const Value z = Format::encode(depthOf(f, planes, column, y, ox, oy));

@@ -108,7 +108,8 @@ uint32_t FragmentStage::appendSpan(int32_t x, int32_t y, uint32_t lanes) {
     batch_.spans[batch_.spanCount++] = {x, y, first, lanes};
     for (int32_t n = 0; n < kBlockSize; ++n) batch_.x[first + static_cast<uint32_t>(n)] = x + n;
     for (uint32_t n = 0; n < kBlockSize; ++n) batch_.y[first + n] = y;
-    for (uint32_t n = 0; n < kBlockSize; ++n) batch_.coverage[first + n] = 1;
+    if (!plan_->coverageIsFull)
+        for (uint32_t n = 0; n < kBlockSize; ++n) batch_.coverage[first + n] = 1;
     batch_.count += lanes;
     return first;
 }
@@ -219,7 +220,8 @@ void FragmentStage::run() {
         reduceCoverage();
         if (!plan_->depth.early && plan_->depth.any()) testLate();
     }
-    for (uint32_t s = 0; s < samples_; ++s) {
+    if (plan_->coverageIsFull) statistics_.samplesPassed += count;
+    for (uint32_t s = 0; s < samples_ && !plan_->coverageIsFull; ++s) {
         uint32_t passed = 0;
         for (uint32_t lane = 0; lane < count; ++lane) passed += batch_.coverage[lane] >> s & 1;
         statistics_.samplesPassed += passed;
@@ -405,7 +407,7 @@ void FragmentStage::writeColors() {
             input.source[c] = outputPlane(plan.slots[c], c);
             input.second[c] = outputPlane(plan.dualSlots[c], c);
         }
-        if (samples_ == 1 && plan_->keepsCoverage && !plan_->usesQuads) {
+        if (plan_->coverageIsFull) {
             statistics_.destinationReads += outputColors(input, colors_);
             continue;
         }

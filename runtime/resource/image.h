@@ -71,6 +71,9 @@ struct ImageViewInfo {
     VkImageSubresourceRange range{};  // counts resolved: no VK_REMAINING_*
 };
 
+/// A view of another type than 3D on a 3D image: its layers are the slices (VK_KHR_maintenance1).
+bool seesSlices(const Image& image, VkImageViewType type);
+
 class ImageView {
   public:
     /// Checks the view against the image. `isa` chooses the conversion routines of the view. The image must be bound.

@@ -7,13 +7,23 @@ namespace {
 
 Error wrong(const std::string& what) { return invalidArgument("image view: " + what); }
 
-bool typeFits(VkImageViewType view, VkImageType image) {
+bool typeFits(VkImageViewType view, const ImageInfo& image) {
     switch (view) {
         case VK_IMAGE_VIEW_TYPE_1D:
-        case VK_IMAGE_VIEW_TYPE_1D_ARRAY: return image == VK_IMAGE_TYPE_1D;
-        case VK_IMAGE_VIEW_TYPE_3D: return image == VK_IMAGE_TYPE_3D;
-        default: return image == VK_IMAGE_TYPE_2D;
+        case VK_IMAGE_VIEW_TYPE_1D_ARRAY: return image.type == VK_IMAGE_TYPE_1D;
+        case VK_IMAGE_VIEW_TYPE_3D: return image.type == VK_IMAGE_TYPE_3D;
+        case VK_IMAGE_VIEW_TYPE_2D:
+        case VK_IMAGE_VIEW_TYPE_2D_ARRAY:
+            // VK_KHR_maintenance1: the slices of a 3D image seen as layers.
+            if (image.type == VK_IMAGE_TYPE_3D) return (image.flags & VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT) != 0;
+            [[fallthrough]];
+        default: return image.type == VK_IMAGE_TYPE_2D;
     }
+}
+
+/// The layers a view can choose from: slices of the level when a 3D image is seen as layers.
+uint32_t layersOf(const Image& image, const ImageViewInfo& info) {
+    return seesSlices(image, info.type) ? image.level(info.range.baseMipLevel).extent.depth : image.info().arrayLayers;
 }
 
 Status checkRange(const Image& image, const ImageViewInfo& info) {
@@ -24,7 +34,9 @@ Status checkRange(const Image& image, const ImageViewInfo& info) {
                      " are not inside the image's " + std::to_string(limit));
     };
     if (Status s = check("mip levels", range.baseMipLevel, range.levelCount, image.info().mipLevels); !s) return s;
-    if (Status s = check("layers", range.baseArrayLayer, range.layerCount, image.info().arrayLayers); !s) return s;
+    if (Status s = check("layers", range.baseArrayLayer, range.layerCount, layersOf(image, info)); !s) return s;
+    if (seesSlices(image, info.type) && range.levelCount != 1)
+        return wrong("a view of slices has one mip level, not " + std::to_string(range.levelCount));
     if (range.aspectMask == 0 || (range.aspectMask & ~image.format().aspects) != 0)
         return wrong("aspect mask " + std::to_string(range.aspectMask) + " is not of format " + image.format().name);
     const bool cube = info.type == VK_IMAGE_VIEW_TYPE_CUBE || info.type == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY;
@@ -35,12 +47,16 @@ Status checkRange(const Image& image, const ImageViewInfo& info) {
 
 }  // namespace
 
+bool seesSlices(const Image& image, VkImageViewType type) {
+    return image.info().type == VK_IMAGE_TYPE_3D && type != VK_IMAGE_VIEW_TYPE_3D;
+}
+
 Result<ImageView> ImageView::create(const Image& image, const ImageViewInfo& info, Isa isa) {
     const FormatInfo* format = findFormat(info.format);
     if (!format) return unsupported("image view: format " + std::to_string(info.format) + " is not supported");
     if (format->bytesPerTexel != image.format().bytesPerTexel || format->aspects != image.format().aspects)
         return wrong(std::string("format ") + format->name + " does not fit the image's " + image.format().name);
-    if (!typeFits(info.type, image.info().type))
+    if (!typeFits(info.type, image.info()))
         return wrong("view type " + std::to_string(info.type) + " does not fit the image's type");
     if (Status status = checkRange(image, info); !status) return status.error();
     if (!image.bound()) return wrong("the image has no memory bound");
@@ -62,14 +78,18 @@ Result<ImageView> ImageView::create(const Image& image, const ImageViewInfo& inf
     texture.texelPitch = format->bytesPerTexel;
     texture.samplePitch = image.level(info.range.baseMipLevel).samplePitch;
     texture.ops = formatOps(info.format, texture.aspect, isa);
+    const bool slices = seesSlices(image, info.type);
     for (uint32_t i = 0; i < info.range.levelCount; ++i) {
         const LevelLayout& level = image.level(info.range.baseMipLevel + i);
-        texture.levels[i] = {.data = image.address(info.range.baseMipLevel + i, info.range.baseArrayLayer),
+        const uint32_t mip = info.range.baseMipLevel + i;
+        const uint32_t first = info.range.baseArrayLayer;
+        const bool volume = image.info().type == VK_IMAGE_TYPE_3D;
+        texture.levels[i] = {.data = slices ? image.address(mip, 0, first) : image.address(mip, first),
                              .width = level.extent.width,
                              .height = level.extent.height,
-                             .depth = level.extent.depth,
+                             .depth = slices ? 1 : level.extent.depth,
                              .rowPitch = level.rowPitch,
-                             .slicePitch = image.info().type == VK_IMAGE_TYPE_3D ? level.slicePitch : image.layerPitch()};
+                             .slicePitch = volume ? level.slicePitch : image.layerPitch()};
     }
     return view;
 }

@@ -35,6 +35,11 @@ class Folder {
             }
         }
         if (!changed_) return false;
+        for (Block& block : program_.blocks) {
+            std::erase_if(block.insts, [this](const Inst& inst) {
+                return inst.result != kNoValue && inst.op != Op::phi && replacement_[inst.result] != kNoValue;
+            });
+        }
         auto& entry = program_.blocks[0].insts;
         entry.insert(entry.begin(), added_.begin(), added_.end());
         replaceUses(program_, replacement_);

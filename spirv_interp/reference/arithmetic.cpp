@@ -74,12 +74,9 @@ bool Machine<Number>::executeInteger(const Instruction& i) {
     for (size_t k = 0; k < count; ++k) {
         std::array<uint64_t, 4> operands{};
         for (uint32_t o = 0; o < operandCount; ++o) {
-            const Scalars<Number>& values = data(i.operand(o));
-            // The offset and count of bit-field instructions are scalars.
-            operands[o] = (o >= 1 && values.size() == 1
-                               ? values
-                               : data(i.operand(o), count))[o >= 1 && values.size() == 1 ? 0 : k]
-                              .bits;
+            // The offset and count of bit-field instructions are scalars beside vectors.
+            const bool single = o >= 1 && data(i.operand(o)).size() == 1;
+            operands[o] = single ? bits(i.operand(o)) : data(i.operand(o), count)[k].bits;
         }
         result.push_back(Scalar<Number>::ofBits(*integerOperation(i.op, type.width, operands)));
     }

@@ -7,7 +7,6 @@ namespace vernier::reference {
 namespace {
 
 constexpr size_t kMaxCallDepth = 128;
-constexpr uint64_t kScalarsPerStep = 16;
 
 }  // namespace
 

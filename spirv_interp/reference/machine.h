@@ -16,6 +16,9 @@
 
 namespace vernier::reference {
 
+/// Values of more scalars than this count as several steps.
+inline constexpr uint64_t kScalarsPerStep = 16;
+
 template <class Number>
 using Scalars = std::vector<Scalar<Number>>;
 
@@ -164,7 +167,6 @@ class Machine {
 
     // images.cpp
     bool executeImage(const Instruction& i);
-    struct ImageOperands;
     ImageHandle imageHandle(Id id) const;
     ImageRequest<Number> request(const ImageHandle& handle) const;
     size_t coordinateCount(const ImageShape& shape) const;

@@ -218,7 +218,7 @@ template <class Number>
 Scalars<Number> Machine<Number>::loadScalars(const Pointer<Number>& p) {
     const Type& type = module_.types[p.type];
     const uint64_t count = module_.valueScalars(type);
-    charge(count / 16);
+    charge(count / kScalarsPerStep);
     Scalars<Number> result;
     if (p.outside) {
         result.resize(count);
@@ -257,7 +257,7 @@ template <class Number>
 void Machine<Number>::store(const Pointer<Number>& p, const Scalars<Number>& scalars) {
     const Type& type = module_.types[p.type];
     const uint64_t count = module_.valueScalars(type);
-    charge(count / 16);
+    charge(count / kScalarsPerStep);
     if (scalars.size() != count) fail("a stored value does not fit type " + name(type.id));
     if (p.outside) return;
     if (p.object) {

@@ -62,8 +62,8 @@ struct Type {
     uint32_t width = 32;    // integer, floating
     bool isSigned = false;  // integer
     uint32_t element = 0;   // index of the element type (vector, matrix, array), pointee, image of a sampled
-                           // image, return type of a function
-    uint32_t count = 0;                 // components, columns, array length
+                            // image, return type of a function
+    uint32_t count = 0;     // components, columns, array length
     std::vector<uint32_t> members;      // type indices: of a struct, parameters of a function
     std::vector<uint64_t> cellOffsets;  // struct: first scalar of each member
     uint64_t scalars = 0;               // when flattened; 0 for opaque types, saturating

@@ -85,7 +85,8 @@ TEST(Glsl, EveryStageCompiles) {
         {VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT,
          "#version 450\nlayout(triangles) in; void main() { gl_Position = vec4(gl_TessCoord, 1); }"},
         {VK_SHADER_STAGE_GEOMETRY_BIT,
-         "#version 450\nlayout(points) in; layout(points, max_vertices = 1) out; void main() { EmitVertex(); }"},
+         "#version 450\nlayout(points) in; layout(points, max_vertices = 1) out; void main() { EmitVertex(); "
+         "}"},
         {VK_SHADER_STAGE_FRAGMENT_BIT,
          "#version 450\nlayout(location = 0) out vec4 c; void main() { c = vec4(1); }"},
         {VK_SHADER_STAGE_COMPUTE_BIT, "#version 450\nlayout(local_size_x = 8) in; void main() {}"},

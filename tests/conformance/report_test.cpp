@@ -1,11 +1,11 @@
+#include "conformance/report/report.h"
 #include "conformance/report/heat_map.h"
 #include "conformance/report/html.h"
-#include "conformance/report/report.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <png.h>
+#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <fstream>
@@ -22,7 +22,8 @@ using ::testing::SizeIs;
 RenderedImage image(uint8_t red) {
     RenderedImage result{VK_FORMAT_R8G8B8A8_UNORM, {4, 2}, {}};
     for (int i = 0; i < 8; ++i) {
-        for (const int value : {int{red}, 10 * i, 30, 255}) result.texels.push_back(static_cast<std::byte>(value));
+        for (const int value : {int{red}, 10 * i, 30, 255})
+            result.texels.push_back(static_cast<std::byte>(value));
     }
     return result;
 }
@@ -141,7 +142,8 @@ TEST(Report, PagesTellWhatHappened) {
 
 TEST(Picture, PngHoldsThePixels) {
     Picture picture(3, 2);
-    for (uint32_t i = 0; i < 6; ++i) picture.pixels[i] = {static_cast<uint8_t>(40 * i), 7, static_cast<uint8_t>(255 - i)};
+    for (uint32_t i = 0; i < 6; ++i)
+        picture.pixels[i] = {static_cast<uint8_t>(40 * i), 7, static_cast<uint8_t>(255 - i)};
     const Result<std::string> file = encodePng(picture, "a comment");
     ASSERT_TRUE(file.ok());
     png_image reader{};

@@ -51,7 +51,8 @@ TEST(SceneFormat, HalfFloats) {
     EXPECT_TRUE(std::isnan(decode(VK_FORMAT_R16_SFLOAT, 0, bytes({0x01, 0x7c}))));
 }
 
-// For every format: the places are in the order of the values, neighbours differ by one, and places lead back to codes.
+// For every format: the places are in the order of the values, neighbours differ by one, and places lead back
+// to codes.
 TEST(SceneFormat, PlacesRiseWithValues) {
     for (const SceneFormat& format : sceneFormats()) {
         for (size_t i = 0; i < format.componentCount; ++i) {
@@ -64,7 +65,8 @@ TEST(SceneFormat, PlacesRiseWithValues) {
                 const int64_t place = codePlace(component, here);
                 const auto back = codeAtPlace(component, place);
                 ASSERT_TRUE(back) << format.name << " " << code;
-                EXPECT_EQ(decodeComponent(component, *back), decodeComponent(component, here)) << format.name << " " << code;
+                EXPECT_EQ(decodeComponent(component, *back), decodeComponent(component, here))
+                    << format.name << " " << code;
                 const auto next = codeAtPlace(component, place + 1);
                 if (next) {
                     EXPECT_GT(decodeComponent(component, *next), decodeComponent(component, here))
@@ -85,7 +87,9 @@ TEST(SceneFormat, PlacesEnd) {
     EXPECT_EQ(codePlace(single, std::bit_cast<uint32_t>(-0.0f)), 0);
 }
 
-TEST(SceneFormat, UnknownFormatsAreNone) { EXPECT_EQ(sceneFormat(VK_FORMAT_BC7_UNORM_BLOCK), nullptr); }
+TEST(SceneFormat, UnknownFormatsAreNone) {
+    EXPECT_EQ(sceneFormat(VK_FORMAT_BC7_UNORM_BLOCK), nullptr);
+}
 
 }  // namespace
 }  // namespace vernier::conformance

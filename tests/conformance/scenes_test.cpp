@@ -1,7 +1,7 @@
+#include "conformance/scenes/scenes.h"
 #include "conformance/drivers/driver.h"
 #include "conformance/scene/scene_format.h"
 #include "conformance/scenes/recorder.h"
-#include "conformance/scenes/scenes.h"
 #include "conformance/scenes/shapes.h"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,8 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-constexpr const char* kRed = "#version 450\nlayout(location = 0) out vec4 c; void main() { c = vec4(1, 0, 0, 1); }";
+constexpr const char* kRed =
+    "#version 450\nlayout(location = 0) out vec4 c; void main() { c = vec4(1, 0, 0, 1); }";
 
 /// A scene that is right, to be broken.
 Scene smallScene() {
@@ -37,11 +38,12 @@ Scene smallScene() {
 
 TEST(SceneRecorder, FillsInTheObvious) {
     SceneRecorder record("recorded", "For tests.");
-    const uint32_t target =
-        record.colorTarget("color", VK_FORMAT_R8G8B8A8_SRGB, {20, 10}, VK_SAMPLE_COUNT_1_BIT, VK_IMAGE_USAGE_SAMPLED_BIT);
+    const uint32_t target = record.colorTarget("color", VK_FORMAT_R8G8B8A8_SRGB, {20, 10},
+                                               VK_SAMPLE_COUNT_1_BIT, VK_IMAGE_USAGE_SAMPLED_BIT);
     const uint32_t vertices = record.vertexBuffer("vertices", std::vector<float>{1, 2, 3});
-    const uint32_t fragment = record.fragment("#version 450\nlayout(constant_id = 7) const int n = 1;\n"
-                                              "layout(location = 0) out vec4 c; void main() { c = vec4(n); }");
+    const uint32_t fragment = record.fragment(
+        "#version 450\nlayout(constant_id = 7) const int n = 1;\n"
+        "layout(location = 0) out vec4 c; void main() { c = vec4(n); }");
     record.specialize(fragment, 7, 42);
     const uint32_t pipeline = record.pipeline(record.vertex(kCoverVertexGlsl), fragment)
                                   .binding(12)
@@ -99,18 +101,23 @@ TEST(ValidateScene, NamesWhatIsWrong) {
     };
     EXPECT_THAT(message([](Scene& s) { s.outputs = {3}; }), HasSubstr("outputs is 3, must be below 1"));
     EXPECT_THAT(message([](Scene& s) { s.outputs.clear(); }), HasSubstr("no outputs"));
-    EXPECT_THAT(message([](Scene& s) { s.images[0].format = VK_FORMAT_BC7_UNORM_BLOCK; }), HasSubstr("images[0].format"));
+    EXPECT_THAT(message([](Scene& s) { s.images[0].format = VK_FORMAT_BC7_UNORM_BLOCK; }),
+                HasSubstr("images[0].format"));
     EXPECT_THAT(message([](Scene& s) { s.images[0].extent.width = 0; }), HasSubstr("images[0].extent"));
     EXPECT_THAT(message([](Scene& s) { s.images[0].data = {Bytes(5)}; }), HasSubstr("5 bytes, not 128"));
     EXPECT_THAT(message([](Scene& s) { s.images[0].data = {{}, {}}; }), HasSubstr("2 entries"));
-    EXPECT_THAT(message([](Scene& s) { s.images[0].samples = VK_SAMPLE_COUNT_4_BIT; }), HasSubstr("multisampled"));
-    EXPECT_THAT(message([](Scene& s) { s.pipelines[0].vertexShader = kNone; }), HasSubstr("vertexShader is absent"));
+    EXPECT_THAT(message([](Scene& s) { s.images[0].samples = VK_SAMPLE_COUNT_4_BIT; }),
+                HasSubstr("multisampled"));
+    EXPECT_THAT(message([](Scene& s) { s.pipelines[0].vertexShader = kNone; }),
+                HasSubstr("vertexShader is absent"));
     EXPECT_THAT(message([](Scene& s) { s.pipelines[0].blend.clear(); }), HasSubstr("blends 0 targets"));
     EXPECT_THAT(message([](Scene& s) { s.shaders[1].spirv.clear(); }), HasSubstr("shaders[1].spirv"));
-    EXPECT_THAT(message([](Scene& s) { std::get<ScenePass>(s.steps[0]).draws[0].pipeline = 9; }), HasSubstr("pipeline is 9"));
+    EXPECT_THAT(message([](Scene& s) { std::get<ScenePass>(s.steps[0]).draws[0].pipeline = 9; }),
+                HasSubstr("pipeline is 9"));
     EXPECT_THAT(message([](Scene& s) { std::get<ScenePass>(s.steps[0]).draws[0].pushConstants.resize(4); }),
                 HasSubstr("pushConstants has 4"));
-    EXPECT_THAT(message([](Scene& s) { s.steps.push_back(SceneGenerateMips{4}); }), HasSubstr("SceneGenerateMips"));
+    EXPECT_THAT(message([](Scene& s) { s.steps.push_back(SceneGenerateMips{4}); }),
+                HasSubstr("SceneGenerateMips"));
     EXPECT_THAT(message([](Scene& s) {
                     SceneBinding binding;
                     binding.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
@@ -144,8 +151,9 @@ TEST_F(AllScenes, AreManyAndTheirNamesAreTheirFunctions) {
     for (size_t i = 0; i < scenes_.size(); ++i) {
         EXPECT_EQ(scenes_[i].name, allScenes()[i].name);
         EXPECT_TRUE(names.insert(scenes_[i].name).second) << scenes_[i].name << " twice";
-        EXPECT_TRUE(std::all_of(scenes_[i].name.begin(), scenes_[i].name.end(),
-                                [](unsigned char c) { return std::islower(c) || std::isdigit(c) || c == '_'; }));
+        EXPECT_TRUE(std::all_of(scenes_[i].name.begin(), scenes_[i].name.end(), [](unsigned char c) {
+            return std::islower(c) || std::isdigit(c) || c == '_';
+        }));
         EXPECT_GT(scenes_[i].description.size(), 20u) << scenes_[i].name;
         EXPECT_EQ(findScene(scenes_[i].name), &allScenes()[i]);
     }
@@ -172,7 +180,8 @@ TEST_F(AllScenes, AreTheSameEachTime) {
     }
 }
 
-// What a pass or a copy leaves is defined: no attachment is loaded, sampled, copied or put out before it was written.
+// What a pass or a copy leaves is defined: no attachment is loaded, sampled, copied or put out before it was
+// written.
 TEST_F(AllScenes, ReadOnlyWhatWasWritten) {
     for (const Scene& scene : scenes_) {
         std::vector<bool> written;
@@ -186,7 +195,8 @@ TEST_F(AllScenes, ReadOnlyWhatWasWritten) {
                 }
                 const auto attach = [&](const SceneAttachment& each) {
                     if (each.image == kNone) return;
-                    EXPECT_TRUE(each.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR || written[each.image]) << scene.name;
+                    EXPECT_TRUE(each.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR || written[each.image])
+                        << scene.name;
                     written[each.image] = true;
                     if (each.resolveImage != kNone) written[each.resolveImage] = true;
                 };
@@ -205,7 +215,8 @@ TEST_F(AllScenes, ReadOnlyWhatWasWritten) {
 TEST(Shapes, MeshesAreClosedAndFaceOutwards) {
     for (const Mesh& mesh : {cubeMesh(), sphereMesh(12, 6)}) {
         for (size_t i = 0; i < mesh.indices.size(); i += 3) {
-            const glm::vec3 a = mesh.vertices[mesh.indices[i]].position, b = mesh.vertices[mesh.indices[i + 1]].position,
+            const glm::vec3 a = mesh.vertices[mesh.indices[i]].position,
+                            b = mesh.vertices[mesh.indices[i + 1]].position,
                             c = mesh.vertices[mesh.indices[i + 2]].position;
             const glm::vec3 normal = glm::cross(b - a, c - a);
             EXPECT_GT(glm::dot(normal, a + b + c), 0) << "triangle " << i / 3;

@@ -1,4 +1,5 @@
-// The driver on lavapipe, where the machine has it: known pixels of known scenes, with the validation layer watching.
+// The driver on lavapipe, where the machine has it: known pixels of known scenes, with the validation layer
+// watching.
 #include "conformance/drivers/vulkan_driver.h"
 #include "conformance/scenes/recorder.h"
 #include "conformance/scenes/scenes.h"
@@ -97,8 +98,8 @@ TEST_F(VulkanDriverTest, SrgbCodesSurviveTheRoundTrip) {
 }
 
 TEST_F(VulkanDriverTest, SeveralScenesRunOneAfterAnother) {
-    for (const char* name : {"msaa_resolve", "multiple_targets", "texture_trilinear", "stencil_winding", "copy_and_blit",
-                             "shadow_map", "scissor_viewport"}) {
+    for (const char* name : {"msaa_resolve", "multiple_targets", "texture_trilinear", "stencil_winding",
+                             "copy_and_blit", "shadow_map", "scissor_viewport"}) {
         const Result<Scene> scene = findScene(name)->build();
         ASSERT_TRUE(scene.ok()) << name;
         const std::vector<RenderedImage> images = render(scene.value());

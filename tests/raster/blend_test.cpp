@@ -83,7 +83,7 @@ double opModel(VkBlendOp op, double s, double fs, double d, double fd) {
 }
 
 TEST_F(Blend, AllFactorsAndOperations) {
-    const Color source{0.2f, 0.55f, 0.87f, 0.35f}, destination{0.8f, 0.1f, 0.45f, 0.6f}, constants{0.3f, 0.7f, 0.15f, 0.85f};
+    const Color source{0.213f, 0.557f, 0.871f, 0.347f}, destination{0.8f, 0.1f, 0.45f, 0.6f}, constants{0.317f, 0.713f, 0.159f, 0.853f};
     for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R16G16B16A16_SFLOAT,
                                   VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_A2B10G10R10_UNORM_PACK32}) {
         const FormatInfo& info = *findFormat(format);

@@ -84,7 +84,9 @@ TEST(Determinism, ThreadsInstructionSetsAndFlushes) {
                         EXPECT_EQ(outcome.depth, expected.depth) << threads << " threads, " << isaName(isa) << ", " << profileName(profile);
                         EXPECT_EQ(outcome.statistics.fragmentInvocations, expected.statistics.fragmentInvocations);
                         EXPECT_EQ(outcome.statistics.samplesPassed, expected.statistics.samplesPassed);
-                        if (!flushes) EXPECT_EQ(outcome.statistics.vertexInvocations, expected.statistics.vertexInvocations);
+                        if (!flushes) {
+                            EXPECT_EQ(outcome.statistics.vertexInvocations, expected.statistics.vertexInvocations);
+                        }
                     }
                 }
             }

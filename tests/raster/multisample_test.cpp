@@ -62,7 +62,9 @@ TEST_F(Multisample, PartitionPerSample) {
                     ASSERT_LE(result.color->red(x, y, s), 1);
                     total += result.color->red(x, y, s);
                     const SamplePosition p = samplePositions(samples)[s];
-                    if (std::hypot(x + p.x() - cx, y + p.y() - cy) < 13) ASSERT_EQ(result.color->red(x, y, s), 1) << x << "," << y;
+                    if (std::hypot(x + p.x() - cx, y + p.y() - cy) < 13) {
+                        ASSERT_EQ(result.color->red(x, y, s), 1) << x << "," << y;
+                    }
                 }
             }
         }
@@ -206,7 +208,9 @@ TEST_F(Multisample, DepthPerSample) {
         for (uint32_t y = 0; y < kSize; ++y)
             for (uint32_t x = 0; x < kSize; ++x) {
                 const float position = static_cast<float>(x) + kSamplePositions4[s].x();
-                if (std::fabs(position - 20) > 0.01f) ASSERT_EQ(color.red(x, y, s), position < 20 ? 1 : 2) << x << "," << y << "," << s;
+                if (std::fabs(position - 20) > 0.01f) {
+                    ASSERT_EQ(color.red(x, y, s), position < 20 ? 1 : 2) << x << "," << y << "," << s;
+                }
             }
 }
 

@@ -123,7 +123,9 @@ TEST_F(Topology, FacingAndCulling) {
             }, "ids_frag");
             const bool culled = (mode & (front ? VK_CULL_MODE_FRONT_BIT : VK_CULL_MODE_BACK_BIT)) != 0;
             ASSERT_EQ(surface->red(5, 5) == -1, culled);
-            if (!culled) EXPECT_EQ(surface->color(5, 5).float32[1], front ? 1 : 0);
+            if (!culled) {
+                EXPECT_EQ(surface->color(5, 5).float32[1], front ? 1 : 0);
+            }
         }
     }
 }

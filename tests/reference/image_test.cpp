@@ -139,7 +139,9 @@ TEST_F(Images, SeparateSamplersAndArrays) {
         "r = texture(sampler2D(t[i.x - 4], s[1]), v.xy);");
     EXPECT_EQ(last().image, (Descriptor{1, 3, 3}));
     EXPECT_EQ(last().sampler, (Descriptor{2, 6, 1}));
-    run("layout(set = 1, binding = 3) uniform texture2D t;", "r = texelFetch(t, i.xy, 0);");
+    run("#extension GL_EXT_samplerless_texture_functions : require\n"
+        "layout(set = 1, binding = 3) uniform texture2D t;",
+        "r = texelFetch(t, i.xy, 0);");
     EXPECT_EQ(last().image, (Descriptor{1, 3, 0}));
     run("layout(binding = 3) uniform sampler2D t[4]; vec4 f(sampler2D s) { return texture(s, v.xy); }",
         "r = f(t[2]);");

@@ -118,7 +118,7 @@ TEST(Memory, Atomics) {
         ri.x = atomicAdd(b.a[0], i.x); ri.y = atomicMin(b.a[1], i.y); ri.z = atomicMax(b.a[2], i.x);
         ri.w = atomicExchange(b.a[3], 1); atomicAnd(b.a[4], 6); atomicXor(b.a[4], 1); atomicOr(b.a[4], 8);
         atomicCompSwap(b.a[5], 60, 61); atomicCompSwap(b.a[6], 60, 61);
-        atomicMax(b.u[0], u.w); atomicMin(b.u[1], u.x); atomicAdd(b.a[9], 1);)",
+        atomicMax(b.u[0], u.w); atomicMin(b.u[1], u.x); atomicAdd(b.a[i.z], 1);)",
                              buffers);
     EXPECT_EQ(intsAt(outcome), (Ints{10, 20, -5, 40}));
     EXPECT_EQ(valuesOf<int32_t>(buffers.buffers[{0, 0, 0}]),

@@ -18,7 +18,8 @@ TEST(Reflection, Interface) {
         layout(location = 2) sample in mat3x2 c[2];
         layout(location = 8) in Block { vec4 d; flat int e[3]; } block;
         layout(location = 0, index = 1) out vec4 o;
-        void main() { o = vec4(a, b.x) + gl_FragCoord + block.d * block.e[1]; o.xy += c[1][0]; gl_FragDepth = 0.5; })"));
+        void main() { o = vec4(a, b.x) + gl_FragCoord + block.d * block.e[1]; o.xy += c[1][0]; gl_FragDepth = 0.5; })",
+                                                      1, true));
     ASSERT_TRUE(module.ok()) << module.error().message;
     const EntryPoint& entry = module->entryPoints()[0];
     EXPECT_EQ(entry.name, "main");

@@ -13,14 +13,14 @@ struct CompilerReference {
     ~CompilerReference() { vnReleaseGlslCompiler(); }
 };
 
-Words compile(VkShaderStageFlagBits stage, std::string_view source, int vulkanMinor) {
+Words compile(VkShaderStageFlagBits stage, std::string_view source, int vulkanMinor, bool names) {
     static const CompilerReference kReference;
     VnGlslDesc desc{};
     desc.stage = stage;
     desc.source = source.data();
     desc.sourceLength = source.size();
     desc.target = static_cast<VnGlslTarget>(VN_GLSL_TARGET_VULKAN_1_0 + vulkanMinor);
-    desc.debugInfo = 1;
+    desc.debugInfo = names ? 1 : 0;
     VnGlslOutput* output = nullptr;
     Words words;
     if (vnCompileGlsl(&desc, &output) == VN_GLSL_SUCCESS)
@@ -34,10 +34,10 @@ Words compile(VkShaderStageFlagBits stage, std::string_view source, int vulkanMi
 }  // namespace
 
 Words compileVertex(std::string_view source, int vulkanMinor) {
-    return compile(VK_SHADER_STAGE_VERTEX_BIT, source, vulkanMinor);
+    return compile(VK_SHADER_STAGE_VERTEX_BIT, source, vulkanMinor, false);
 }
-Words compileFragment(std::string_view source, int vulkanMinor) {
-    return compile(VK_SHADER_STAGE_FRAGMENT_BIT, source, vulkanMinor);
+Words compileFragment(std::string_view source, int vulkanMinor, bool names) {
+    return compile(VK_SHADER_STAGE_FRAGMENT_BIT, source, vulkanMinor, names);
 }
 
 Words assemble(std::string_view source) {

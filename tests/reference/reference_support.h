@@ -15,9 +15,10 @@ namespace vernier::reference::test {
 
 using Words = std::vector<uint32_t>;
 
-/// Empty, with a test failure, when the source does not compile. `vulkanMinor`: 0 to 3.
+/// Empty, with a test failure, when the source does not compile. `vulkanMinor`: 0 to 3. `names`: keep OpName
+/// and OpLine.
 Words compileVertex(std::string_view source, int vulkanMinor = 1);
-Words compileFragment(std::string_view source, int vulkanMinor = 1);
+Words compileFragment(std::string_view source, int vulkanMinor = 1, bool names = false);
 Words assemble(std::string_view source);
 
 /// "#version 450", inputs v (vec4, location 0), i (ivec4, 1), u (uvec4, 2), outputs r (vec4, 0), ri (ivec4,

@@ -91,24 +91,30 @@ b2 <- b1:
 }
 
 TEST(Pass, SimplifyPhis) {
+    // %5 stands for %3 where it is undefined, then %3 is %0 all round the loop, then %6 is %0; %7 may not become %9, which
+    // does not exist on the way past b2.
     EXPECT_EQ(after(simplifyPhis, R"(b0:
   %0 f32 = input #0
   %1 b1 = folt.f32 %0 %0
   %2 f32 = undef
   jump b1
 b1 loop b4 <- b0 b3:
-  %3 f32 = phi %0 %6
+  %3 f32 = phi %0 %5
   %4 f32 = phi %2 %4
   branch %1 b2 b3
 b2 <- b1:
+  %9 f32 = fadd %3 %3
   jump b3
 b3 <- b1 b2:
-  %5 f32 = phi %3 %0
-  %6 f32 = phi %5 %2
+  %5 f32 = phi %3 %2
+  %6 f32 = phi %3 %0
+  %7 f32 = phi %2 %9
   branch %1 b1 b4
 b4 <- b3:
-  %7 f32 = phi %6
-  storeOutput #0 %7
+  %8 f32 = phi %6
+  %10 f32 = phi %7
+  storeOutput #0 %8
+  storeOutput #1 %10
   ret
 )"),
               R"(b0:
@@ -117,16 +123,16 @@ b4 <- b3:
   %2 f32 = undef
   jump b1
 b1 loop b4 <- b0 b3:
-  %3 f32 = phi %0 %5
   branch %1 b2 b3
 b2 <- b1:
+  %3 f32 = fadd %0 %0
   jump b3
 b3 <- b1 b2:
-  %4 f32 = phi %3 %0
-  %5 f32 = phi %4 %2
+  %4 f32 = phi %2 %3
   branch %1 b1 b4
 b4 <- b3:
-  storeOutput #0 %5
+  storeOutput #0 %0
+  storeOutput #1 %4
   ret
 )");
 }

@@ -164,6 +164,54 @@ TEST_F(PassTest, secondSubpassKeepsDepthAndDrawsToAnotherImage) {
     EXPECT_EQ(pixelAt(readImage(second, VK_IMAGE_ASPECT_COLOR_BIT, 4), second, 3, 17), kBlue);
 }
 
+/// VK_KHR_maintenance1: a slice of a 3D image as the layer of a 2D view.
+TEST_F(PassTest, slicesOfVolumesCanBeDrawnTo) {
+    TestImage slice;
+    slice.format = VK_FORMAT_R8G8B8A8_UNORM;
+    slice.extent = {8, 4};
+    auto info = make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
+    info.flags = VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT;
+    info.imageType = VK_IMAGE_TYPE_3D;
+    info.format = slice.format;
+    info.extent = {8, 4, 3};
+    info.mipLevels = 1;
+    info.arrayLayers = 1;
+    info.samples = VK_SAMPLE_COUNT_1_BIT;
+    info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    ASSERT_EQ(vkCreateImage(device, &info, nullptr, &slice.image), VK_SUCCESS);
+    VkMemoryRequirements needs{};
+    vkGetImageMemoryRequirements(device, slice.image, &needs);
+    auto allocation = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
+    allocation.allocationSize = needs.size;
+    ASSERT_EQ(vkAllocateMemory(device, &allocation, nullptr, &slice.memory), VK_SUCCESS);
+    ASSERT_EQ(vkBindImageMemory(device, slice.image, slice.memory, 0), VK_SUCCESS);
+    auto view = make<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
+    view.image = slice.image;
+    view.viewType = VK_IMAGE_VIEW_TYPE_2D;
+    view.format = slice.format;
+    view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 1, 1};
+    ASSERT_EQ(vkCreateImageView(device, &view, nullptr, &slice.view), VK_SUCCESS);
+    defer([=, this] {
+        vkDestroyImageView(device, slice.view, nullptr);
+        vkDestroyImage(device, slice.image, nullptr);
+        vkFreeMemory(device, slice.memory, nullptr);
+    });
+    Pass pass = makePass(slice);
+    pass.clears[0].color = {{0, 1, 0, 1}};
+    const TestBuffer all = makeBuffer(8 * 4 * 3 * 4, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+    const VkCommandBuffer commands = begin();
+    beginPass(commands, pass);
+    vkCmdEndRenderPass(commands);
+    VkBufferImageCopy region{};
+    region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    region.imageExtent = {8, 4, 3};
+    vkCmdCopyImageToBuffer(commands, slice.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, all.buffer, 1,
+                           &region);
+    submit(commands);
+    const auto* texels = static_cast<const uint32_t*>(all.data);
+    for (uint32_t i = 0; i < 96; ++i) ASSERT_EQ(texels[i], i / 32 == 1 ? kGreen : 0u) << i;
+}
+
 TEST_F(PassTest, framebufferThatDoesNotFitIsRefused) {
     VERNIER_SKIP_WHEN_VALIDATED();
     const TestImage color = makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);

@@ -24,7 +24,9 @@ void useOwnDriver() {
     setenv("VK_DRIVER_FILES", VERNIER_ICD_JSON, 1);
 }
 
-bool validated() { return std::getenv("VK_INSTANCE_LAYERS") != nullptr; }
+bool validated() {
+    return std::getenv("VK_INSTANCE_LAYERS") != nullptr;
+}
 
 std::vector<uint32_t> compileGlsl(VkShaderStageFlagBits stage, const std::string& source) {
     VnGlslDesc desc{};
@@ -74,7 +76,8 @@ void VulkanTest::SetUp() {
     auto queueInfo = make<VkDeviceQueueCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO);
     queueInfo.queueCount = 1;
     queueInfo.pQueuePriorities = &priority;
-    const char* deviceExtensions[] = {VK_KHR_TIMELINE_SEMAPHORE_EXTENSION_NAME};
+    const char* deviceExtensions[] = {VK_KHR_MAINTENANCE_1_EXTENSION_NAME,
+                                      VK_KHR_TIMELINE_SEMAPHORE_EXTENSION_NAME};
     auto timeline = make<VkPhysicalDeviceTimelineSemaphoreFeatures>(
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES);
     timeline.timelineSemaphore = VK_TRUE;
@@ -82,7 +85,7 @@ void VulkanTest::SetUp() {
     deviceInfo.pNext = &timeline;
     deviceInfo.queueCreateInfoCount = 1;
     deviceInfo.pQueueCreateInfos = &queueInfo;
-    deviceInfo.enabledExtensionCount = 1;
+    deviceInfo.enabledExtensionCount = 2;
     deviceInfo.ppEnabledExtensionNames = deviceExtensions;
     deviceInfo.pEnabledFeatures = &features;
     ASSERT_EQ(vkCreateDevice(physicalDevice, &deviceInfo, nullptr, &device), VK_SUCCESS);

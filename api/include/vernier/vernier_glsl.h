@@ -1,7 +1,7 @@
 /* Vernier's GLSL compiler: GLSL source text in, SPIR-V words out. C99; link with vernier_glsl.
  *
- * The rules are those of GL_KHR_vulkan_glsl, the input is `#version 450` or what the source itself asks for. All
- * functions may be called from any thread at any time. */
+ * The rules are those of GL_KHR_vulkan_glsl, the input is `#version 450` or what the source itself asks for.
+ * All functions may be called from any thread at any time. */
 #ifndef VERNIER_VERNIER_GLSL_H_
 #define VERNIER_VERNIER_GLSL_H_
 
@@ -46,9 +46,11 @@ typedef enum VnGlslTarget {
     VN_GLSL_TARGET_MAX_ENUM = 0x7FFFFFFF
 } VnGlslTarget;
 
-/** What to compile. Zero-initialise it, then set `stage` and `source`: zero in every other field means its default. */
+/** What to compile. Zero-initialise it, then set `stage` and `source`: zero in every other field means its
+ * default. */
 typedef struct VnGlslDesc {
-    /** Exactly one of VERTEX, TESSELLATION_CONTROL, TESSELLATION_EVALUATION, GEOMETRY, FRAGMENT and COMPUTE. */
+    /** Exactly one of VERTEX, TESSELLATION_CONTROL, TESSELLATION_EVALUATION, GEOMETRY, FRAGMENT and COMPUTE.
+     */
     VkShaderStageFlagBits stage;
     /** The source text, UTF-8. Not kept after the call. */
     const char* source;
@@ -60,7 +62,8 @@ typedef struct VnGlslDesc {
     const char* entryName;
     /** Environment to generate for. */
     VnGlslTarget target;
-    /** Not 0: keep names, source text and line numbers in the module (OpSource, OpLine). 0: leave them out. */
+    /** Not 0: keep names, source text and line numbers in the module (OpSource, OpLine). 0: leave them out.
+     */
     uint32_t debugInfo;
 } VnGlslDesc;
 
@@ -70,22 +73,24 @@ typedef struct VnGlslOutput {
     const uint32_t* words;
     /** Number of elements of `words`. */
     size_t wordCount;
-    /** Zero-terminated messages, one a line, as "ERROR: name:line: text" (or WARNING); never NULL, empty if there are
-     * none. Warnings may accompany success. */
+    /** Zero-terminated messages, one a line, as "ERROR: name:line: text" (or WARNING); never NULL, empty if
+     * there are none. Warnings may accompany success. */
     const char* log;
 } VnGlslOutput;
 
 /** Compiles one shader stage.
  *
- * Stores an output in `*out` to be freed with vnFreeGlslOutput(), on success and on failure (for its log), except when
- * out of memory: then `*out` is NULL. `desc` and `out` must not be NULL (VN_GLSL_ERROR_INVALID_ARGUMENT). */
+ * Stores an output in `*out` to be freed with vnFreeGlslOutput(), on success and on failure (for its log),
+ * except when out of memory: then `*out` is NULL. `desc` and `out` must not be NULL
+ * (VN_GLSL_ERROR_INVALID_ARGUMENT). */
 VN_GLSL_API VnGlslResult vnCompileGlsl(const VnGlslDesc* desc, VnGlslOutput** out);
 
 /** Frees an output; NULL is allowed. */
 VN_GLSL_API void vnFreeGlslOutput(VnGlslOutput* output);
 
-/** Keeps the compiler's tables in memory until the matching vnReleaseGlslCompiler(), so that the calls in between need
- * not build them anew (tens of milliseconds each). Calls nest and may come from several threads. Optional. */
+/** Keeps the compiler's tables in memory until the matching vnReleaseGlslCompiler(), so that the calls in
+ * between need not build them anew (tens of milliseconds each). Calls nest and may come from several threads.
+ * Optional. */
 VN_GLSL_API VnGlslResult vnRetainGlslCompiler(void);
 
 /** Undoes one vnRetainGlslCompiler(). A call without a match does nothing. */
