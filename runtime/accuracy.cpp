@@ -25,12 +25,17 @@ static_assert(kDial.size() == std::size(kProfiles));
 
 }  // namespace
 
-Accuracy accuracyOf(Profile profile) { return kDial[static_cast<size_t>(profile)].accuracy; }
+Accuracy accuracyOf(Profile profile) {
+    return kDial[static_cast<size_t>(profile)].accuracy;
+}
 
-std::string_view profileName(Profile profile) { return kDial[static_cast<size_t>(profile)].name; }
+std::string_view profileName(Profile profile) {
+    return kDial[static_cast<size_t>(profile)].name;
+}
 
 std::optional<Profile> profileFromName(std::string_view name) {
-    const auto found = std::find_if(kDial.begin(), kDial.end(), [&](const Position& p) { return p.name == name; });
+    const auto found =
+        std::find_if(kDial.begin(), kDial.end(), [&](const Position& p) { return p.name == name; });
     if (found == kDial.end()) return std::nullopt;
     return static_cast<Profile>(found - kDial.begin());
 }

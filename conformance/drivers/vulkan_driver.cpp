@@ -16,7 +16,7 @@ namespace {
 class SceneRun {
   public:
     SceneRun(VulkanContext& context, const Scene& scene)
-        : context_(context), scene_(scene), resources_(context), builder_(context, resources_, scene) {}
+        : scene_(scene), resources_(context), builder_(context, resources_, scene) {}
 
     Status prepare() {
         VERNIER_TRY(resources_.create(scene_));
@@ -45,7 +45,6 @@ class SceneRun {
         resources_.use(frame_, image, use, layers.mipLevel, 1, layers.baseArrayLayer, layers.layerCount);
     }
 
-    VulkanContext& context_;
     const Scene& scene_;
     VulkanResources resources_;
     VulkanPassBuilder builder_;

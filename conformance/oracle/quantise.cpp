@@ -11,15 +11,21 @@ namespace vernier::conformance::exact {
 
 namespace {
 
-// The nearest, lower and upper multiple of 1 for numbers on a scale of codes.
-Interval roundedCodes(double value, double low, double high) {
-    return {std::nearbyint(value), std::floor(low + kCodeTolerance), std::ceil(high - kCodeTolerance)};
+// The nearest, lower and upper code for numbers on a scale of codes from `first` to `last`.
+Interval roundedCodes(const Interval& n, double budget, double first, double last) {
+    double low = std::floor(n.low + kCodeTolerance), high = std::ceil(n.high - kCodeTolerance);
+    if (budget > 0) {
+        low = std::min(low, std::ceil(n.low - budget - kCodeTolerance));
+        high = std::max(high, std::floor(n.high + budget + kCodeTolerance));
+    }
+    return Interval(std::nearbyint(n.value), low, high).clamped(first, last);
 }
 
-Interval quantiseFixed(const Interval& number, double minimum, double codes) {
+Interval quantiseFixed(const Interval& number, double minimum, double codes, double budget) {
     if (number.isNan()) return {0, minimum, 1};
     const Interval n = number.clamped(minimum, 1);
-    const Interval c = roundedCodes(n.value * codes, n.low * codes, n.high * codes);
+    const Interval c =
+        roundedCodes({n.value * codes, n.low * codes, n.high * codes}, budget, minimum * codes, codes);
     return {c.value / codes, c.low / codes, c.high / codes};
 }
 
@@ -64,18 +70,19 @@ double srgbDecode(double encoded) {
     return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
-Interval quantise(const Component& component, const Interval& number) {
+Interval quantise(const Component& component, const Interval& number, double budget) {
     const double codes = std::ldexp(1.0, component.bits) - 1;
     switch (component.encoding) {
         case Encoding::unorm:
-            return quantiseFixed(number, 0, codes);
+            return quantiseFixed(number, 0, codes, budget);
         case Encoding::snorm:
-            return quantiseFixed(number, -1, std::ldexp(1.0, component.bits - 1) - 1);
+            return quantiseFixed(number, -1, std::ldexp(1.0, component.bits - 1) - 1, budget);
         case Encoding::srgb: {
             if (number.isNan()) return {0, 0, 1};
             const Interval n = number.clamped(0, 1);
-            const Interval c =
-                roundedCodes(srgbEncode(n.value) * 255, srgbEncode(n.low) * 255, srgbEncode(n.high) * 255);
+            const Interval encoded(srgbEncode(n.value) * 255, srgbEncode(n.low) * 255,
+                                   srgbEncode(n.high) * 255);
+            const Interval c = roundedCodes(encoded, budget, 0, 255);
             const auto at = [](double code) { return srgbTable()[static_cast<size_t>(code)]; };
             return {at(c.value), at(c.low), at(c.high)};
         }

@@ -91,6 +91,16 @@ Color clampForFormat(const PixelFormat& format, Color color) {
     return color;
 }
 
+// Blending needs the precision of the destination only: products and sums may each be rounded to its codes,
+// one code altogether. Factors of 0 and 1 leave nothing to round.
+constexpr double kBlendBudget = 1;
+
+bool isTrivial(VkBlendFactor factor, size_t channel, const Color& source, const Color& destination,
+               const Color& constants, const Color& source1) {
+    const Interval f = blendFactor(factor, channel, source, destination, constants, source1);
+    return f == Interval(0.0) || f == Interval(1.0);
+}
+
 void writeColors(const OutputState& output, const FragmentResult& fragment, SampleState& s) {
     for (size_t i = 0; i < output.colorCount; ++i) {
         const PixelFormat* format = output.colorFormats[i];
@@ -103,6 +113,7 @@ void writeColors(const OutputState& output, const FragmentResult& fragment, Samp
         const Color source = clampForFormat(*format, fragment.colors[i]);
         Color result = source;
         const bool blend = state.blendEnable && !format->isInteger();
+        std::array<double, 4> budget{};
         if (blend) {
             Color constants;
             for (size_t c = 0; c < 4; ++c)
@@ -111,6 +122,12 @@ void writeColors(const OutputState& output, const FragmentResult& fragment, Samp
             const Color source1 = clampForFormat(*format, fragment.source1.value_or(Color{}));
             for (size_t c = 0; c < 4; ++c) {
                 result[c] = blendComponent(state, c, source, s.colors[i], constants, source1);
+                const auto trivial = [&](VkBlendFactor color, VkBlendFactor alpha) {
+                    return isTrivial(c == 3 ? alpha : color, c, source, s.colors[i], constants, source1);
+                };
+                const bool exactly = trivial(state.srcColorBlendFactor, state.srcAlphaBlendFactor) &&
+                                     trivial(state.dstColorBlendFactor, state.dstAlphaBlendFactor);
+                budget[c] = exactly ? 0 : kBlendBudget;
             }
         }
         uint8_t& flags = s.flags[i];
@@ -119,7 +136,7 @@ void writeColors(const OutputState& output, const FragmentResult& fragment, Samp
         for (const Component& c : format->all()) {
             if (!(mask & (1u << c.channel))) continue;
             if (result[c.channel].isNan()) flags |= kOracleUnknown;
-            s.colors[i][c.channel] = quantise(c, result[c.channel]);
+            s.colors[i][c.channel] = quantise(c, result[c.channel], budget[c.channel]);
         }
     }
 }

@@ -1,6 +1,7 @@
 #include "conformance/oracle/texture_unit.h"
 
 #include "conformance/oracle/filtering.h"
+#include "conformance/oracle/quantise.h"
 
 #include <algorithm>
 #include <cmath>
@@ -206,6 +207,17 @@ SampleResult filterLod(const Sampler& s, const Interval& lambda, double sCoordin
     return box.result();
 }
 
+// A filter may work at the precision of the texture's codes: one code to either side of the box (but nothing
+// where all texels agree, and never beyond the format). The nominal value stays exact.
+void allowFilterRounding(const PixelFormat& format, SampleResult& result) {
+    for (const Component& component : format.all()) {
+        Interval& v = result.color[component.channel];
+        if (v.isExact() || component.encoding == Encoding::sfloat || component.encoding == Encoding::ufloat)
+            continue;
+        v = v.united(quantise(component, v, 1));
+    }
+}
+
 uint32_t selectLayer(const ImageStore& image, double layer) {
     const double last = image.arrayLayers() - 1;
     return static_cast<uint32_t>(std::clamp(std::nearbyint(layer), 0.0, last));
@@ -258,7 +270,9 @@ SampleResult sampleImage(const ImageStore& image, const SceneSampler& sampler, c
     }
     const double floorLod = -1;  // anything below magnifies alike
     lambda = lambda.clamped(floorLod, std::numeric_limits<double>::max());
-    return filterLod(s, lambda, query.s, query.t);
+    SampleResult result = filterLod(s, lambda, query.s, query.t);
+    if (!s.dref) allowFilterRounding(image.format(), result);
+    return result;
 }
 
 SampleResult gatherImage(const ImageStore& image, const SceneSampler& sampler, const SampleQuery& query,

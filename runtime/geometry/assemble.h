@@ -27,8 +27,9 @@ struct GeometryStatistics {
 class Assembler {
   public:
     ContextCache& contexts() { return contexts_; }
-    /// Processes the ranges into `chunk`. `draws` are those that PrimitiveRange::draw names; `token` numbers the bindings
-    /// of the first of them, the next has token + 1, and so on. Returns false when a program ran out of its loop budget.
+    /// Processes the ranges into `chunk`. `draws` are those that PrimitiveRange::draw names; `token` numbers
+    /// the bindings of the first of them, the next has token + 1, and so on. Returns false when a program ran
+    /// out of its loop budget.
     bool run(std::span<const PreparedDraw> draws, uint64_t token, std::span<const PrimitiveRange> ranges,
              const TileGrid& grid, Chunk& chunk);
     GeometryStatistics& statistics() { return statistics_; }

@@ -1,5 +1,5 @@
-// What geometry hands to the rasteriser: primitives on the sub-pixel grid with their attributes, sorted by tile. A chunk is
-// the work of one thread on a run of primitives; chunks are numbered in submission order.
+// What geometry hands to the rasteriser: primitives on the sub-pixel grid with their attributes, sorted by
+// tile. A chunk is the work of one thread on a run of primitives; chunks are numbered in submission order.
 #pragma once
 
 #include <array>
@@ -16,35 +16,36 @@ inline constexpr int32_t kTileSize = 64;
 inline constexpr int32_t kBlockSize = 8;
 inline constexpr uint32_t kChunkPrimitives = 1024;
 
-// Bit budget. Window coordinates span kGuardBandMax + 1 - kGuardBandMin = 2^15 pixels, so at b sub-pixel bits the
-// components of an edge have 15 + b bits and an edge function, twice the area of a triangle inside that square, at most
-// 2 * (15 + b) bits: 62 at the finest grid.
+// Bit budget. Window coordinates span kGuardBandMax + 1 - kGuardBandMin = 2^15 pixels, so at b sub-pixel bits
+// the components of an edge have 15 + b bits and an edge function, twice the area of a triangle inside that
+// square, at most 2 * (15 + b) bits: 62 at the finest grid.
 static_assert(kGuardBandMax + 1 - kGuardBandMin == 1 << 15);
 inline constexpr int kMaxSubPixelBits = 16;
 static_assert(2 * (15 + kMaxSubPixelBits) < 63);
 
-/// A triangle with vertices in canonical order: the one with the least (y, x) first, then clockwise on the screen (y down).
-/// The order of submission cannot be told from it, so neither can it change a pixel.
+/// A triangle with vertices in canonical order: the one with the least (y, x) first, then clockwise on the
+/// screen (y down). The order of submission cannot be told from it, so neither can it change a pixel.
 struct Primitive {
-    std::array<int32_t, 3> x, y;        // sub-units of 2^-b pixel
-    std::array<float, 3> z;             // window depth
-    std::array<float, 3> w;             // 1 / w_clip, times 2^-wExponent
+    std::array<int32_t, 3> x, y;  // sub-units of 2^-b pixel
+    std::array<float, 3> z;       // window depth
+    std::array<float, 3> w;       // 1 / w_clip, times 2^-wExponent
     float depthBias;
-    std::array<uint32_t, 3> attributes; // first float of each vertex in Chunk::attributes
-    uint32_t flat;                      // the same of the provoking vertex
-    std::array<int16_t, 4> bounds;      // pixels that may be covered: x0, y0, x1, y1, inclusive, scissored
-    uint32_t draw;                      // index among the prepared draws
+    std::array<uint32_t, 3> attributes;  // first float of each vertex in Chunk::attributes
+    uint32_t flat;                       // the same of the provoking vertex
+    std::array<int16_t, 4> bounds;       // pixels that may be covered: x0, y0, x1, y1, inclusive, scissored
+    uint32_t draw;                       // index among the prepared draws
     uint32_t primitiveId;
-    std::array<float, 3> point;         // of a point: centre x, y and 1 / size, in pixels
+    std::array<float, 3> point;  // of a point: centre x, y and 1 / size, in pixels
     int16_t wExponent;
     bool front;
-    bool affine;                        // all w equal
-    bool smallEdges;                    // edge components below 2^kSmallEdgeBits: 32-bit edge functions
+    bool affine;      // all w equal
+    bool smallEdges;  // edge components below 2^kSmallEdgeBits: 32-bit edge functions
     bool isPoint;
 };
 
-/// Edge components up to 2^23 keep the edge function, divided by the sub-pixel scale, in 32 bits all over a tile: within a
-/// tile it changes by less than 2 * 64 * 2^23 = 2^30, and an edge that crosses the tile is zero somewhere in it.
+/// Edge components up to 2^23 keep the edge function, divided by the sub-pixel scale, in 32 bits all over a
+/// tile: within a tile it changes by less than 2 * 64 * 2^23 = 2^30, and an edge that crosses the tile is
+/// zero somewhere in it.
 inline constexpr int kSmallEdgeBits = 23;
 static_assert((int64_t{2} * kTileSize << kSmallEdgeBits) <= (int64_t{1} << 30));
 

@@ -40,8 +40,8 @@ uint32_t collectPlanes(const PreparedDraw& draw, std::array<ClipPlane, kMaxClipP
     return count;
 }
 
-/// The point of the line a-b where the plane's distance is zero. Commutative in (a, da), (b, db): symmetric sums of the two
-/// products, so that complementary clips meet exactly.
+/// The point of the line a-b where the plane's distance is zero. Commutative in (a, da), (b, db): symmetric
+/// sums of the two products, so that complementary clips meet exactly.
 double meet(double a, double da, double b, double db) {
     const double weightA = std::fabs(db), weightB = std::fabs(da);
     return (a * weightA + b * weightB) / (weightA + weightB);
@@ -50,7 +50,8 @@ double meet(double a, double da, double b, double db) {
 ClipVertex cutEdge(const PreparedDraw& draw, const ClipPlane& plane, const ClipVertex& inside, double dInside,
                    const ClipVertex& outside, double dOutside, Chunk& chunk) {
     ClipVertex v;
-    for (uint32_t c = 0; c < 4; ++c) v.position[c] = meet(inside.position[c], dInside, outside.position[c], dOutside);
+    for (uint32_t c = 0; c < 4; ++c)
+        v.position[c] = meet(inside.position[c], dInside, outside.position[c], dOutside);
     for (uint32_t k = 0; k < draw.plan->clipDistanceSlots.size(); ++k)
         v.distances[k] = meet(inside.distances[k], dInside, outside.distances[k], dOutside);
     if (plane.user < kMaxClipDistances) v.distances[plane.user] = 0;
@@ -58,7 +59,8 @@ ClipVertex cutEdge(const PreparedDraw& draw, const ClipPlane& plane, const ClipV
     // Attributes as value plus difference: equal ends give an equal middle, to the bit.
     const Plan& plan = *draw.plan;
     const double t = dInside / (dInside - dOutside);
-    // Linear on the screen: the parameter of the projected segment (specification, "Clipping Shader Outputs").
+    // Linear on the screen: the parameter of the projected segment (specification, "Clipping Shader
+    // Outputs").
     const double linear = v.position[3] != 0 ? t * outside.position[3] / v.position[3] : t;
     v.attributes = static_cast<uint32_t>(chunk.attributes.size());
     const uint32_t interpolated = plan.smoothCount + plan.linearCount;
@@ -93,9 +95,10 @@ bool clipPolygon(const PreparedDraw& draw, ClipPolygon& polygon, Chunk& chunk) {
         for (uint32_t n = 0; n < polygon.count; ++n) {
             const uint32_t next = n + 1 == polygon.count ? 0 : n + 1;
             const bool in = distance[n] >= 0, nextIn = distance[next] >= 0;
-            // Rounding can make a polygon cross a plane more than twice; what exceeds the bound would be a sliver of
-            // rounding errors.
-            if (in && result.count < kMaxPolygonVertices) result.vertices[result.count++] = polygon.vertices[n];
+            // Rounding can make a polygon cross a plane more than twice; what exceeds the bound would be a
+            // sliver of rounding errors.
+            if (in && result.count < kMaxPolygonVertices)
+                result.vertices[result.count++] = polygon.vertices[n];
             const bool closing = isLine && next == 0;
             if (in == nextIn || closing || result.count == kMaxPolygonVertices) continue;
             const uint32_t i = in ? n : next, o = in ? next : n;

@@ -7,14 +7,18 @@
 namespace vernier {
 namespace {
 
-/// The smallest difference that a fixed-point attachment resolves; for a float one, 2^(e - 23) with e the largest exponent
-/// of the primitive's depths.
+/// The smallest difference that a fixed-point attachment resolves; for a float one, 2^(e - 23) with e the
+/// largest exponent of the primitive's depths.
 double resolvableDifference(DepthStorage storage, std::span<const WindowVertex> polygon) {
     switch (storage) {
-        case DepthStorage::d16: return 1.0 / 65535.0;
-        case DepthStorage::d24: return 1.0 / 16777215.0;
-        case DepthStorage::none: return 0;
-        default: break;
+        case DepthStorage::d16:
+            return 1.0 / 65535.0;
+        case DepthStorage::d24:
+            return 1.0 / 16777215.0;
+        case DepthStorage::none:
+            return 0;
+        default:
+            break;
     }
     float largest = 0;
     for (const WindowVertex& v : polygon) largest = std::max(largest, std::fabs(v.z));
@@ -31,7 +35,8 @@ float depthBias(const PreparedDraw& draw, std::span<const WindowVertex> polygon,
     const auto area = static_cast<double>(doubleArea(a, b, c));
     const double subUnits = static_cast<double>(1u << draw.subPixelBits);
     const double zb = double{b.z} - double{a.z}, zc = double{c.z} - double{a.z};
-    const double abx = double(b.x) - a.x, aby = double(b.y) - a.y, acx = double(c.x) - a.x, acy = double(c.y) - a.y;
+    const double abx = double(b.x) - a.x, aby = double(b.y) - a.y, acx = double(c.x) - a.x,
+                 acy = double(c.y) - a.y;
     const double zx = (zb * acy - zc * aby) * subUnits / area, zy = (zc * abx - zb * acx) * subUnits / area;
     const double slope = std::sqrt(zx * zx + zy * zy);
     double bias = slope * double{dynamic.depthBiasSlope} +

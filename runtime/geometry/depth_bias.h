@@ -7,8 +7,8 @@
 
 namespace vernier {
 
-/// o = clamp(m * slope + r * constant), added to the depth of every fragment. `polygon` has all vertices of the primitive
-/// (for the largest exponent of a float attachment); a, b, c span its plane.
+/// o = clamp(m * slope + r * constant), added to the depth of every fragment. `polygon` has all vertices of
+/// the primitive (for the largest exponent of a float attachment); a, b, c span its plane.
 float depthBias(const PreparedDraw& draw, std::span<const WindowVertex> polygon, const WindowVertex& a,
                 const WindowVertex& b, const WindowVertex& c);
 

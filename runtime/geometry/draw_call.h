@@ -31,12 +31,12 @@ struct DrawCall {
     std::array<VertexStream, kMaxVertexBindings> vertexStreams{};
     IndexStream indices;
     ResourceBindings vertexResources, fragmentResources;
-    uint32_t count = 0;          // vertices or indices
+    uint32_t count = 0;  // vertices or indices
     uint32_t instances = 1;
-    uint32_t first = 0;          // first vertex or index
-    int32_t vertexOffset = 0;    // added to each index
+    uint32_t first = 0;        // first vertex or index
+    int32_t vertexOffset = 0;  // added to each index
     uint32_t firstInstance = 0;
-    uint32_t drawIndex = 0;      // of an indirect draw
+    uint32_t drawIndex = 0;  // of an indirect draw
 };
 
 }  // namespace vernier

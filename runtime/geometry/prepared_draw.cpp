@@ -11,8 +11,8 @@ int32_t clampPixel(double value) {
     return static_cast<int32_t>(std::min(value, double{kGuardBandMax}));
 }
 
-/// The pixels whose centres lie in [low, high): clipping to the view volume leaves exactly those of a shape that covers
-/// them, since its right and bottom edges are no top-left edges.
+/// The pixels whose centres lie in [low, high): clipping to the view volume leaves exactly those of a shape
+/// that covers them, since its right and bottom edges are no top-left edges.
 void pixelRange(double low, double high, int32_t& first, int32_t& end) {
     first = clampPixel(std::ceil(low - 0.5));
     end = clampPixel(std::ceil(high - 0.5));
@@ -50,15 +50,16 @@ PreparedDraw prepareDraw(const DrawCall& call, const VkRect2D& renderArea) {
     pixelRange(std::min(y0, y1), std::max(y0, y1), viewport.y0, viewport.y1);
     draw.triangleArea = intersect(draw.area, viewport);
 
-    // Depths outside [0, 1] have no place in a fixed-point attachment, and without VK_EXT_depth_range_unrestricted none in
-    // a float one.
+    // Depths outside [0, 1] have no place in a fixed-point attachment, and without
+    // VK_EXT_depth_range_unrestricted none in a float one.
     const auto unit = [](float value) { return value >= 0 ? std::min(value, 1.0f) : 0.0f; };
     if (draw.plan->depth.clampToViewport) {
         draw.depthLow = unit(std::min(v.minDepth, v.maxDepth));
         draw.depthHigh = unit(std::max(v.minDepth, v.maxDepth));
     }
     draw.runs = vertexRuns(call, draw.state->topology, draw.state->primitiveRestart);
-    if (!draw.runs.empty()) draw.primitivesPerInstance = draw.runs.back().firstPrimitive + draw.runs.back().primitives;
+    if (!draw.runs.empty())
+        draw.primitivesPerInstance = draw.runs.back().firstPrimitive + draw.runs.back().primitives;
     return draw;
 }
 

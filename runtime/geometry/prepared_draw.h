@@ -10,8 +10,8 @@
 
 namespace vernier {
 
-/// window = clip / w * scale + offset, in double: within half a unit of its last place of the exact value, far finer
-/// than any sub-pixel grid, so that the grid point is the one nearest to the exact coordinate.
+/// window = clip / w * scale + offset, in double: within half a unit of its last place of the exact value,
+/// far finer than any sub-pixel grid, so that the grid point is the one nearest to the exact coordinate.
 struct ViewportTransform {
     double scale[3], offset[3];
 };
@@ -27,13 +27,14 @@ struct PreparedDraw {
     const Plan* plan = nullptr;
     const GraphicsState* state = nullptr;
     ViewportTransform viewport{};
-    PixelRect triangleArea;       // scissor, render area, and the viewport: what clipping to the view volume leaves
-    PixelRect area;               // scissor and render area, for points and lines
+    PixelRect
+        triangleArea;  // scissor, render area, and the viewport: what clipping to the view volume leaves
+    PixelRect area;    // scissor and render area, for points and lines
     float depthLow = 0, depthHigh = 1;  // what depths are clamped to
     uint32_t subPixelBits = 8;
     std::vector<VertexRun> runs;
     uint32_t primitivesPerInstance = 0;
-    uint32_t fragmentState = 0;   // draws with the same number may share fragment batches
+    uint32_t fragmentState = 0;  // draws with the same number may share fragment batches
 
     uint64_t primitives() const { return uint64_t{primitivesPerInstance} * call.instances; }
 };

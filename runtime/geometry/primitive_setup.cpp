@@ -16,7 +16,9 @@ int16_t exponentOf(double largest) {
     return std::abs(exponent) > kOrdinary ? static_cast<int16_t>(exponent) : int16_t{0};
 }
 
-double powerOfTwo(int exponent) { return std::bit_cast<double>(static_cast<uint64_t>(exponent + 1023) << 52); }
+double powerOfTwo(int exponent) {
+    return std::bit_cast<double>(static_cast<uint64_t>(exponent + 1023) << 52);
+}
 
 /// Pixels whose centres (one sample) or any part (several samples) lie between two coordinates in sub-units.
 void pixelBounds(int32_t low, int32_t high, uint32_t bits, uint32_t samples, int32_t& first, int32_t& last) {
@@ -34,7 +36,9 @@ int32_t snap(double pixels, uint32_t bits) {
     return static_cast<int32_t>(std::nearbyint(bounded * static_cast<double>(1u << bits)));
 }
 
-bool before(const WindowVertex& a, const WindowVertex& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; }
+bool before(const WindowVertex& a, const WindowVertex& b) {
+    return a.y != b.y ? a.y < b.y : a.x < b.x;
+}
 
 }  // namespace
 
@@ -59,8 +63,8 @@ void PrimitiveSetup::begin(Chunk& chunk, const TileGrid& grid) {
 
 void PrimitiveSetup::addPolygon(const PreparedDraw& draw, const PrimitiveInfo& info,
                                 std::span<const WindowVertex> polygon) {
-    // A fan over a clipped polygon has one facing: that of the whole. Snapping can turn a sliver of the fan over; it is
-    // dropped rather than drawn twice.
+    // A fan over a clipped polygon has one facing: that of the whole. Snapping can turn a sliver of the fan
+    // over; it is dropped rather than drawn twice.
     int64_t area = 0;
     for (size_t n = 2; n < polygon.size(); ++n) area += doubleArea(polygon[0], polygon[n - 1], polygon[n]);
     if (area == 0) return;
@@ -85,10 +89,12 @@ void PrimitiveSetup::addPolygon(const PreparedDraw& draw, const PrimitiveInfo& i
         case VK_POLYGON_MODE_POINT: {
             style.area = &draw.area;
             const double subUnits = static_cast<double>(1u << draw.subPixelBits);
-            for (const WindowVertex& v : polygon) addSquare(draw, info, style, v, v.x / subUnits, v.y / subUnits, 1);
+            for (const WindowVertex& v : polygon)
+                addSquare(draw, info, style, v, v.x / subUnits, v.y / subUnits, 1);
             return;
         }
-        default: break;
+        default:
+            break;
     }
     for (size_t n = 2; n < polygon.size(); ++n) {
         if ((doubleArea(polygon[0], polygon[n - 1], polygon[n]) > 0) != (area > 0)) continue;
@@ -103,8 +109,8 @@ void PrimitiveSetup::addLine(const PreparedDraw& draw, const PrimitiveInfo& info
     addSegment(draw, info, style, a, b);
 }
 
-void PrimitiveSetup::addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& vertex, double x,
-                              double y, float size) {
+void PrimitiveSetup::addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& vertex,
+                              double x, double y, float size) {
     Style style;
     style.area = &draw.area;
     addSquare(draw, info, style, vertex, x, y, size);
@@ -116,7 +122,8 @@ void PrimitiveSetup::addSegment(const PreparedDraw& draw, const PrimitiveInfo& i
     const double ax = a.x / subUnits, ay = a.y / subUnits, bx = b.x / subUnits, by = b.y / subUnits;
     const double length = std::sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay));
     if (length == 0) return;
-    const double halfWidth = 0.5 * std::clamp(double{draw.call.dynamic->lineWidth}, 0.125, double{kMaxLineWidth});
+    const double halfWidth =
+        0.5 * std::clamp(double{draw.call.dynamic->lineWidth}, 0.125, double{kMaxLineWidth});
     const double nx = -(by - ay) / length * halfWidth, ny = (bx - ax) / length * halfWidth;
     const auto corner = [&](const WindowVertex& v, double x, double y) {
         WindowVertex result = v;
@@ -132,8 +139,10 @@ void PrimitiveSetup::addSegment(const PreparedDraw& draw, const PrimitiveInfo& i
 
 void PrimitiveSetup::addSquare(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style,
                                const WindowVertex& vertex, double x, double y, float size) {
-    const double clamped = size >= kMinPointSize ? std::min(size, kMaxPointSize) : kMinPointSize;  // NaN: the least
-    const std::array<float, 3> point{static_cast<float>(x), static_cast<float>(y), static_cast<float>(1 / clamped)};
+    const double clamped =
+        size >= kMinPointSize ? std::min(size, kMaxPointSize) : kMinPointSize;  // NaN: the least
+    const std::array<float, 3> point{static_cast<float>(x), static_cast<float>(y),
+                                     static_cast<float>(1 / clamped)};
     Style square = style;
     square.point = &point;
     const auto corner = [&](double sx, double sy) {
@@ -142,7 +151,8 @@ void PrimitiveSetup::addSquare(const PreparedDraw& draw, const PrimitiveInfo& in
         result.y = snap(y + sy * clamped, draw.subPixelBits);
         return result;
     };
-    const WindowVertex tl = corner(-0.5, -0.5), tr = corner(0.5, -0.5), br = corner(0.5, 0.5), bl = corner(-0.5, 0.5);
+    const WindowVertex tl = corner(-0.5, -0.5), tr = corner(0.5, -0.5), br = corner(0.5, 0.5),
+                       bl = corner(-0.5, 0.5);
     addTriangle(draw, info, square, tl, tr, br);
     addTriangle(draw, info, square, tl, br, bl);
 }
@@ -181,14 +191,16 @@ void PrimitiveSetup::addTriangle(const PreparedDraw& draw, const PrimitiveInfo& 
     p.affine = p.w[0] == p.w[1] && p.w[1] == p.w[2];
     p.depthBias = style.depthBias;
     p.flat = info.flat;
-    p.bounds = {static_cast<int16_t>(x0), static_cast<int16_t>(y0), static_cast<int16_t>(x1), static_cast<int16_t>(y1)};
+    p.bounds = {static_cast<int16_t>(x0), static_cast<int16_t>(y0), static_cast<int16_t>(x1),
+                static_cast<int16_t>(y1)};
     p.draw = info.draw;
     p.primitiveId = info.primitiveId;
     p.front = style.front;
     p.isPoint = style.point != nullptr;
     p.point = p.isPoint ? *style.point : std::array<float, 3>{};
     const auto span = [](const std::array<int32_t, 3>& values) {
-        return int64_t{std::max({values[0], values[1], values[2]})} - std::min({values[0], values[1], values[2]});
+        return int64_t{std::max({values[0], values[1], values[2]})} -
+               std::min({values[0], values[1], values[2]});
     };
     p.smallEdges = std::max(span(p.x), span(p.y)) <= int64_t{1} << kSmallEdgeBits;
     bin(p, index, bits);

@@ -13,8 +13,8 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Window coordinates, in double: products of powers of two and of float extremes neither overflow nor lose bits, so
-/// scaling a position by a power of two changes nothing.
+/// Window coordinates, in double: products of powers of two and of float extremes neither overflow nor lose
+/// bits, so scaling a position by a power of two changes nothing.
 void windowCoordinates(const ProjectionInput& in, const ProjectionOutput& out) {
     const hn::CappedTag<double, 8> d;
     const hn::Rebind<float, decltype(d)> f;
@@ -42,7 +42,8 @@ void windowCoordinates(const ProjectionInput& in, const ProjectionOutput& out) {
 void vertexFlags(const ProjectionInput& in, const ProjectionOutput& out) {
     const hn::CappedTag<float, 16> f;
     const hn::RebindToSigned<decltype(f)> i;
-    const int32_t guardLow = kGuardBandMin * (1 << in.subPixelBits), guardHigh = kGuardBandMax * (1 << in.subPixelBits);
+    const int32_t guardLow = kGuardBandMin * (1 << in.subPixelBits),
+                  guardHigh = kGuardBandMax * (1 << in.subPixelBits);
     const auto zero = hn::Zero(f);
     const auto flag = [&](auto mask, uint32_t bit) HWY_ATTR {
         return hn::IfThenElseZero(hn::RebindMask(i, mask), hn::Set(i, static_cast<int32_t>(bit)));
@@ -50,7 +51,8 @@ void vertexFlags(const ProjectionInput& in, const ProjectionOutput& out) {
     const auto flagInt = [&](auto mask, uint32_t bit) HWY_ATTR {
         return hn::IfThenElseZero(mask, hn::Set(i, static_cast<int32_t>(bit)));
     };
-    const uint32_t nearBit = in.depthClip ? uint32_t{kOutsideNear} : 0, farBit = in.depthClip ? uint32_t{kOutsideFar} : 0;
+    const uint32_t nearBit = in.depthClip ? uint32_t{kOutsideNear} : 0,
+                   farBit = in.depthClip ? uint32_t{kOutsideFar} : 0;
     for (uint32_t n = 0; n < in.count; n += hn::Lanes(f)) {
         const auto x = hn::LoadU(f, in.clip[0] + n), y = hn::LoadU(f, in.clip[1] + n);
         const auto z = hn::LoadU(f, in.clip[2] + n), w = hn::LoadU(f, in.clip[3] + n);
@@ -64,13 +66,15 @@ void vertexFlags(const ProjectionInput& in, const ProjectionOutput& out) {
         flags = hn::Or(flags, flag(hn::Le(w, zero), kOutsideGuard));
         const auto wx = hn::LoadU(i, out.x + n), wy = hn::LoadU(i, out.y + n);
         const auto low = hn::Set(i, guardLow), high = hn::Set(i, guardHigh);
-        const auto beyond = hn::Or(hn::Or(hn::Lt(wx, low), hn::Gt(wx, high)), hn::Or(hn::Lt(wy, low), hn::Gt(wy, high)));
+        const auto beyond =
+            hn::Or(hn::Or(hn::Lt(wx, low), hn::Gt(wx, high)), hn::Or(hn::Lt(wy, low), hn::Gt(wy, high)));
         flags = hn::Or(flags, flagInt(beyond, kOutsideGuard));
         // v - v is 0 for finite v and NaN for the others.
-        const auto sum = hn::Add(hn::Add(hn::Sub(x, x), hn::Sub(y, y)), hn::Add(hn::Sub(z, z), hn::Sub(w, w)));
+        const auto sum =
+            hn::Add(hn::Add(hn::Sub(x, x), hn::Sub(y, y)), hn::Add(hn::Sub(z, z), hn::Sub(w, w)));
         flags = hn::Or(flags, flag(hn::Not(hn::Eq(sum, zero)), kNotFinite));
-        hn::StoreU(hn::BitCast(hn::RebindToUnsigned<decltype(f)>(), flags), hn::RebindToUnsigned<decltype(f)>(),
-                   out.flags + n);
+        hn::StoreU(hn::BitCast(hn::RebindToUnsigned<decltype(f)>(), flags),
+                   hn::RebindToUnsigned<decltype(f)>(), out.flags + n);
     }
 }
 
@@ -86,7 +90,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace vernier {
 
-ProjectFn projectFunction(Isa isa) { VERNIER_SELECT_ISA(isa, project) }
+ProjectFn projectFunction(Isa isa) {
+    VERNIER_SELECT_ISA(isa, project)
+}
 
 }  // namespace vernier
 #endif

@@ -8,8 +8,8 @@
 
 namespace vernier {
 
-/// What is known about a vertex. Bits of three vertices are and-ed (all outside one plane: nothing to draw) and or-ed
-/// (something to clip).
+/// What is known about a vertex. Bits of three vertices are and-ed (all outside one plane: nothing to draw)
+/// and or-ed (something to clip).
 enum VertexFlag : uint32_t {
     kOutsideLeft = 1,
     kOutsideRight = 2,

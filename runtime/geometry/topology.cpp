@@ -16,9 +16,12 @@ uint32_t loadIndex(const IndexStream& indices, uint64_t n) {
 
 uint32_t restartIndex(VkIndexType type) {
     switch (type) {
-        case VK_INDEX_TYPE_UINT8_EXT: return 0xFF;
-        case VK_INDEX_TYPE_UINT16: return 0xFFFF;
-        default: return 0xFFFFFFFF;
+        case VK_INDEX_TYPE_UINT8_EXT:
+            return 0xFF;
+        case VK_INDEX_TYPE_UINT16:
+            return 0xFFFF;
+        default:
+            return 0xFFFFFFFF;
     }
 }
 
@@ -26,31 +29,44 @@ uint32_t restartIndex(VkIndexType type) {
 
 uint32_t verticesPerPrimitive(VkPrimitiveTopology topology) {
     switch (topology) {
-        case VK_PRIMITIVE_TOPOLOGY_POINT_LIST: return 1;
+        case VK_PRIMITIVE_TOPOLOGY_POINT_LIST:
+            return 1;
         case VK_PRIMITIVE_TOPOLOGY_LINE_LIST:
-        case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP: return 2;
-        default: return 3;
+        case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP:
+            return 2;
+        default:
+            return 3;
     }
 }
 
 uint32_t primitiveCount(VkPrimitiveTopology topology, uint32_t vertices) {
     switch (topology) {
-        case VK_PRIMITIVE_TOPOLOGY_POINT_LIST: return vertices;
-        case VK_PRIMITIVE_TOPOLOGY_LINE_LIST: return vertices / 2;
-        case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP: return vertices < 2 ? 0 : vertices - 1;
-        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST: return vertices / 3;
-        default: return vertices < 3 ? 0 : vertices - 2;
+        case VK_PRIMITIVE_TOPOLOGY_POINT_LIST:
+            return vertices;
+        case VK_PRIMITIVE_TOPOLOGY_LINE_LIST:
+            return vertices / 2;
+        case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP:
+            return vertices < 2 ? 0 : vertices - 1;
+        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST:
+            return vertices / 3;
+        default:
+            return vertices < 3 ? 0 : vertices - 2;
     }
 }
 
 PrimitiveVertices primitiveVertices(VkPrimitiveTopology topology, uint32_t primitive) {
     const uint32_t p = primitive;
     switch (topology) {
-        case VK_PRIMITIVE_TOPOLOGY_POINT_LIST: return {{p, p, p}, 0, 0};
-        case VK_PRIMITIVE_TOPOLOGY_LINE_LIST: return {{2 * p, 2 * p + 1, 2 * p}, 0, 1};
-        case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP: return {{p, p + 1, p}, 0, 1};
-        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST: return {{3 * p, 3 * p + 1, 3 * p + 2}, 0, 2};
-        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN: return {{p + 1, p + 2, 0}, 0, 1};
+        case VK_PRIMITIVE_TOPOLOGY_POINT_LIST:
+            return {{p, p, p}, 0, 0};
+        case VK_PRIMITIVE_TOPOLOGY_LINE_LIST:
+            return {{2 * p, 2 * p + 1, 2 * p}, 0, 1};
+        case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP:
+            return {{p, p + 1, p}, 0, 1};
+        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST:
+            return {{3 * p, 3 * p + 1, 3 * p + 2}, 0, 2};
+        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN:
+            return {{p + 1, p + 2, 0}, 0, 1};
         default:  // a strip: every other triangle swaps its last two vertices to keep the winding
             return {{p, p + 1 + (p & 1), p + 2 - (p & 1)}, 0, 2 - (p & 1)};
     }
@@ -59,9 +75,12 @@ PrimitiveVertices primitiveVertices(VkPrimitiveTopology topology, uint32_t primi
 uint32_t fetchIndex(const DrawCall& call, uint32_t n) {
     const uint64_t number = uint64_t{call.first} + n;
     switch (call.indices.type) {
-        case VK_INDEX_TYPE_UINT8_EXT: return loadIndex<uint8_t>(call.indices, number);
-        case VK_INDEX_TYPE_UINT16: return loadIndex<uint16_t>(call.indices, number);
-        default: return loadIndex<uint32_t>(call.indices, number);
+        case VK_INDEX_TYPE_UINT8_EXT:
+            return loadIndex<uint8_t>(call.indices, number);
+        case VK_INDEX_TYPE_UINT16:
+            return loadIndex<uint16_t>(call.indices, number);
+        default:
+            return loadIndex<uint32_t>(call.indices, number);
     }
 }
 

@@ -19,15 +19,17 @@ const std::byte* locate(const VertexStream& stream, const AttributeFetch& fetch,
     return offset + fetch.texelBytes <= stream.size ? stream.data + offset : kZeroTexel;
 }
 
-void fetchAttribute(const PreparedDraw& draw, const AttributeFetch& fetch, const VertexRef* refs, uint32_t count,
-                    BatchContext& context) {
+void fetchAttribute(const PreparedDraw& draw, const AttributeFetch& fetch, const VertexRef* refs,
+                    uint32_t count, BatchContext& context) {
     const VertexStream& stream = draw.call.vertexStreams[fetch.binding];
     const std::byte* texels[kMaxBatchLanes];
     for (uint32_t n = 0; n < count; ++n)
-        texels[n] = locate(stream, fetch,
-                           fetch.perInstance ? uint64_t{draw.call.firstInstance} + refs[n].instance : refs[n].index);
+        texels[n] =
+            locate(stream, fetch,
+                   fetch.perInstance ? uint64_t{draw.call.firstInstance} + refs[n].instance : refs[n].index);
     void* planes[4];
-    for (uint32_t c = 0; c < 4; ++c) planes[c] = fetch.slots[c] == kNoSlot ? nullptr : context.input(fetch.slots[c]);
+    for (uint32_t c = 0; c < 4; ++c)
+        planes[c] = fetch.slots[c] == kNoSlot ? nullptr : context.input(fetch.slots[c]);
     if (!fetch.words) {
         fetch.ops.unpackEach(texels, count, planes);
         return;
@@ -46,18 +48,24 @@ void fetchAttribute(const PreparedDraw& draw, const AttributeFetch& fetch, const
 uint32_t builtinValue(const PreparedDraw& draw, ir::Builtin builtin, const VertexRef& ref) {
     const DrawCall& call = draw.call;
     switch (builtin) {
-        case ir::Builtin::vertexIndex: return ref.index;
-        case ir::Builtin::instanceIndex: return call.firstInstance + ref.instance;
+        case ir::Builtin::vertexIndex:
+            return ref.index;
+        case ir::Builtin::instanceIndex:
+            return call.firstInstance + ref.instance;
         case ir::Builtin::baseVertex:
             return call.indices.data != nullptr ? static_cast<uint32_t>(call.vertexOffset) : call.first;
-        case ir::Builtin::baseInstance: return call.firstInstance;
-        case ir::Builtin::drawIndex: return call.drawIndex;
-        default: return 0;
+        case ir::Builtin::baseInstance:
+            return call.firstInstance;
+        case ir::Builtin::drawIndex:
+            return call.drawIndex;
+        default:
+            return 0;
     }
 }
 
 void fetchInputs(const PreparedDraw& draw, const VertexRef* refs, uint32_t count, BatchContext& context) {
-    for (const AttributeFetch& fetch : draw.plan->attributes) fetchAttribute(draw, fetch, refs, count, context);
+    for (const AttributeFetch& fetch : draw.plan->attributes)
+        fetchAttribute(draw, fetch, refs, count, context);
     for (const BuiltinSlot& builtin : draw.plan->vertexBuiltins) {
         float* plane = context.input(builtin.slot);
         if (plane == nullptr) continue;
@@ -80,7 +88,8 @@ void copyPlane(const BatchContext& context, uint32_t slot, uint32_t count, float
 void storeOutputs(const Plan& plan, const BatchContext& context, uint32_t first, uint32_t count,
                   ShadedVertices& vertices, Chunk& chunk) {
     for (uint32_t c = 0; c < 4; ++c)
-        copyPlane(context, plan.positionSlots[c], count, c == 3 ? 1.0f : 0.0f, vertices.clip[c].data() + first);
+        copyPlane(context, plan.positionSlots[c], count, c == 3 ? 1.0f : 0.0f,
+                  vertices.clip[c].data() + first);
     if (!vertices.pointSize.empty())
         copyPlane(context, plan.pointSizeSlot, count, 1.0f, vertices.pointSize.data() + first);
 
@@ -99,7 +108,8 @@ void storeOutputs(const Plan& plan, const BatchContext& context, uint32_t first,
         }
         // Bits, not values: a copy must not touch the payload of a NaN.
         const float* plane = context.output(slot);
-        for (uint32_t n = 0; n < count; ++n) std::memcpy(attributes + n * stride + k, plane + n, sizeof(float));
+        for (uint32_t n = 0; n < count; ++n)
+            std::memcpy(attributes + n * stride + k, plane + n, sizeof(float));
     }
 }
 
@@ -112,7 +122,8 @@ void storeCullDistances(const Plan& plan, const BatchContext& context, uint32_t 
     }
 }
 
-/// Clip distances: negative is outside. NaN counts as outside of everything it is compared with: as not finite.
+/// Clip distances: negative is outside. NaN counts as outside of everything it is compared with: as not
+/// finite.
 void flagClipDistances(uint32_t count, uint32_t clipCount, ShadedVertices& vertices) {
     for (uint32_t n = 0; n < count; ++n) {
         for (uint32_t k = 0; k < clipCount; ++k) {
@@ -149,8 +160,8 @@ void ShadedVertices::resize(uint32_t count, const Plan& plan) {
     pointSize.resize(plan.pointSizeSlot == kNoSlot ? 0 : count);
 }
 
-bool shadeVertices(const PreparedDraw& draw, uint64_t token, const std::vector<VertexRef>& refs, ContextCache& cache,
-                   ShadedVertices& vertices, Chunk& chunk) {
+bool shadeVertices(const PreparedDraw& draw, uint64_t token, const std::vector<VertexRef>& refs,
+                   ContextCache& cache, ShadedVertices& vertices, Chunk& chunk) {
     const Plan& plan = *draw.plan;
     const auto count = static_cast<uint32_t>(refs.size());
     vertices.resize(count, plan);
@@ -176,14 +187,14 @@ bool shadeVertices(const PreparedDraw& draw, uint64_t token, const std::vector<V
         storeOutputs(plan, entry.context, first, n, vertices, chunk);
         storeCullDistances(plan, entry.context, first, n, vertices);
     }
-    const ProjectionInput in{{vertices.clip[0].data(), vertices.clip[1].data(), vertices.clip[2].data(),
-                              vertices.clip[3].data()},
-                             count,
-                             draw.viewport,
-                             draw.subPixelBits,
-                             draw.state->depthClipEnable};
-    const ProjectionOutput out{vertices.x.data(), vertices.y.data(), vertices.z.data(), vertices.inverseW.data(),
-                               vertices.flags.data()};
+    const ProjectionInput in{
+        {vertices.clip[0].data(), vertices.clip[1].data(), vertices.clip[2].data(), vertices.clip[3].data()},
+        count,
+        draw.viewport,
+        draw.subPixelBits,
+        draw.state->depthClipEnable};
+    const ProjectionOutput out{vertices.x.data(), vertices.y.data(), vertices.z.data(),
+                               vertices.inverseW.data(), vertices.flags.data()};
     projectFunction(draw.call.pipeline->isa())(in, out);
     flagClipDistances(count, static_cast<uint32_t>(plan.clipDistanceSlots.size()), vertices);
     return finished;

@@ -43,15 +43,15 @@ struct ShadedVertices {
     std::vector<uint8_t> culled;       // bit per cull distance: negative
     std::vector<float> clipDistances;  // vertex-major
     std::vector<float> pointSize;
-    uint32_t firstAttribute = 0;       // of vertex 0 in Chunk::attributes
+    uint32_t firstAttribute = 0;  // of vertex 0 in Chunk::attributes
     uint32_t attributeStride = 0;
 
     void resize(uint32_t count, const Plan& plan);
 };
 
-/// Runs `draw`'s vertex program for `refs`. `token` identifies the draw's bindings for ContextCache. Returns false when the
-/// program ran out of its loop budget.
-bool shadeVertices(const PreparedDraw& draw, uint64_t token, const std::vector<VertexRef>& refs, ContextCache& cache,
-                   ShadedVertices& vertices, Chunk& chunk);
+/// Runs `draw`'s vertex program for `refs`. `token` identifies the draw's bindings for ContextCache. Returns
+/// false when the program ran out of its loop budget.
+bool shadeVertices(const PreparedDraw& draw, uint64_t token, const std::vector<VertexRef>& refs,
+                   ContextCache& cache, ShadedVertices& vertices, Chunk& chunk);
 
 }  // namespace vernier

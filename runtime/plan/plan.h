@@ -1,5 +1,6 @@
-// The plan of a graphics pipeline: which stages run, at what rate and accuracy. Plain data, made once when the pipeline is
-// created; the renderer does what it says and explain() prints it, so that the two cannot differ.
+// The plan of a graphics pipeline: which stages run, at what rate and accuracy. Plain data, made once when
+// the pipeline is created; the renderer does what it says and explain() prints it, so that the two cannot
+// differ.
 #pragma once
 
 #include <vulkan/vulkan_core.h>
@@ -30,12 +31,12 @@ struct PlanFact {
 /// How one vertex attribute reaches the inputs of the vertex program.
 struct AttributeFetch {
     FormatOps ops;
-    bool words = false;          // components are whole 32-bit words: copied, not converted
-    uint32_t components = 0;     // that the format has
+    bool words = false;       // components are whole 32-bit words: copied, not converted
+    uint32_t components = 0;  // that the format has
     uint32_t texelBytes = 0;
     uint32_t binding = 0, offset = 0, stride = 0;
     bool perInstance = false;
-    uint32_t alphaBits = 0;      // what A is when the format has none: 1 as float or integer
+    uint32_t alphaBits = 0;  // what A is when the format has none: 1 as float or integer
     std::array<uint32_t, 4> slots{kNoSlot, kNoSlot, kNoSlot, kNoSlot};
 };
 
@@ -57,12 +58,13 @@ enum class DepthStorage : uint8_t { none, d16, d24, d32f, d32fs8 };
 
 struct DepthPlan {
     DepthStorage storage = DepthStorage::none;
-    bool hasStencil = false;      // the attachment has a stencil aspect
+    bool hasStencil = false;  // the attachment has a stencil aspect
     bool test = false, write = false;
     bool bounds = false, stencil = false;
-    bool early = true;            // before the fragment program
-    bool clampToViewport = false; // depth clamping
-    uint8_t compare = 7;          // bit 0: passes when less, bit 1: equal, bit 2: greater (as VkCompareOp is numbered)
+    bool early = true;             // before the fragment program
+    bool clampToViewport = false;  // depth clamping
+    uint8_t compare =
+        7;  // bit 0: passes when less, bit 1: equal, bit 2: greater (as VkCompareOp is numbered)
     bool any() const { return test || bounds || stencil; }
 };
 
@@ -80,11 +82,11 @@ struct ColorPlan {
     FormatOps ops;
     uint32_t texelBytes = 0;
     bool readsDestination = false;
-    bool partialMask = false;                     // some stored components keep their bits
-    bool clampInputs = false;                     // fixed-point: sources and factors are clamped before blending
+    bool partialMask = false;  // some stored components keep their bits
+    bool clampInputs = false;  // fixed-point: sources and factors are clamped before blending
     float clampLow = 0;
-    std::array<std::byte, 16> writeBits{};        // of a texel: the bits that may change
-    std::array<uint32_t, 4> slots{kNoSlot, kNoSlot, kNoSlot, kNoSlot};      // of the fragment program's outputs
+    std::array<std::byte, 16> writeBits{};  // of a texel: the bits that may change
+    std::array<uint32_t, 4> slots{kNoSlot, kNoSlot, kNoSlot, kNoSlot};  // of the fragment program's outputs
     std::array<uint32_t, 4> dualSlots{kNoSlot, kNoSlot, kNoSlot, kNoSlot};  // second source
     VkPipelineColorBlendAttachmentState blend{};
     VkLogicOp logicOp = VK_LOGIC_OP_COPY;
@@ -101,15 +103,15 @@ struct Plan {
     uint32_t smoothCount = 0, linearCount = 0;
 
     // Fragments.
-    bool runsFragments = false;   // the fragment program has an effect
-    bool usesQuads = false;       // derivatives: whole 2x2 quads run, helper lanes included
-    bool perSample = false;       // one run per sample
+    bool runsFragments = false;  // the fragment program has an effect
+    bool usesQuads = false;      // derivatives: whole 2x2 quads run, helper lanes included
+    bool perSample = false;      // one run per sample
     bool needsBarycentrics = false;
-    bool needsCentroid = false;   // some input is evaluated inside the covered part of the pixel
-    bool ordered = false;         // a batch holds each pixel once: blending or a late depth test
+    bool needsCentroid = false;         // some input is evaluated inside the covered part of the pixel
+    bool ordered = false;               // a batch holds each pixel once: blending or a late depth test
     bool preciseInterpolation = false;  // double
-    bool keepsCoverage = true;    // nothing after the early tests drops a sample
-    bool coverageIsFull = false;  // every lane of a batch is one covered sample, and stays so
+    bool keepsCoverage = true;          // nothing after the early tests drops a sample
+    bool coverageIsFull = false;        // every lane of a batch is one covered sample, and stays so
     bool usesFragCoord = false;
     uint32_t samples = 1;
     uint32_t sampleMask = ~0u;

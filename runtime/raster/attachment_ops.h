@@ -7,12 +7,13 @@
 
 namespace vernier {
 
-/// Sets the given aspects of all samples of the pixels in `rect`, in layers [firstLayer, firstLayer + layers).
-void clearPixels(const RenderTarget& target, VkImageAspectFlags aspects, const VkClearValue& value, const PixelRect& rect,
-                 uint32_t firstLayer, uint32_t layers);
+/// Sets the given aspects of all samples of the pixels in `rect`, in layers [firstLayer, firstLayer +
+/// layers).
+void clearPixels(const RenderTarget& target, VkImageAspectFlags aspects, const VkClearValue& value,
+                 const PixelRect& rect, uint32_t firstLayer, uint32_t layers);
 
 /// Average of the samples; sample 0 for integer formats. sRGB is averaged linearly.
-void resolvePixels(const RenderTarget& source, const RenderTarget& destination, const PixelRect& rect, uint32_t layers,
-                   Isa isa);
+void resolvePixels(const RenderTarget& source, const RenderTarget& destination, const PixelRect& rect,
+                   uint32_t layers, Isa isa);
 
 }  // namespace vernier

@@ -19,48 +19,75 @@ struct Pixels {
     VF source[4], second[4], destination[4], constant[4];
 };
 
-HWY_INLINE VF oneMinus(VF v) { return hn::Sub(hn::Set(F(), 1.0f), v); }
+HWY_INLINE VF oneMinus(VF v) {
+    return hn::Sub(hn::Set(F(), 1.0f), v);
+}
 
 /// The factor for component c (3 = alpha).
 VF factorOf(VkBlendFactor factor, const Pixels& p, int c) {
     const F f;
     switch (factor) {
-        case VK_BLEND_FACTOR_ZERO: return hn::Zero(f);
-        case VK_BLEND_FACTOR_SRC_COLOR: return p.source[c];
-        case VK_BLEND_FACTOR_ONE_MINUS_SRC_COLOR: return oneMinus(p.source[c]);
-        case VK_BLEND_FACTOR_DST_COLOR: return p.destination[c];
-        case VK_BLEND_FACTOR_ONE_MINUS_DST_COLOR: return oneMinus(p.destination[c]);
-        case VK_BLEND_FACTOR_SRC_ALPHA: return p.source[3];
-        case VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA: return oneMinus(p.source[3]);
-        case VK_BLEND_FACTOR_DST_ALPHA: return p.destination[3];
-        case VK_BLEND_FACTOR_ONE_MINUS_DST_ALPHA: return oneMinus(p.destination[3]);
-        case VK_BLEND_FACTOR_CONSTANT_COLOR: return p.constant[c];
-        case VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_COLOR: return oneMinus(p.constant[c]);
-        case VK_BLEND_FACTOR_CONSTANT_ALPHA: return p.constant[3];
-        case VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_ALPHA: return oneMinus(p.constant[3]);
+        case VK_BLEND_FACTOR_ZERO:
+            return hn::Zero(f);
+        case VK_BLEND_FACTOR_SRC_COLOR:
+            return p.source[c];
+        case VK_BLEND_FACTOR_ONE_MINUS_SRC_COLOR:
+            return oneMinus(p.source[c]);
+        case VK_BLEND_FACTOR_DST_COLOR:
+            return p.destination[c];
+        case VK_BLEND_FACTOR_ONE_MINUS_DST_COLOR:
+            return oneMinus(p.destination[c]);
+        case VK_BLEND_FACTOR_SRC_ALPHA:
+            return p.source[3];
+        case VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA:
+            return oneMinus(p.source[3]);
+        case VK_BLEND_FACTOR_DST_ALPHA:
+            return p.destination[3];
+        case VK_BLEND_FACTOR_ONE_MINUS_DST_ALPHA:
+            return oneMinus(p.destination[3]);
+        case VK_BLEND_FACTOR_CONSTANT_COLOR:
+            return p.constant[c];
+        case VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_COLOR:
+            return oneMinus(p.constant[c]);
+        case VK_BLEND_FACTOR_CONSTANT_ALPHA:
+            return p.constant[3];
+        case VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_ALPHA:
+            return oneMinus(p.constant[3]);
         case VK_BLEND_FACTOR_SRC_ALPHA_SATURATE:
             return c == 3 ? hn::Set(f, 1.0f) : hn::Min(p.source[3], oneMinus(p.destination[3]));
-        case VK_BLEND_FACTOR_SRC1_COLOR: return p.second[c];
-        case VK_BLEND_FACTOR_ONE_MINUS_SRC1_COLOR: return oneMinus(p.second[c]);
-        case VK_BLEND_FACTOR_SRC1_ALPHA: return p.second[3];
-        case VK_BLEND_FACTOR_ONE_MINUS_SRC1_ALPHA: return oneMinus(p.second[3]);
-        default: return hn::Set(f, 1.0f);
+        case VK_BLEND_FACTOR_SRC1_COLOR:
+            return p.second[c];
+        case VK_BLEND_FACTOR_ONE_MINUS_SRC1_COLOR:
+            return oneMinus(p.second[c]);
+        case VK_BLEND_FACTOR_SRC1_ALPHA:
+            return p.second[3];
+        case VK_BLEND_FACTOR_ONE_MINUS_SRC1_ALPHA:
+            return oneMinus(p.second[3]);
+        default:
+            return hn::Set(f, 1.0f);
     }
 }
 
-VF combine(VkBlendOp op, VkBlendFactor sourceFactor, VkBlendFactor destinationFactor, const Pixels& p, int c) {
+VF combine(VkBlendOp op, VkBlendFactor sourceFactor, VkBlendFactor destinationFactor, const Pixels& p,
+           int c) {
     const VF s = p.source[c], d = p.destination[c];
     switch (op) {
-        case VK_BLEND_OP_MIN: return hn::Min(s, d);
-        case VK_BLEND_OP_MAX: return hn::Max(s, d);
-        default: break;
+        case VK_BLEND_OP_MIN:
+            return hn::Min(s, d);
+        case VK_BLEND_OP_MAX:
+            return hn::Max(s, d);
+        default:
+            break;
     }
     const VF weightedSource = hn::Mul(s, factorOf(sourceFactor, p, c));
     const VF weightedDestination = hn::Mul(d, factorOf(destinationFactor, p, c));
     switch (op) {
-        case VK_BLEND_OP_SUBTRACT: return hn::Sub(weightedSource, weightedDestination);
-        case VK_BLEND_OP_REVERSE_SUBTRACT: return hn::Sub(weightedDestination, weightedSource);
-        default: return hn::Add(weightedSource, weightedDestination);
+        case VK_BLEND_OP_SUBTRACT:
+            return hn::Sub(weightedSource, weightedDestination);
+        case VK_BLEND_OP_REVERSE_SUBTRACT:
+            return hn::Sub(weightedDestination, weightedSource);
+        default:
+            return hn::Add(weightedSource, weightedDestination);
     }
 }
 
@@ -78,11 +105,13 @@ void blend(const BlendInput& in) {
         for (int c = 0; c < 4; ++c) {
             p.source[c] = limit(hn::LoadU(f, in.source[c] + n));
             p.destination[c] = hn::LoadU(f, in.destination[c] + n);
-            p.second[c] = in.secondSource[c] != nullptr ? limit(hn::LoadU(f, in.secondSource[c] + n)) : hn::Zero(f);
+            p.second[c] =
+                in.secondSource[c] != nullptr ? limit(hn::LoadU(f, in.secondSource[c] + n)) : hn::Zero(f);
         }
         for (int c = 0; c < 3; ++c)
-            hn::StoreU(combine(state.colorBlendOp, state.srcColorBlendFactor, state.dstColorBlendFactor, p, c), f,
-                       in.result[c] + n);
+            hn::StoreU(
+                combine(state.colorBlendOp, state.srcColorBlendFactor, state.dstColorBlendFactor, p, c), f,
+                in.result[c] + n);
         hn::StoreU(combine(state.alphaBlendOp, state.srcAlphaBlendFactor, state.dstAlphaBlendFactor, p, 3), f,
                    in.result[3] + n);
     }
@@ -95,7 +124,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace vernier {
 
-BlendFn blendFunction(Isa isa) { VERNIER_SELECT_ISA(isa, blend) }
+BlendFn blendFunction(Isa isa) {
+    VERNIER_SELECT_ISA(isa, blend)
+}
 
 }  // namespace vernier
 #endif

@@ -14,8 +14,8 @@ struct BlendInput {
     const float* source[4];        // planes
     const float* secondSource[4];  // dual source; nullptr: none
     const float* destination[4];
-    float* result[4];              // may be the destination
-    uint32_t count;                // planes have room for a multiple of 16
+    float* result[4];  // may be the destination
+    uint32_t count;    // planes have room for a multiple of 16
 };
 
 using BlendFn = void (*)(const BlendInput& input);

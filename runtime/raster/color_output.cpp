@@ -47,17 +47,22 @@ void scatter(const ColorOutputInput& in, const std::byte* texels) {
 template <class Function>
 void withTexelSize(uint32_t bytes, const Function& function) {
     switch (bytes) {
-        case 1: return function(std::integral_constant<uint32_t, 1>());
-        case 2: return function(std::integral_constant<uint32_t, 2>());
-        case 4: return function(std::integral_constant<uint32_t, 4>());
-        case 8: return function(std::integral_constant<uint32_t, 8>());
-        default: return function(std::integral_constant<uint32_t, 16>());
+        case 1:
+            return function(std::integral_constant<uint32_t, 1>());
+        case 2:
+            return function(std::integral_constant<uint32_t, 2>());
+        case 4:
+            return function(std::integral_constant<uint32_t, 4>());
+        case 8:
+            return function(std::integral_constant<uint32_t, 8>());
+        default:
+            return function(std::integral_constant<uint32_t, 16>());
     }
 }
 
 uint8_t logicOp(VkLogicOp op, uint8_t s, uint8_t d) {
-    // The operations are numbered by their truth table: bit 0 is the result for s = d = 1, bit 1 for s = 1, d = 0,
-    // bit 2 for s = 0, d = 1, bit 3 for s = d = 0 (specification, "Logical Operations").
+    // The operations are numbered by their truth table: bit 0 is the result for s = d = 1, bit 1 for s = 1, d
+    // = 0, bit 2 for s = 0, d = 1, bit 3 for s = d = 0 (specification, "Logical Operations").
     const auto table = static_cast<uint32_t>(op);
     uint32_t result = 0;
     if ((table & 1) != 0) result |= s & d;
@@ -69,7 +74,8 @@ uint8_t logicOp(VkLogicOp op, uint8_t s, uint8_t d) {
 
 void applyLogicOp(VkLogicOp op, const std::byte* before, std::byte* after, uint32_t bytes) {
     for (uint32_t n = 0; n < bytes; ++n)
-        after[n] = static_cast<std::byte>(logicOp(op, static_cast<uint8_t>(after[n]), static_cast<uint8_t>(before[n])));
+        after[n] = static_cast<std::byte>(
+            logicOp(op, static_cast<uint8_t>(after[n]), static_cast<uint8_t>(before[n])));
 }
 
 /// Bits outside the write mask keep what they had.

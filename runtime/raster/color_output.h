@@ -23,15 +23,15 @@ struct ColorOutputInput {
     const RenderTarget* target;
     const FragmentBatch* batch;
     BlendFn blend;
-    const float* constants;     // of blending
-    const float* source[4];     // planes of kLaneRoom lanes
-    const float* second[4];     // nullptr: no second source
-    const uint32_t* mask;       // per lane: written; nullptr: all are
+    const float* constants;  // of blending
+    const float* source[4];  // planes of kLaneRoom lanes
+    const float* second[4];  // nullptr: no second source
+    const uint32_t* mask;    // per lane: written; nullptr: all are
     uint32_t sample;
 };
 
-/// Lanes are written in order, so that of two lanes on one pixel the later one stays. With a destination read, no pixel
-/// may be there twice. Returns how many pixels were read back.
+/// Lanes are written in order, so that of two lanes on one pixel the later one stays. With a destination
+/// read, no pixel may be there twice. Returns how many pixels were read back.
 uint32_t outputColors(const ColorOutputInput& input, ColorScratch& scratch);
 
 }  // namespace vernier

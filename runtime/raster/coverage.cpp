@@ -31,7 +31,8 @@ bool selectEdges(const TileEdges& in, Edges<T>& out) {
             low = std::min(low, in.c[e][s]);
             high = std::max(high, in.c[e][s]);
         }
-        const int64_t ax0 = in.a[e] * in.x0, ax1 = in.a[e] * in.x1, by0 = in.b[e] * in.y0, by1 = in.b[e] * in.y1;
+        const int64_t ax0 = in.a[e] * in.x0, ax1 = in.a[e] * in.x1, by0 = in.b[e] * in.y0,
+                      by1 = in.b[e] * in.y1;
         if (high + std::max(ax0, ax1) + std::max(by0, by1) < 0) return false;
         const bool inside = low + std::min(ax0, ax1) + std::min(by0, by1) >= 0;
         out.a[e] = inside ? T{0} : static_cast<T>(in.a[e]);
@@ -53,7 +54,8 @@ HWY_INLINE hn::Vec<D> rowOfEdge(D d, int32_t first, int32_t step) {
     return hn::Add(hn::Set(d, first), hn::Mul(hn::Iota(d, 0), hn::Set(d, step)));
 }
 template <class D>
-HWY_INLINE hn::Vec<D> rowOfEdge(D d, int64_t first, int64_t step) {  // not every target multiplies 64-bit lanes
+HWY_INLINE hn::Vec<D> rowOfEdge(D d, int64_t first,
+                                int64_t step) {  // not every target multiplies 64-bit lanes
     alignas(64) int64_t row[hn::MaxLanes(D())];
     for (size_t n = 0; n < hn::MaxLanes(D()); ++n) row[n] = first + step * static_cast<int64_t>(n);
     return hn::Load(d, row);
@@ -137,7 +139,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace vernier {
 
-CoverTileFn coverTileFunction(Isa isa) { VERNIER_SELECT_ISA(isa, coverTile) }
+CoverTileFn coverTileFunction(Isa isa){VERNIER_SELECT_ISA(isa, coverTile)}
 
 uint32_t coverWholeTile(uint32_t samples, BlockCoverage* blocks) {
     uint32_t count = 0;

@@ -30,9 +30,12 @@ float storedDepth(DepthStorage storage, const std::byte* texel) {
             std::memcpy(&code, texel, 2);
             return decodeUnorm(code, 16);
         }
-        case DepthStorage::d24: return decodeUnorm(load32(texel) & kMask24, 24);
-        case DepthStorage::none: return 0;
-        default: return std::bit_cast<float>(load32(texel));
+        case DepthStorage::d24:
+            return decodeUnorm(load32(texel) & kMask24, 24);
+        case DepthStorage::none:
+            return 0;
+        default:
+            return std::bit_cast<float>(load32(texel));
     }
 }
 
@@ -43,9 +46,12 @@ bool depthPasses(DepthStorage storage, uint32_t compare, const std::byte* texel,
             std::memcpy(&code, texel, 2);
             return passes<uint32_t>(compare, encodeUnorm(z, 16), code);
         }
-        case DepthStorage::d24: return passes<uint32_t>(compare, encodeUnorm(z, 24), load32(texel) & kMask24);
-        case DepthStorage::none: return true;
-        default: return passes<float>(compare, z, std::bit_cast<float>(load32(texel)));
+        case DepthStorage::d24:
+            return passes<uint32_t>(compare, encodeUnorm(z, 24), load32(texel) & kMask24);
+        case DepthStorage::none:
+            return true;
+        default:
+            return passes<float>(compare, z, std::bit_cast<float>(load32(texel)));
     }
 }
 
@@ -61,29 +67,42 @@ void storeDepth(DepthStorage storage, std::byte* texel, float z) {
             std::memcpy(texel, &merged, 4);
             return;
         }
-        case DepthStorage::none: return;
-        default: std::memcpy(texel, &z, 4);
+        case DepthStorage::none:
+            return;
+        default:
+            std::memcpy(texel, &z, 4);
     }
 }
 
 uint8_t applyStencilOp(VkStencilOp op, uint8_t stored, uint8_t reference) {
     switch (op) {
-        case VK_STENCIL_OP_ZERO: return 0;
-        case VK_STENCIL_OP_REPLACE: return reference;
-        case VK_STENCIL_OP_INCREMENT_AND_CLAMP: return stored == 255 ? stored : static_cast<uint8_t>(stored + 1);
-        case VK_STENCIL_OP_DECREMENT_AND_CLAMP: return stored == 0 ? stored : static_cast<uint8_t>(stored - 1);
-        case VK_STENCIL_OP_INVERT: return static_cast<uint8_t>(~stored);
-        case VK_STENCIL_OP_INCREMENT_AND_WRAP: return static_cast<uint8_t>(stored + 1);
-        case VK_STENCIL_OP_DECREMENT_AND_WRAP: return static_cast<uint8_t>(stored - 1);
-        default: return stored;
+        case VK_STENCIL_OP_ZERO:
+            return 0;
+        case VK_STENCIL_OP_REPLACE:
+            return reference;
+        case VK_STENCIL_OP_INCREMENT_AND_CLAMP:
+            return stored == 255 ? stored : static_cast<uint8_t>(stored + 1);
+        case VK_STENCIL_OP_DECREMENT_AND_CLAMP:
+            return stored == 0 ? stored : static_cast<uint8_t>(stored - 1);
+        case VK_STENCIL_OP_INVERT:
+            return static_cast<uint8_t>(~stored);
+        case VK_STENCIL_OP_INCREMENT_AND_WRAP:
+            return static_cast<uint8_t>(stored + 1);
+        case VK_STENCIL_OP_DECREMENT_AND_WRAP:
+            return static_cast<uint8_t>(stored - 1);
+        default:
+            return stored;
     }
 }
 
 std::byte* stencilByte(DepthStorage storage, std::byte* texel) {
     switch (storage) {
-        case DepthStorage::d24: return texel + 3;
-        case DepthStorage::d32fs8: return texel + 4;
-        default: return texel;
+        case DepthStorage::d24:
+            return texel + 3;
+        case DepthStorage::d32fs8:
+            return texel + 4;
+        default:
+            return texel;
     }
 }
 
@@ -108,7 +127,9 @@ bool testSample(const DepthStencilState& state, std::byte* texel, float z, bool 
     const uint32_t mask = face.values.compareMask & 0xFF;
     const bool stencilPass = passes<uint32_t>(face.ops.compareOp, reference & mask, stored & mask);
     const bool depthPass = stencilPass && depthTest();
-    const VkStencilOp op = !stencilPass ? face.ops.failOp : depthPass ? face.ops.passOp : face.ops.depthFailOp;
+    const VkStencilOp op = !stencilPass ? face.ops.failOp
+                           : depthPass  ? face.ops.passOp
+                                        : face.ops.depthFailOp;
     const uint32_t writeMask = face.values.writeMask & 0xFF;
     const uint8_t value = applyStencilOp(op, stored, reference);
     *byte = static_cast<std::byte>((stored & ~writeMask) | (value & writeMask));

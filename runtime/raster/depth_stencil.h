@@ -1,5 +1,5 @@
-// Depth and stencil of single samples: the definition of the tests (specification, "Fragment Operations"), used where
-// order or state asks for one sample at a time.
+// Depth and stencil of single samples: the definition of the tests (specification, "Fragment Operations"),
+// used where order or state asks for one sample at a time.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,8 @@ struct DepthTarget {
     uint32_t texelBytes = 0;
 
     std::byte* texel(int32_t x, int32_t y, uint32_t sample) const {
-        return data + static_cast<size_t>(y) * rowPitch + static_cast<size_t>(x) * texelBytes + sample * samplePitch;
+        return data + static_cast<size_t>(y) * rowPitch + static_cast<size_t>(x) * texelBytes +
+               sample * samplePitch;
     }
 };
 

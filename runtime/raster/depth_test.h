@@ -17,8 +17,8 @@ struct DepthTestInput {
     uint32_t samples;
 };
 
-/// Tests the samples of the blocks and writes the depth of those that pass. Clears the bits of those that fail; returns how
-/// many blocks have bits left, moved to the front in order.
+/// Tests the samples of the blocks and writes the depth of those that pass. Clears the bits of those that
+/// fail; returns how many blocks have bits left, moved to the front in order.
 using DepthTestFn = uint32_t (*)(const DepthTestInput& input, BlockCoverage* blocks, uint32_t count);
 DepthTestFn depthTestFunction(Isa isa);
 

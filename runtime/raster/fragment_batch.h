@@ -26,12 +26,13 @@ struct FragmentSpan {
 
 struct FragmentBatch {
     uint32_t count = 0;
-    alignas(64) std::array<int32_t, kLaneRoom> x, y;         // pixels
-    alignas(64) std::array<uint32_t, kLaneRoom> execute;     // ~0: the lane runs, as a helper perhaps
-    alignas(64) std::array<uint32_t, kLaneRoom> store;       // ~0: its effects count
-    alignas(64) std::array<float, kLaneRoom> offsetX, offsetY;  // place inside the pixel, when it is not the centre
-    alignas(64) std::array<uint32_t, kLaneRoom> coverage;    // samples the lane stands for
-    alignas(64) std::array<uint32_t, kLaneRoom> sample;      // when run per sample
+    alignas(64) std::array<int32_t, kLaneRoom> x, y;      // pixels
+    alignas(64) std::array<uint32_t, kLaneRoom> execute;  // ~0: the lane runs, as a helper perhaps
+    alignas(64) std::array<uint32_t, kLaneRoom> store;    // ~0: its effects count
+    alignas(64) std::array<float, kLaneRoom> offsetX,
+        offsetY;  // place inside the pixel, when it is not the centre
+    alignas(64) std::array<uint32_t, kLaneRoom> coverage;  // samples the lane stands for
+    alignas(64) std::array<uint32_t, kLaneRoom> sample;    // when run per sample
     uint32_t spanCount = 0;
     std::array<FragmentSpan, kMaxFragmentLanes> spans;
     uint32_t segmentCount = 0;

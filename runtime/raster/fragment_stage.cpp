@@ -83,14 +83,15 @@ void FragmentStage::bind(const PreparedDraw& draw, uint64_t token) {
     context_ = &entry.context;
     capacity_ = std::min(program->lanes(), kMaxFragmentLanes);
     varyingPlanes_.clear();
-    for (const Varying& varying : plan_->varyings) varyingPlanes_.push_back(context_->input(varying.fragmentSlot));
+    for (const Varying& varying : plan_->varyings)
+        varyingPlanes_.push_back(context_->input(varying.fragmentSlot));
 }
 
 TrianglePlanes& FragmentStage::startPrimitive() {
     // A slot stays as long as a segment refers to it; the last one may be taken again when none does.
-    const bool lastUnused = batch_.planesCount > 0 && (batch_.segmentCount == 0 ||
-                                                       batch_.segments[batch_.segmentCount - 1].planes + 1 !=
-                                                           batch_.planesCount);
+    const bool lastUnused =
+        batch_.planesCount > 0 && (batch_.segmentCount == 0 ||
+                                   batch_.segments[batch_.segmentCount - 1].planes + 1 != batch_.planesCount);
     if (!lastUnused) ++batch_.planesCount;
     return batch_.planes[batch_.planesCount - 1];
 }
@@ -99,7 +100,8 @@ void FragmentStage::reserve(uint32_t lanes) {
     if (batch_.count + lanes > capacity_) flush();
 }
 
-/// Up to 8 pixels of a row; returns the first lane. Writes whole vectors of 8: what is too much, the next span overwrites.
+/// Up to 8 pixels of a row; returns the first lane. Writes whole vectors of 8: what is too much, the next
+/// span overwrites.
 uint32_t FragmentStage::appendSpan(int32_t x, int32_t y, uint32_t lanes) {
     const uint32_t planes = batch_.planesCount - 1, first = batch_.count;
     if (batch_.segmentCount == 0 || batch_.segments[batch_.segmentCount - 1].planes != planes)
@@ -117,7 +119,8 @@ uint32_t FragmentStage::appendSpan(int32_t x, int32_t y, uint32_t lanes) {
 void FragmentStage::add(const BlockCoverage& block) {
     uint64_t any = 0;
     for (uint32_t s = 0; s < samples_; ++s) any |= block.masks[s];
-    const auto index = static_cast<size_t>(block.y / kBlockSize * (kTileSize / kBlockSize) + block.x / kBlockSize);
+    const auto index =
+        static_cast<size_t>(block.y / kBlockSize * (kTileSize / kBlockSize) + block.x / kBlockSize);
     if (plan_->ordered && (inBatch_[index] & any) != 0) flush();
     if (plan_->perSample) {
         for (uint32_t s = 0; s < samples_; ++s) {
@@ -147,7 +150,8 @@ void FragmentStage::addPixels(const BlockCoverage& block, uint64_t any) {
                                           tileY_ + block.y + static_cast<int32_t>(bit >> 3), lanes);
         any &= ~(((uint64_t{1} << lanes) - 1) << bit);
         if (samples_ == 1) continue;
-        for (uint32_t n = 0; n < lanes; ++n) batch_.coverage[first + n] = coverageOf(block, bit + n, samples_);
+        for (uint32_t n = 0; n < lanes; ++n)
+            batch_.coverage[first + n] = coverageOf(block, bit + n, samples_);
     }
 }
 
@@ -244,14 +248,16 @@ void FragmentStage::fillInputs() {
             centroidOffsets();
             input.offsetX = centroidX_.data();
             input.offsetY = centroidY_.data();
-            statistics_.perspectiveDivides += interpolation_.weights(input, centroidWeights_, {nullptr, nullptr});
+            statistics_.perspectiveDivides +=
+                interpolation_.weights(input, centroidWeights_, {nullptr, nullptr});
         }
     }
     fillBuiltins();
     fillVaryings();
 }
 
-/// Where centroid inputs are evaluated: the centre when the pixel is fully covered, else its first covered sample.
+/// Where centroid inputs are evaluated: the centre when the pixel is fully covered, else its first covered
+/// sample.
 void FragmentStage::centroidOffsets() {
     const SamplePosition* positions = samplePositions(samples_);
     const uint32_t full = (1u << samples_) - 1;
@@ -286,7 +292,8 @@ void FragmentStage::evaluateVarying(uint32_t index, const LaneWeights& weights, 
         return;
     }
     interpolation_.attribute({&batch_, linear ? weights.linear1.data() : weights.perspective1.data(),
-                              linear ? weights.linear2.data() : weights.perspective2.data(), index, capacity_, plane});
+                              linear ? weights.linear2.data() : weights.perspective2.data(), index, capacity_,
+                              plane});
 }
 
 void FragmentStage::fillBuiltins() {
@@ -315,35 +322,49 @@ void FragmentStage::fillBuiltin(const BuiltinSlot& builtin, float* plane) {
     switch (builtin.builtin) {
         case ir::Builtin::fragCoord:
             if (c == 0)
-                eachLane([&](uint32_t n) { return static_cast<float>(batch_.x[n]) + (perSample ? batch_.offsetX[n] : 0.5f); });
+                eachLane([&](uint32_t n) {
+                    return static_cast<float>(batch_.x[n]) + (perSample ? batch_.offsetX[n] : 0.5f);
+                });
             if (c == 1)
-                eachLane([&](uint32_t n) { return static_cast<float>(batch_.y[n]) + (perSample ? batch_.offsetY[n] : 0.5f); });
+                eachLane([&](uint32_t n) {
+                    return static_cast<float>(batch_.y[n]) + (perSample ? batch_.offsetY[n] : 0.5f);
+                });
             if (c == 2) eachLane([&](uint32_t n) { return fragZ_[n]; });
             if (c == 3) eachLane([&](uint32_t n) { return fragInverseW_[n]; });
             return;
-        case ir::Builtin::frontFacing: eachSegment([](const Primitive& p) { return p.front ? ~0u : 0u; }); return;
-        case ir::Builtin::primitiveId: eachSegment([](const Primitive& p) { return p.primitiveId; }); return;
-        case ir::Builtin::sampleId: eachLane([&](uint32_t n) { return batch_.sample[n]; }); return;
+        case ir::Builtin::frontFacing:
+            eachSegment([](const Primitive& p) { return p.front ? ~0u : 0u; });
+            return;
+        case ir::Builtin::primitiveId:
+            eachSegment([](const Primitive& p) { return p.primitiveId; });
+            return;
+        case ir::Builtin::sampleId:
+            eachLane([&](uint32_t n) { return batch_.sample[n]; });
+            return;
         case ir::Builtin::samplePosition:
             eachLane([&](uint32_t n) { return c == 0 ? batch_.offsetX[n] : batch_.offsetY[n]; });
             return;
         case ir::Builtin::sampleMaskIn:
             eachLane([&](uint32_t n) { return c == 0 ? batch_.coverage[n] : 0u; });
             return;
-        case ir::Builtin::helperInvocation: eachLane([&](uint32_t n) { return ~batch_.store[n]; }); return;
+        case ir::Builtin::helperInvocation:
+            eachLane([&](uint32_t n) { return ~batch_.store[n]; });
+            return;
         case ir::Builtin::pointCoord:
             // s = 1/2 + (x_f - x_p) / size (specification, "Basic Point Rasterization").
             for (uint32_t s = 0; s < batch_.segmentCount; ++s) {
                 const FragmentSegment& part = batch_.segments[s];
                 const Primitive& p = *batch_.planes[part.planes].primitive;
                 for (uint32_t n = part.first; n < part.first + part.count; ++n) {
-                    const float at = c == 0 ? static_cast<float>(batch_.x[n]) + (perSample ? batch_.offsetX[n] : 0.5f)
-                                            : static_cast<float>(batch_.y[n]) + (perSample ? batch_.offsetY[n] : 0.5f);
+                    const float at =
+                        c == 0 ? static_cast<float>(batch_.x[n]) + (perSample ? batch_.offsetX[n] : 0.5f)
+                               : static_cast<float>(batch_.y[n]) + (perSample ? batch_.offsetY[n] : 0.5f);
                     plane[n] = p.isPoint ? 0.5f + (at - p.point[c == 0 ? 0 : 1]) * p.point[2] : 0.0f;
                 }
             }
             return;
-        default: eachLane([](uint32_t) { return 0u; });
+        default:
+            eachLane([](uint32_t) { return 0u; });
     }
 }
 
@@ -366,7 +387,8 @@ void FragmentStage::reduceCoverage() {
 }
 
 void FragmentStage::testLate() {
-    const float* fragDepth = plan_->fragDepthSlot != kNoSlot ? context_->output(plan_->fragDepthSlot) : nullptr;
+    const float* fragDepth =
+        plan_->fragDepthSlot != kNoSlot ? context_->output(plan_->fragDepthSlot) : nullptr;
     const SamplePosition* positions = samplePositions(samples_);
     for (uint32_t s = 0; s < batch_.segmentCount; ++s) {
         const FragmentSegment& part = batch_.segments[s];
@@ -377,7 +399,8 @@ void FragmentStage::testLate() {
             for (uint32_t rest = covered; rest != 0; rest &= rest - 1) {
                 const auto sample = static_cast<uint32_t>(std::countr_zero(rest));
                 const float z = fragDepth != nullptr
-                                    ? (fragDepth[lane] > planes.zLow ? std::min(fragDepth[lane], planes.zHigh) : planes.zLow)
+                                    ? (fragDepth[lane] > planes.zLow ? std::min(fragDepth[lane], planes.zHigh)
+                                                                     : planes.zLow)
                                     : depthAt(planes, batch_.x[lane], batch_.y[lane], positions[sample].x(),
                                               positions[sample].y());
                 std::byte* texel = depthState_.target.texel(batch_.x[lane], batch_.y[lane], sample);
@@ -460,7 +483,8 @@ void FragmentStage::interpolateAt(void* self, uint32_t slot, uint32_t where, uin
             const bool linear = found->interpolation == ir::Interpolation::noPerspective;
             const double a0 = double{planes.attributes[0][k]};
             const double d1 = double{planes.attributes[1][k]} - a0, d2 = double{planes.attributes[2][k]} - a0;
-            result[n] = static_cast<float>(a0 + ((linear ? at.l1 : at.b1) * d1 + (linear ? at.l2 : at.b2) * d2));
+            result[n] =
+                static_cast<float>(a0 + ((linear ? at.l1 : at.b1) * d1 + (linear ? at.l2 : at.b2) * d2));
         }
     }
 }

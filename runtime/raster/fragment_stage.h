@@ -19,7 +19,8 @@ class FragmentStage {
 
     void startPass(const PassTargets& targets);
     void startTile(int32_t tileX, int32_t tileY);
-    /// The state of the fragments to come. Flushes when it differs from the current one. `token` identifies the bindings.
+    /// The state of the fragments to come. Flushes when it differs from the current one. `token` identifies
+    /// the bindings.
     void bind(const PreparedDraw& draw, uint64_t token);
     /// The planes of the primitive whose blocks come next: to be filled by the caller.
     TrianglePlanes& startPrimitive();
@@ -53,8 +54,8 @@ class FragmentStage {
     void testLate();
     void writeColors();
     const float* outputPlane(uint32_t slot, uint32_t component) const;
-    static void interpolateAt(void* self, uint32_t slot, uint32_t where, uint32_t lanes, const float* a, const float* b,
-                              float* result);
+    static void interpolateAt(void* self, uint32_t slot, uint32_t where, uint32_t lanes, const float* a,
+                              const float* b, float* result);
 
     const PassTargets* targets_ = nullptr;
     int32_t tileX_ = 0, tileY_ = 0;
@@ -76,7 +77,8 @@ class FragmentStage {
     alignas(64) std::array<float, kLaneRoom> centroidX_, centroidY_;
     alignas(64) std::array<uint32_t, kLaneRoom> mask_;
     alignas(64) std::array<float, kLaneRoom> zeros_, ones_;
-    std::array<uint64_t, kBlocksPerTile> inBatch_{};  // pixels of the tile that the batch holds, when order matters
+    std::array<uint64_t, kBlocksPerTile>
+        inBatch_{};  // pixels of the tile that the batch holds, when order matters
     bool outOfBudget_ = false;
     PassStatistics statistics_;
     ContextCache contexts_;

@@ -69,7 +69,8 @@ uint32_t weights(const WeightsInput& in, LaneWeights& out, const FragCoordOutput
             if (fragCoord.z != nullptr) hn::StoreU(depthOf(f, p, x, y, ox, oy), f, fragCoord.z + n);
             VF inverseW = w0;
             if (divide) {
-                // lambda_i / w_i, normalised by their sum, which is 1/w at this place: none is negative inside.
+                // lambda_i / w_i, normalised by their sum, which is 1/w at this place: none is negative
+                // inside.
                 const VF q1 = hn::Mul(l1, w1), q2 = hn::Mul(l2, w2);
                 const VF q0 = hn::Mul(hn::Sub(hn::Sub(one, l1), l2), w0);
                 inverseW = hn::Add(hn::Add(q0, q1), q2);
@@ -123,15 +124,18 @@ namespace {
 using WeightsFn = uint32_t (*)(const WeightsInput&, LaneWeights&, const FragCoordOutput&);
 using AttributeFn = void (*)(const AttributeInput&);
 
-WeightsFn weightsFunction(Isa isa) { VERNIER_SELECT_ISA(isa, weights) }
-AttributeFn attributeFunction(Isa isa) { VERNIER_SELECT_ISA(isa, attribute) }
+WeightsFn weightsFunction(Isa isa){VERNIER_SELECT_ISA(isa, weights)} AttributeFn attributeFunction(Isa isa) {
+    VERNIER_SELECT_ISA(isa, attribute)
+}
 
 }  // namespace
 
-Interpolation interpolationFunctions(Isa isa) { return {weightsFunction(isa), attributeFunction(isa)}; }
+Interpolation interpolationFunctions(Isa isa) {
+    return {weightsFunction(isa), attributeFunction(isa)};
+}
 
-void interpolatePrecise(const FragmentBatch& batch, const double* weight1, const double* weight2, uint32_t attribute,
-                        float* result) {
+void interpolatePrecise(const FragmentBatch& batch, const double* weight1, const double* weight2,
+                        uint32_t attribute, float* result) {
     for (uint32_t s = 0; s < batch.segmentCount; ++s) {
         const FragmentSegment& segment = batch.segments[s];
         const TrianglePlanes& p = batch.planes[segment.planes];
@@ -147,7 +151,8 @@ void copyFlat(const FragmentBatch& batch, uint32_t attribute, float* result) {
         const FragmentSegment& segment = batch.segments[s];
         uint32_t bits;  // a float move could quieten a NaN that is really an integer
         std::memcpy(&bits, batch.planes[segment.planes].flat + attribute, 4);
-        for (uint32_t n = segment.first; n < segment.first + segment.count; ++n) std::memcpy(result + n, &bits, 4);
+        for (uint32_t n = segment.first; n < segment.first + segment.count; ++n)
+            std::memcpy(result + n, &bits, 4);
     }
 }
 

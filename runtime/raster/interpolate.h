@@ -1,5 +1,5 @@
-// Interpolation over a batch of fragments: barycentrics once per lane, then every attribute as the value at one vertex plus
-// weighted differences, so that a constant stays constant to the bit.
+// Interpolation over a batch of fragments: barycentrics once per lane, then every attribute as the value at
+// one vertex plus weighted differences, so that a constant stays constant to the bit.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,8 @@
 
 namespace vernier {
 
-/// Weights of the second and third vertex of each lane's primitive. Single precision, and double where the plan asks.
+/// Weights of the second and third vertex of each lane's primitive. Single precision, and double where the
+/// plan asks.
 struct LaneWeights {
     alignas(64) std::array<float, kLaneRoom> perspective1, perspective2, linear1, linear2;
     alignas(64) std::array<double, kLaneRoom> precise1, precise2, preciseLinear1, preciseLinear2;
@@ -19,11 +20,12 @@ struct WeightsInput {
     const FragmentBatch* batch;
     const float* offsetX;  // per lane; nullptr: the pixel's centre
     const float* offsetY;
-    bool perspective;      // some attribute is interpolated with perspective
-    bool inDouble;         // fill the precise weights too
+    bool perspective;  // some attribute is interpolated with perspective
+    bool inDouble;     // fill the precise weights too
 };
 
-/// Results other than the weights that the fragment program wants; nullptr: not wanted. Room for kLaneRoom lanes.
+/// Results other than the weights that the fragment program wants; nullptr: not wanted. Room for kLaneRoom
+/// lanes.
 struct FragCoordOutput {
     float* z;
     float* inverseW;
@@ -46,8 +48,8 @@ struct Interpolation {
 Interpolation interpolationFunctions(Isa isa);
 
 /// The attribute in double, rounded once.
-void interpolatePrecise(const FragmentBatch& batch, const double* weight1, const double* weight2, uint32_t attribute,
-                        float* result);
+void interpolatePrecise(const FragmentBatch& batch, const double* weight1, const double* weight2,
+                        uint32_t attribute, float* result);
 /// Copies the bits of the provoking vertex.
 void copyFlat(const FragmentBatch& batch, uint32_t attribute, float* result);
 

@@ -34,26 +34,27 @@ struct PassTargets {
     RenderTarget depthStencil{};
     VkRect2D renderArea{};  // inside every target
     uint32_t layers = 1;
-    uint32_t samples = 1;   // of the pass; also when it has no attachments
+    uint32_t samples = 1;  // of the pass; also when it has no attachments
 };
 
 /// What was run. Counted on all threads and summed; independent of the number of threads except where said.
 struct PassStatistics {
     uint64_t inputVertices = 0;
     uint64_t inputPrimitives = 0;
-    uint64_t vertexInvocations = 0;       // depends on the chunking, which does not depend on threads
+    uint64_t vertexInvocations = 0;  // depends on the chunking, which does not depend on threads
     uint64_t clippingInvocations = 0;
-    uint64_t clippedPrimitives = 0;       // primitives that really were cut
-    uint64_t rasterPrimitives = 0;        // primitives that reached the rasteriser
-    uint64_t fragmentInvocations = 0;     // helper lanes not counted
+    uint64_t clippedPrimitives = 0;    // primitives that really were cut
+    uint64_t rasterPrimitives = 0;     // primitives that reached the rasteriser
+    uint64_t fragmentInvocations = 0;  // helper lanes not counted
     uint64_t helperInvocations = 0;
-    uint64_t batches = 0;                 // fragment batches run
-    uint64_t samplesPassed = 0;           // samples that passed all tests
-    uint64_t perspectiveDivides = 0;      // pixels for which 1/w was divided
-    uint64_t destinationReads = 0;        // pixels whose colour was read back for blending or masks
-    uint64_t depthReads = 0;              // samples whose depth or stencil was read
-    uint64_t coarseDepthRejects = 0;      // blocks
-    uint64_t vertexCycles = 0, rasterCycles = 0;  // time-stamp counter, all threads; for people, not for tests
+    uint64_t batches = 0;             // fragment batches run
+    uint64_t samplesPassed = 0;       // samples that passed all tests
+    uint64_t perspectiveDivides = 0;  // pixels for which 1/w was divided
+    uint64_t destinationReads = 0;    // pixels whose colour was read back for blending or masks
+    uint64_t depthReads = 0;          // samples whose depth or stencil was read
+    uint64_t coarseDepthRejects = 0;  // blocks
+    uint64_t vertexCycles = 0,
+             rasterCycles = 0;  // time-stamp counter, all threads; for people, not for tests
 };
 
 }  // namespace vernier

@@ -17,7 +17,8 @@ namespace {
 
 /// Chunks processed before tiles are rendered: bounds the memory of binned primitives.
 constexpr uint32_t kChunksPerWave = 256;
-/// Recorded primitives after which the pass renders what it has, so that a long pass does not hold all its draws.
+/// Recorded primitives after which the pass renders what it has, so that a long pass does not hold all its
+/// draws.
 constexpr uint64_t kPrimitivesPerFlush = uint64_t{kChunksPerWave} * kChunkPrimitives;
 constexpr size_t kDrawsPerFlush = 1 << 16;
 
@@ -103,7 +104,8 @@ PixelRect RenderPass::Impl::tileRect(uint32_t tile) const {
     const PixelRect area = areaRect();
     const int32_t x = grid.x0 + static_cast<int32_t>(tile % grid.columns) * kTileSize;
     const int32_t y = grid.y0 + static_cast<int32_t>(tile / grid.columns) * kTileSize;
-    return {std::max(x, area.x0), std::max(y, area.y0), std::min(x + kTileSize, area.x1), std::min(y + kTileSize, area.y1)};
+    return {std::max(x, area.x0), std::max(y, area.y0), std::min(x + kTileSize, area.x1),
+            std::min(y + kTileSize, area.y1)};
 }
 
 /// Cuts recorded commands into at most kChunksPerWave steps, from (command, primitive) on.
@@ -131,8 +133,8 @@ void RenderPass::Impl::cutIntoSteps(uint64_t& primitive, size_t& command) {
                               steps[stepCount - 1].primitives < kChunkPrimitives;
             if (!open && stepCount == kChunksPerWave) return;
             Step& step = open ? steps[stepCount - 1] : newStep();
-            const auto count =
-                static_cast<uint32_t>(std::min<uint64_t>(kChunkPrimitives - step.primitives, total - primitive));
+            const auto count = static_cast<uint32_t>(
+                std::min<uint64_t>(kChunkPrimitives - step.primitives, total - primitive));
             step.ranges.push_back({index, primitive, count});
             step.primitives += count;
             primitive += count;
@@ -167,7 +169,8 @@ void RenderPass::Impl::collectTileWork() {
             for (uint32_t tile = 0; tile < grid.count(); ++tile) add(tile, {nullptr, clear, 0, 0});
             continue;
         }
-        for (const TileRange& range : chunks[n].ranges) add(range.tile, {&chunks[n], nullptr, range.first, range.count});
+        for (const TileRange& range : chunks[n].ranges)
+            add(range.tile, {&chunks[n], nullptr, range.first, range.count});
     }
     if (loaded) return;
     // The first wave touches every tile: load operations clear where nothing is drawn, too.
@@ -178,7 +181,8 @@ void RenderPass::Impl::collectTileWork() {
 void RenderPass::Impl::loadTile(const PixelRect& rect) const {
     for (uint32_t c = 0; c < targets.colorCount; ++c)
         if (targets.colors[c].loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR)
-            clearPixels(targets.colors[c], VK_IMAGE_ASPECT_COLOR_BIT, targets.colors[c].clear, rect, 0, targets.layers);
+            clearPixels(targets.colors[c], VK_IMAGE_ASPECT_COLOR_BIT, targets.colors[c].clear, rect, 0,
+                        targets.layers);
     const RenderTarget& depth = targets.depthStencil;
     VkImageAspectFlags aspects = 0;
     if (depth.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR) aspects |= VK_IMAGE_ASPECT_DEPTH_BIT;
@@ -196,8 +200,8 @@ void RenderPass::Impl::runTiles() {
         if (!loaded) loadTile(rect);
         if (tileWork[tile].empty()) return;
         self.renderer.render(rect, grid.x0 + static_cast<int32_t>(tile % grid.columns) * kTileSize,
-                             grid.y0 + static_cast<int32_t>(tile / grid.columns) * kTileSize, draws, nextToken,
-                             tileWork[tile]);
+                             grid.y0 + static_cast<int32_t>(tile / grid.columns) * kTileSize, draws,
+                             nextToken, tileWork[tile]);
     });
     loaded = true;
     for (const auto& worker : workers) worker->renderer.fragments().unbind();
@@ -291,21 +295,26 @@ void RenderPass::draw(const DrawCall& call) {
     self.recordedPrimitives += draw.primitives();
     self.draws.push_back(std::move(draw));
     self.commands.emplace_back(index);
-    if (self.recordedPrimitives >= kPrimitivesPerFlush || self.draws.size() >= kDrawsPerFlush) self.renderRecorded();
+    if (self.recordedPrimitives >= kPrimitivesPerFlush || self.draws.size() >= kDrawsPerFlush)
+        self.renderRecorded();
 }
 
-void RenderPass::clear(VkImageAspectFlags aspect, uint32_t color, const VkClearValue& value, const VkClearRect& rect) {
+void RenderPass::clear(VkImageAspectFlags aspect, uint32_t color, const VkClearValue& value,
+                       const VkClearRect& rect) {
     Impl& self = *impl_;
     const auto end = [](int32_t offset, uint32_t extent) {
         return static_cast<int32_t>(std::min<int64_t>(int64_t{offset} + extent, kGuardBandMax));
     };
-    const PixelRect pixels{rect.rect.offset.x, rect.rect.offset.y, end(rect.rect.offset.x, rect.rect.extent.width),
+    const PixelRect pixels{rect.rect.offset.x, rect.rect.offset.y,
+                           end(rect.rect.offset.x, rect.rect.extent.width),
                            end(rect.rect.offset.y, rect.rect.extent.height)};
     self.clears.push_back({aspect, color, value, pixels, rect.baseArrayLayer, rect.layerCount});
     self.commands.emplace_back(&self.clears.back());
 }
 
-void RenderPass::flush() { impl_->renderRecorded(); }
+void RenderPass::flush() {
+    impl_->renderRecorded();
+}
 
 bool RenderPass::end() {
     Impl& self = *impl_;
@@ -316,6 +325,8 @@ bool RenderPass::end() {
     return !self.outOfBudget;
 }
 
-const PassStatistics& RenderPass::statistics() const { return impl_->statistics; }
+const PassStatistics& RenderPass::statistics() const {
+    return impl_->statistics;
+}
 
 }  // namespace vernier

@@ -1,6 +1,6 @@
-// One render pass instance on the backend: targets are begun, draws are handed over in order, end() makes everything
-// visible in the images. Geometry of draws is processed in chunks on all threads and binned into tiles; tiles are then
-// rasterised, each by one thread at a time, with their primitives in submission order.
+// One render pass instance on the backend: targets are begun, draws are handed over in order, end() makes
+// everything visible in the images. Geometry of draws is processed in chunks on all threads and binned into
+// tiles; tiles are then rasterised, each by one thread at a time, with their primitives in submission order.
 #pragma once
 
 #include <vulkan/vulkan_core.h>

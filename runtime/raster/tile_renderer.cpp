@@ -12,8 +12,8 @@ namespace vernier {
 namespace {
 
 /// Early tests one sample at a time, where stencil or depth bounds take part.
-uint32_t testSamples(const DepthStencilState& state, const TrianglePlanes& planes, int32_t tileX, int32_t tileY,
-                     uint32_t samples, BlockCoverage* blocks, uint32_t count) {
+uint32_t testSamples(const DepthStencilState& state, const TrianglePlanes& planes, int32_t tileX,
+                     int32_t tileY, uint32_t samples, BlockCoverage* blocks, uint32_t count) {
     const SamplePosition* positions = samplePositions(samples);
     uint32_t kept = 0;
     for (uint32_t b = 0; b < count; ++b) {
@@ -65,8 +65,8 @@ void applyClear(const PassTargets& targets, const ClearCommand& clear, const Pix
     if (rect.empty()) return;
     if ((clear.aspects & VK_IMAGE_ASPECT_COLOR_BIT) != 0) {
         if (clear.color < targets.colorCount)
-            clearPixels(targets.colors[clear.color], VK_IMAGE_ASPECT_COLOR_BIT, clear.value, rect, clear.firstLayer,
-                        clear.layers);
+            clearPixels(targets.colors[clear.color], VK_IMAGE_ASPECT_COLOR_BIT, clear.value, rect,
+                        clear.firstLayer, clear.layers);
     } else {
         clearPixels(targets.depthStencil, clear.aspects, clear.value, rect, clear.firstLayer, clear.layers);
     }
@@ -88,7 +88,8 @@ uint32_t TileRenderer::testEarly(const PreparedDraw& draw, const TrianglePlanes&
     return depthTestFunction(draw.call.pipeline->isa())(input, blocks_.data(), count);
 }
 
-void TileRenderer::draw(const Primitive& primitive, const Chunk& chunk, const PreparedDraw& draw, bool coversTile) {
+void TileRenderer::draw(const Primitive& primitive, const Chunk& chunk, const PreparedDraw& draw,
+                        bool coversTile) {
     const Plan& plan = *draw.plan;
     uint32_t count = 0;
     if (coversTile) {
@@ -103,8 +104,8 @@ void TileRenderer::draw(const Primitive& primitive, const Chunk& chunk, const Pr
     if (count == 0) return;
 
     TrianglePlanes& planes = fragments_.startPrimitive();
-    makePlanes(primitive, chunk.attributes.data(), draw.subPixelBits, plan.preciseInterpolation, draw.depthLow,
-               draw.depthHigh, planes);
+    makePlanes(primitive, chunk.attributes.data(), draw.subPixelBits, plan.preciseInterpolation,
+               draw.depthLow, draw.depthHigh, planes);
     if (plan.depth.any() && plan.depth.early) count = testEarly(draw, planes, count);
     if (!plan.runsFragments) {
         fragments_.statistics().samplesPassed += countSamples(blocks_.data(), count, plan.samples);
@@ -113,8 +114,9 @@ void TileRenderer::draw(const Primitive& primitive, const Chunk& chunk, const Pr
     for (uint32_t b = 0; b < count; ++b) fragments_.add(blocks_[b]);
 }
 
-void TileRenderer::render(const PixelRect& rect, int32_t tileX, int32_t tileY, std::span<const PreparedDraw> draws,
-                          uint64_t token, std::span<const TileWork> work) {
+void TileRenderer::render(const PixelRect& rect, int32_t tileX, int32_t tileY,
+                          std::span<const PreparedDraw> draws, uint64_t token,
+                          std::span<const TileWork> work) {
     tileX_ = tileX;
     tileY_ = tileY;
     fragments_.startTile(tileX, tileY);

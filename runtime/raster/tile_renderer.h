@@ -32,8 +32,8 @@ class TileRenderer {
     FragmentStage& fragments() { return fragments_; }
     void startPass(const PassTargets& targets);
     /// `rect`: the pixels of the tile inside the render area. `token`: see Assembler::run.
-    void render(const PixelRect& rect, int32_t tileX, int32_t tileY, std::span<const PreparedDraw> draws, uint64_t token,
-                std::span<const TileWork> work);
+    void render(const PixelRect& rect, int32_t tileX, int32_t tileY, std::span<const PreparedDraw> draws,
+                uint64_t token, std::span<const TileWork> work);
 
   private:
     void draw(const Primitive& primitive, const Chunk& chunk, const PreparedDraw& draw, bool coversTile);

@@ -43,7 +43,7 @@ static VnShader compile(VnDevice device, VkShaderStageFlagBits stage, const char
 static int show(void) {
     SDL_Init(SDL_INIT_VIDEO);
     SDL_Window* window = SDL_CreateWindow("Vernier", SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED, WIDTH, HEIGHT, 0);
-    SDL_Surface* image = SDL_CreateRGBSurfaceWithFormatFrom(pixels, WIDTH, HEIGHT, 32, WIDTH * 4, SDL_PIXELFORMAT_RGBA32);
+    SDL_Surface* image = SDL_CreateRGBSurfaceFrom(pixels, WIDTH, HEIGHT, 32, WIDTH * 4, 0xFF, 0xFF00, 0xFF0000, 0);
     for (SDL_Event event = {0}; event.type != SDL_QUIT && event.type != SDL_KEYDOWN; SDL_WaitEvent(&event)) {
         SDL_BlitSurface(image, NULL, SDL_GetWindowSurface(window), NULL);
         SDL_UpdateWindowSurface(window);
@@ -61,8 +61,9 @@ int main(int argc, char** argv) {
     vnCreateDevice(&(VnDeviceDesc){.message = onMessage}, &device);
     vnCreateContext(device, NULL, &context);
     vnCreateImage(device, &(VnImageDesc){.width = WIDTH, .height = HEIGHT}, &image);
-    vnCreateProgram(device, &(VnProgramDesc){.vertex = compile(device, VK_SHADER_STAGE_VERTEX_BIT, vertexSource),
-                    .fragment = compile(device, VK_SHADER_STAGE_FRAGMENT_BIT, fragmentSource)}, &program);
+    VnShader vertex = compile(device, VK_SHADER_STAGE_VERTEX_BIT, vertexSource);
+    VnShader fragment = compile(device, VK_SHADER_STAGE_FRAGMENT_BIT, fragmentSource);
+    vnCreateProgram(device, &(VnProgramDesc){.vertex = vertex, .fragment = fragment}, &program);
     vnGetImageView(device, image, &pass.colors[0].view);
     pass.colors[0].loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
     pass.colors[0].clear.color.float32[3] = 1;

@@ -68,7 +68,7 @@ void Lowering::lowerVariable(const Instruction& inst) {
         case spv::StorageClass::Private:
             if (type.kind == SpirvType::Kind::pointer) refuse(inst, "variables that hold pointers are not supported");
             if (type.isOpaque()) refuse(inst, "variables that hold images or samplers are not supported");
-            if (dynamicRoot_[id]) {
+            if (indexing_[id] == Indexing::memory) {
                 pointer.base = Pointer::Base::local;
                 pointer.extent = type.words;
                 if (localOfId_[id] == ir::kNoIndex) {
@@ -130,7 +130,7 @@ void Lowering::lowerStageVariable(const Instruction& inst, bool input) {
         pointer.base = slot.builtin == ir::Builtin::helperInvocation ? Pointer::Base::helper : Pointer::Base::input;
         pointer.root = first;
         pointer.extent = static_cast<uint32_t>(slots.size()) - first;
-    } else if (dynamicRoot_[id]) {
+    } else if (indexing_[id] == Indexing::memory) {
         pointer.base = Pointer::Base::local;
         pointer.extent = static_cast<uint32_t>(slots.size()) - first;
         pointer.root = program_.localWords;

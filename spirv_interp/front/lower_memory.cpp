@@ -23,6 +23,13 @@ void Lowering::advance(Pointer& pointer, uint32_t indexId, uint32_t count, uint3
         return;
     }
     const ir::ValueId index = toI32(scalarOf(indexId));
+    if (pointer.base == Base::ssa) {
+        if (pointer.dynamic != ir::kNoValue) refuseId(indexId, "is a second index that is not constant");
+        pointer.dynamic = index;
+        pointer.choices = count;
+        pointer.choiceStride = stride;
+        return;
+    }
     const ir::ValueId distance = emitter_.emit(ir::Op::imul, ir::Type::i32, {index, emitter_.constantI32(stride)});
     pointer.dynamic = pointer.dynamic == ir::kNoValue
                           ? distance
@@ -96,9 +103,6 @@ Pointer Lowering::stepInto(const Pointer& from, uint32_t indexId, const Instruct
         default: refuse(inst, "an index into something that has no parts");
     }
     pointer.type = type.element;
-    if (pointer.base == Base::ssa && pointer.dynamic != ir::kNoValue) {
-        refuse(inst, "an index that is not constant");
-    }
     return pointer;
 }
 
@@ -221,9 +225,19 @@ Lowering::Leaves Lowering::load(const Pointer& pointer) {
     uint32_t at = 0;
     for (size_t i = 0; i < types.size(); ++i) {
         switch (pointer.base) {
-            case Base::ssa:
-                leaves[i] = emitter_.read(pointer.root + pointer.offset + static_cast<uint32_t>(i), types[i]);
+            case Base::ssa: {
+                const uint32_t first = pointer.root + pointer.offset + static_cast<uint32_t>(i);
+                if (pointer.dynamic == ir::kNoValue) {
+                    leaves[i] = emitter_.read(first, types[i]);
+                    break;
+                }
+                const std::span<ir::ValueId> parts = newLeaves(pointer.choices);
+                for (uint32_t c = 0; c < pointer.choices; ++c) {
+                    parts[c] = emitter_.read(first + c * pointer.choiceStride, types[i]);
+                }
+                leaves[i] = chooseLeaf(parts, pointer.dynamic);
                 break;
+            }
             case Base::helper: leaves[i] = emitter_.emit(ir::Op::isHelper, ir::Type::b1, {}); break;
             case Base::local:
             case Base::input: leaves[i] = loadScalar(pointer, at, types[i]); break;
@@ -238,6 +252,7 @@ void Lowering::store(const Pointer& pointer, Leaves leaves) {
     if (leaves.size() != leafTypes(pointer.type).size()) refuseId(pointer.root, "is stored to with another type");
     switch (pointer.base) {
         case Base::ssa:
+            if (pointer.dynamic != ir::kNoValue) return storeChoice(pointer, leaves);
             for (uint32_t i = 0; i < leaves.size(); ++i) emitter_.write(pointer.root + pointer.offset + i, leaves[i]);
             break;
         case Base::local: {
@@ -257,6 +272,18 @@ void Lowering::store(const Pointer& pointer, Leaves leaves) {
             break;
         }
         default: refuseId(pointer.root, "is stored to, but it is only read");
+    }
+}
+
+/// Every part keeps its value unless it is the chosen one; an index out of range stores nothing.
+void Lowering::storeChoice(const Pointer& pointer, Leaves leaves) {
+    for (uint32_t c = 0; c < pointer.choices; ++c) {
+        const ir::ValueId here = compare(ir::Op::ieq, pointer.dynamic, emitter_.constantI32(c));
+        for (uint32_t i = 0; i < leaves.size(); ++i) {
+            const uint32_t variable = pointer.root + pointer.offset + c * pointer.choiceStride + i;
+            const ir::Type type = emitter_.typeOf(leaves[i]);
+            emitter_.write(variable, emitter_.emit(ir::Op::select, type, {here, leaves[i], emitter_.read(variable, type)}));
+        }
     }
 }
 

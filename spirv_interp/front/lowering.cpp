@@ -78,10 +78,10 @@ void Lowering::run() {
     interface_ = found->interface;
     ids_.resize(module_.bound());
     typeIndex_.assign(module_.bound(), 0);
-    dynamicRoot_.assign(module_.bound(), false);
+    indexing_.assign(module_.bound(), Indexing::constant);
     resourceOfId_.assign(module_.bound(), ir::kNoIndex);
     localOfId_.assign(module_.bound(), ir::kNoIndex);
-    markDynamicRoots();
+    classifyVariables();
     emitter_.begin(emitter_.newBlock());
     lowerGlobals();
     lowerExecutionModes(*found);
@@ -133,56 +133,6 @@ void Lowering::lowerExecutionModes(const EntryPoint& entry) {
             case spv::ExecutionMode::SignedZeroInfNanPreserve:
             case spv::ExecutionMode::RoundingModeRTE: break;
             default: refuse(inst, "execution mode " + std::to_string(inst[2]) + " is not supported");
-        }
-    }
-}
-
-void Lowering::markDynamicRoots() {
-    const auto isConstant = [this](uint32_t id) {
-        const auto op = static_cast<uint32_t>(module_.definition(id).op);
-        return op >= static_cast<uint32_t>(spv::Op::OpConstantTrue) &&
-               op <= static_cast<uint32_t>(spv::Op::OpSpecConstantOp);
-    };
-    const auto rootOf = [this](uint32_t id) {
-        // A chain of access chains is as long as the module at most.
-        for (;;) {
-            const Instruction inst = module_.definition(id);
-            if (inst.op != spv::Op::OpAccessChain && inst.op != spv::Op::OpInBoundsAccessChain &&
-                inst.op != spv::Op::OpCopyObject) {
-                return id;
-            }
-            if (inst[3] == id) return id;
-            id = inst[3];
-        }
-    };
-    std::vector<Instruction> calls;
-    for (const Function& function : module_.functions()) {
-        for (const SpirvBlock& block : function.blocks) {
-            for (uint32_t offset = block.first; offset < block.end;) {
-                const Instruction inst = module_.next(offset);
-                if (inst.op == spv::Op::OpFunctionCall) calls.push_back(inst);
-                if (inst.op != spv::Op::OpAccessChain && inst.op != spv::Op::OpInBoundsAccessChain) continue;
-                for (uint32_t word = 4; word < inst.count; ++word) {
-                    if (isConstant(inst[word])) continue;
-                    const uint32_t root = rootOf(inst[3]);
-                    if (root < dynamicRoot_.size()) dynamicRoot_[root] = true;
-                    break;
-                }
-            }
-        }
-    }
-    // Through parameters to the arguments, as far as they go.
-    for (bool changed = true; changed;) {
-        changed = false;
-        for (const Instruction& call : calls) {
-            const Function* callee = module_.function(call[3]);
-            if (callee == nullptr) continue;
-            for (size_t i = 0; i < callee->parameters.size(); ++i) {
-                const uint32_t root = rootOf(call[static_cast<uint32_t>(4 + i)]);
-                if (!dynamicRoot_[callee->parameters[i]] || root >= dynamicRoot_.size() || dynamicRoot_[root]) continue;
-                dynamicRoot_[root] = true;
-                changed = true;
-            }
         }
     }
 }

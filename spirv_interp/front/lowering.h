@@ -36,7 +36,8 @@ struct Pointer {
     uint32_t type = 0;  // of what it points to
     uint32_t root = 0, extent = 0;
     uint32_t offset = 0;                    // constant part, in leaves (ssa), words (local, input) or bytes (buffer)
-    ir::ValueId dynamic = ir::kNoValue;     // the rest, in the same unit
+    ir::ValueId dynamic = ir::kNoValue;     // the rest, in the same unit; ssa: which of `choices` equal parts
+    uint32_t choices = 0, choiceStride = 0; // ssa with `dynamic`: the parts and the leaves from one to the next
     ir::ValueId descriptor = ir::kNoValue;  // buffer, handle: index in the array of descriptors
     bool descriptorArray = false;           // the next indices select a descriptor
     uint32_t matrixStride = 0;              // buffer: of the matrices inside
@@ -86,6 +87,9 @@ class Lowering {
         uint32_t structure = 0, member = Decoration::kNoMember;
         bool input = true;
     };
+    /// How access chains index a variable: by constants only; at run time, but only once and among few parts, so that
+    /// selects between SSA values serve best; or in any way, which takes memory.
+    enum class Indexing : uint8_t { constant, choice, memory };
     struct SlotCursor {
         uint32_t location = 0, component = 0;
     };
@@ -97,7 +101,10 @@ class Lowering {
     // lowering.cpp: the whole, ids, errors
     void lowerExecutionModes(const EntryPoint& entry);
     void lowerGlobals();
-    void markDynamicRoots();
+    void classifyVariables();
+    Indexing indexingOf(const Instruction& chain) const;
+    uint32_t rootOf(uint32_t id) const;
+    bool isConstantId(uint32_t id) const;
     [[noreturn]] void refuse(const Instruction& inst, const std::string& reason) const;
     [[noreturn]] void refuseId(uint32_t id, const std::string& reason) const;
     std::string describe(const Instruction& inst) const;
@@ -161,6 +168,7 @@ class Lowering {
     void advance(Pointer& pointer, uint32_t indexId, uint32_t count, uint32_t stride);
     void lowerAccessChain(const Instruction& inst);
     Leaves load(const Pointer& pointer);
+    void storeChoice(const Pointer& pointer, Leaves leaves);
     void store(const Pointer& pointer, Leaves leaves);
     void lowerArrayLength(const Instruction& inst);
     bool lowerAtomic(const Instruction& inst);
@@ -240,7 +248,7 @@ class Lowering {
     std::vector<uint32_t> typeIndex_;  // by id, into types_
     std::vector<SpirvType> types_{SpirvType{}};
     std::vector<std::vector<ir::Type>> leafTypes_{{}};
-    std::vector<bool> dynamicRoot_;  // by id: variables some access chain indexes at run time
+    std::vector<Indexing> indexing_;   // by id of a variable or parameter
     std::vector<Output> outputs_;
     std::vector<uint32_t> interface_;        // ids of the entry point's interface variables
     std::vector<uint32_t> resourceOfId_;     // by id of a variable; kNoIndex = not used so far

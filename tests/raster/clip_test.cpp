@@ -37,14 +37,17 @@ class Clip : public testing::Test {
         return sum;
     }
     static void expectAll(const std::vector<float>& counts, float value) {
-        for (size_t n = 0; n < counts.size(); ++n) ASSERT_EQ(counts[n], value) << n % kSize << "," << n / kSize;
+        for (size_t n = 0; n < counts.size(); ++n)
+            ASSERT_EQ(counts[n], value) << n % kSize << "," << n / kSize;
     }
 
     ThreadPool pool_{2};
     PassStatistics statistics_;
 };
 
-Vertex vertex(float x, float y, float z, float w, float user = 1) { return {{x, y, z, w}, {user, 1, 1, 1}}; }
+Vertex vertex(float x, float y, float z, float w, float user = 1) {
+    return {{x, y, z, w}, {user, 1, 1, 1}};
+}
 
 /// A ground plane that goes through the near plane and behind the eye, as two triangles.
 std::vector<Vertex> ground(float scale) {
@@ -75,7 +78,8 @@ TEST_F(Clip, SharedEdgeThroughTheNearPlane) {
 
 TEST_F(Clip, PowersOfTwoChangeNothing) {
     const auto expected = draw(ground(1));
-    for (const int exponent : {1, -7, 60, -60, 100, -100, 120}) EXPECT_EQ(draw(ground(std::ldexp(1.0f, exponent))), expected) << exponent;
+    for (const int exponent : {1, -7, 60, -60, 100, -100, 120})
+        EXPECT_EQ(draw(ground(std::ldexp(1.0f, exponent))), expected) << exponent;
 }
 
 TEST_F(Clip, HugeCoordinatesOfOrdinaryRatio) {
@@ -94,7 +98,8 @@ TEST_F(Clip, DenormalPositions) {
 
 TEST_F(Clip, VertexAtInfinity) {
     // w = 0: the triangle reaches to infinity; its neighbour continues on the other side of the shared edge.
-    const Vertex a = vertex(-1, 0, 0.5f, 1), b = vertex(1, 0, 0.5f, 1), up = vertex(0, -1, 0, 0), down = vertex(0, 1, 0, 0);
+    const Vertex a = vertex(-1, 0, 0.5f, 1), b = vertex(1, 0, 0.5f, 1), up = vertex(0, -1, 0, 0),
+                 down = vertex(0, 1, 0, 0);
     const auto counts = draw({a, b, up, a, b, down}, "color_vert", [](GraphicsState& s) {
         s.depthClipEnable = false;
         s.depthClampEnable = true;
@@ -126,7 +131,9 @@ TEST_F(Clip, UserDistanceAndItsOppositeMeet) {
         std::vector<Vertex> both;
         std::vector<Vertex> triangle;
         for (int k = 0; k < 3; ++k) {
-            const auto value = [&] { return static_cast<float>(static_cast<int>(random() % 2001) - 1000) / 900; };
+            const auto value = [&] {
+                return static_cast<float>(static_cast<int>(random() % 2001) - 1000) / 900;
+            };
             const float w = 0.5f + static_cast<float>(random() % 100) / 50;
             // Some distances exactly 0.
             triangle.push_back(vertex(value() * w, value() * w, 0, w, random() % 4 == 0 ? 0.0f : value()));
@@ -152,14 +159,19 @@ TEST_F(Clip, UserDistanceAndItsOppositeMeet) {
 
 TEST_F(Clip, SixPlanesAndEightOfTheUser) {
     // A triangle far larger than everything, tilted through near and far.
-    const auto counts = draw({vertex(-40, -40, -60, 1, 0.5f), vertex(40, -40, 57, 1, 0.5f), vertex(0, 60, 3, 1, 0.5f)}, "clip8_vert");
+    const auto counts =
+        draw({vertex(-40, -40, -60, 1, 0.5f), vertex(40, -40, 57, 1, 0.5f), vertex(0, 60, 3, 1, 0.5f)},
+             "clip8_vert");
     EXPECT_GT(total(counts), 50);
     for (const float count : counts) ASSERT_LE(count, 1);
-    const auto octagon = draw({vertex(-90, -90, 0.5f, 1, 0.5f), vertex(90, -90, 0.5f, 1, 0.5f), vertex(0, 150, 0.5f, 1, 0.5f)}, "clip8_vert");
+    const auto octagon =
+        draw({vertex(-90, -90, 0.5f, 1, 0.5f), vertex(90, -90, 0.5f, 1, 0.5f), vertex(0, 150, 0.5f, 1, 0.5f)},
+             "clip8_vert");
     for (uint32_t y = 0; y < kSize; ++y) {
         for (uint32_t x = 0; x < kSize; ++x) {
             const double px = (x + 0.5) / 32 - 1, py = (y + 0.5) / 32 - 1;
-            const double inside = std::min({0.5 - std::fabs(px), 0.5 - std::fabs(py), 0.75 - std::fabs(px) - std::fabs(py)});
+            const double inside =
+                std::min({0.5 - std::fabs(px), 0.5 - std::fabs(py), 0.75 - std::fabs(px) - std::fabs(py)});
             if (std::fabs(inside) < 0.01) continue;
             EXPECT_EQ(octagon[y * kSize + x], inside > 0 ? 1.0f : 0.0f) << x << "," << y;
         }
@@ -177,14 +189,16 @@ TEST_F(Clip, InfiniteUserDistances) {
 }
 
 TEST_F(Clip, CullDistance) {
-    std::vector<Vertex> triangle{vertex(-1, -1, 0, 1, -1), vertex(3, -1, 0, 1, -2), vertex(-1, 3, 0, 1, -0.5f)};
+    std::vector<Vertex> triangle{vertex(-1, -1, 0, 1, -1), vertex(3, -1, 0, 1, -2),
+                                 vertex(-1, 3, 0, 1, -0.5f)};
     expectAll(draw(triangle, "cull_vert"), 0);
     triangle[1].color[0] = 0;
     expectAll(draw(triangle, "cull_vert"), 1);
 }
 
 TEST_F(Clip, NearAndFarPlanesAreInside) {
-    for (const float z : {0.0f, 1.0f}) expectAll(draw({vertex(-1, -1, z, 1), vertex(3, -1, z, 1), vertex(-1, 3, z, 1)}), 1);
+    for (const float z : {0.0f, 1.0f})
+        expectAll(draw({vertex(-1, -1, z, 1), vertex(3, -1, z, 1), vertex(-1, 3, z, 1)}), 1);
     for (const float z : {-1e-30f, 1.0000001f})
         expectAll(draw({vertex(-1, -1, z, 1), vertex(3, -1, z, 1), vertex(-1, 3, z, 1)}), 0);
     for (const float z : {-5.0f, 5.0f})
@@ -198,7 +212,8 @@ TEST_F(Clip, AroundTheGuardBand) {
     for (const double far : {24575.0, 24575.9, 24576.1, 30000.0, -8191.9, -8192.1, -9000.0}) {
         const auto p = [&](double x, double y) { return at(x, y, kSize, kSize); };
         const double near = far > 0 ? -10 : 74;
-        const auto counts = draw({p(near, -10), p(far, -10), p(near, 74), p(far, -10), p(far, 74), p(near, 74)});
+        const auto counts =
+            draw({p(near, -10), p(far, -10), p(near, 74), p(far, -10), p(far, 74), p(near, 74)});
         expectAll(counts, 1);
     }
 }

@@ -12,7 +12,8 @@ constexpr uint32_t kSize = 32;
 constexpr VkFormat kColor = VK_FORMAT_R32_SFLOAT;
 
 std::vector<Vertex> triangle(float z0, float z1, float z2, std::array<float, 4> color = {1, 1, 1, 1}) {
-    return {at(0, 0, kSize, kSize, color, z0), at(2 * kSize, 0, kSize, kSize, color, z1), at(0, 2 * kSize, kSize, kSize, color, z2)};
+    return {at(0, 0, kSize, kSize, color, z0), at(2 * kSize, 0, kSize, kSize, color, z1),
+            at(0, 2 * kSize, kSize, kSize, color, z2)};
 }
 std::vector<Vertex> reversed(std::vector<Vertex> v) {
     std::swap(v[1], v[2]);
@@ -59,13 +60,19 @@ class Depth : public testing::TestWithParam<VkFormat> {
     PassStatistics statistics_;
 };
 
-uint32_t maxCode(VkFormat format) { return format == VK_FORMAT_D16_UNORM ? 65535 : 16777215; }
-bool isFloat(VkFormat format) { return format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D32_SFLOAT_S8_UINT; }
+uint32_t maxCode(VkFormat format) {
+    return format == VK_FORMAT_D16_UNORM ? 65535 : 16777215;
+}
+bool isFloat(VkFormat format) {
+    return format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D32_SFLOAT_S8_UINT;
+}
 
 TEST_P(Depth, ConstantDepthIsRoundedToNearest) {
     for (const float z : {0.0f, 1.0f, 0.25f, 0.1f, 0.7f}) {
         run({{triangle(z, z, z), {}, {}}}, GetParam());
-        const double expected = isFloat(GetParam()) ? double{z} : std::nearbyint(double{z} * maxCode(GetParam())) / maxCode(GetParam());
+        const double expected = isFloat(GetParam())
+                                    ? double{z}
+                                    : std::nearbyint(double{z} * maxCode(GetParam())) / maxCode(GetParam());
         for (uint32_t y = 0; y < kSize; ++y)
             for (uint32_t x = 0; x < kSize; ++x) ASSERT_EQ(depth_->depth(x, y), static_cast<float>(expected));
     }
@@ -76,7 +83,9 @@ TEST_P(Depth, AllCompareOperations) {
         for (const auto& [z, relation] : {std::pair{0.25f, 1u}, {0.5f, 2u}, {0.75f, 4u}}) {
             for (const Isa isa : {Isa::sse4, bestIsa()}) {
                 run({{triangle(0.5f, 0.5f, 0.5f), {}, {}},
-                     {triangle(z, z, z), [&](GraphicsState& s) { s.depthCompare = static_cast<VkCompareOp>(op); }, {}}},
+                     {triangle(z, z, z),
+                      [&](GraphicsState& s) { s.depthCompare = static_cast<VkCompareOp>(op); },
+                      {}}},
                     GetParam(), 1, 0, isa);
                 const bool passes = (op & relation) != 0;
                 expectColor(passes ? 2 : 1);
@@ -91,17 +100,20 @@ TEST_P(Depth, DrawnTwiceIsEqualEverywhere) {
     for (int n = 0; n < 20; ++n) {
         std::vector<Vertex> v;
         for (int k = 0; k < 3; ++k)
-            v.push_back(at(static_cast<double>(random() % 6400) / 100 - 10, static_cast<double>(random() % 6400) / 100 - 10, kSize, kSize,
-                           {1, 1, 1, 1}, static_cast<float>(random() % 1000) / 1000));
+            v.push_back(at(static_cast<double>(random() % 6400) / 100 - 10,
+                           static_cast<double>(random() % 6400) / 100 - 10, kSize, kSize, {1, 1, 1, 1},
+                           static_cast<float>(random() % 1000) / 1000));
         const auto equal = [](GraphicsState& s) {
             s.depthCompare = VK_COMPARE_OP_EQUAL;
             s.depthWrite = false;
         };
         // Early, late through gl_FragDepth, late through a discard, and the other way round the triangle.
-        run({{v, {}, {}}, {v, equal, {}}, {v, equal, {}, "fragdepth_frag"}, {reversed(v), equal, {}}}, GetParam());
+        run({{v, {}, {}}, {v, equal, {}}, {v, equal, {}, "fragdepth_frag"}, {reversed(v), equal, {}}},
+            GetParam());
         for (uint32_t y = 0; y < kSize; ++y)
             for (uint32_t x = 0; x < kSize; ++x)
-                ASSERT_TRUE(color_->red(x, y) == 0 || color_->red(x, y) == 4) << color_->red(x, y) << " at " << x << "," << y;
+                ASSERT_TRUE(color_->red(x, y) == 0 || color_->red(x, y) == 4)
+                    << color_->red(x, y) << " at " << x << "," << y;
     }
 }
 
@@ -113,8 +125,10 @@ TEST_P(Depth, EarlyAndLateTestsAgree) {
         for (int n = 0; n < 12; ++n) {
             std::vector<Vertex> v;
             for (int k = 0; k < 9; ++k)
-                v.push_back(at(same() % 40, same() % 40, kSize, kSize, {1, 1, 1, 1}, static_cast<float>(same() % 100) / 100));
-            draws.push_back({v, [](GraphicsState& s) { s.depthCompare = VK_COMPARE_OP_LESS_OR_EQUAL; }, {}, fragment});
+                v.push_back(at(same() % 40, same() % 40, kSize, kSize, {1, 1, 1, 1},
+                               static_cast<float>(same() % 100) / 100));
+            draws.push_back(
+                {v, [](GraphicsState& s) { s.depthCompare = VK_COMPARE_OP_LESS_OR_EQUAL; }, {}, fragment});
         }
         return draws;
     };
@@ -142,7 +156,9 @@ TEST_P(Depth, BiasIsOneToTwoUnits) {
         std::rotate(v.begin(), v.begin() + rotation, v.end());
         const double r = isFloat(GetParam()) ? std::ldexp(1.0, -24) : 1.0 / maxCode(GetParam());
         for (const float units : {1.0f, -1.0f, 16.0f}) {
-            run({{v, [](GraphicsState& s) { s.depthBiasEnable = true; }, [&](DynamicState& d) { d.depthBiasConstant = units; }}}, GetParam());
+            run({{v, [](GraphicsState& s) { s.depthBiasEnable = true; },
+                  [&](DynamicState& d) { d.depthBiasConstant = units; }}},
+                GetParam());
             for (uint32_t x = 0; x < kSize; ++x) {
                 const double shift = double{depth_->depth(x, 7)} - double{plain[x]};
                 // One unit of the format and one of the float in which the plane is evaluated.
@@ -171,8 +187,10 @@ TEST_P(Depth, BiasSlopeAndClamp) {
     EXPECT_NEAR(shifted(-10, -0.02f), -0.02, 3e-5);
     EXPECT_NEAR(shifted(10, -0.02f), slope * 10, 3e-5);
     // An edge-on triangle: no NaN, clamped.
-    run({{{at(0, 0, kSize, kSize, {}, 0), at(kSize, 0.02, kSize, kSize, {}, 1), at(kSize, 0.6, kSize, kSize, {}, 0.5f)},
-          [](GraphicsState& s) { s.depthBiasEnable = true; }, [](DynamicState& d) { d.depthBiasSlope = 1e30f; }}},
+    run({{{at(0, 0, kSize, kSize, {}, 0), at(kSize, 0.02, kSize, kSize, {}, 1),
+           at(kSize, 0.6, kSize, kSize, {}, 0.5f)},
+          [](GraphicsState& s) { s.depthBiasEnable = true; },
+          [](DynamicState& d) { d.depthBiasSlope = 1e30f; }}},
         GetParam());
     for (uint32_t x = 0; x < kSize; ++x) EXPECT_EQ(depth_->depth(x, 0), depth_->depth(x, 0));
 }
@@ -188,18 +206,22 @@ TEST_P(Depth, ViewportRangeAndClamp) {
     EXPECT_NEAR(depth_->depth(1, 1), 0.75f, 1e-5f);
     run({{triangle(0.25f, 0.25f, 0.25f), {}, range(0.5f, 0.5f)}}, GetParam());
     EXPECT_NEAR(depth_->depth(1, 1), 0.5f, 1e-5f);
-    run({{triangle(7, 7, 7), [](GraphicsState& s) {
+    run({{triangle(7, 7, 7),
+          [](GraphicsState& s) {
               s.depthClampEnable = true;
               s.depthClipEnable = false;
-          }, range(0.25f, 0.75f)}},
+          },
+          range(0.25f, 0.75f)}},
         GetParam());
     EXPECT_NEAR(depth_->depth(1, 1), 0.75f, 1e-5f);
 }
 
 TEST_P(Depth, Bounds) {
-    for (const auto& [low, high, passes] : {std::tuple{0.4f, 0.6f, true}, {0.6f, 0.8f, false}, {0.0f, 0.4f, false}}) {
+    for (const auto& [low, high, passes] :
+         {std::tuple{0.4f, 0.6f, true}, {0.6f, 0.8f, false}, {0.0f, 0.4f, false}}) {
         run({{triangle(0.5f, 0.5f, 0.5f), {}, {}},
-             {triangle(0.9f, 0.9f, 0.9f), [](GraphicsState& s) {
+             {triangle(0.9f, 0.9f, 0.9f),
+              [](GraphicsState& s) {
                   s.depthTest = false;
                   s.depthBoundsTest = true;
               },
@@ -213,22 +235,31 @@ TEST_P(Depth, Bounds) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, Depth,
-                         testing::Values(VK_FORMAT_D16_UNORM, VK_FORMAT_X8_D24_UNORM_PACK32, VK_FORMAT_D24_UNORM_S8_UINT,
-                                         VK_FORMAT_D32_SFLOAT, VK_FORMAT_D32_SFLOAT_S8_UINT),
+                         testing::Values(VK_FORMAT_D16_UNORM, VK_FORMAT_X8_D24_UNORM_PACK32,
+                                         VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT,
+                                         VK_FORMAT_D32_SFLOAT_S8_UINT),
                          [](const auto& format) { return std::string(findFormat(format.param)->name); });
 
 class Stencil : public Depth {};
 
 uint32_t stencilModel(VkStencilOp op, uint32_t stored, uint32_t reference) {
     switch (op) {
-        case VK_STENCIL_OP_KEEP: return stored;
-        case VK_STENCIL_OP_ZERO: return 0;
-        case VK_STENCIL_OP_REPLACE: return reference;
-        case VK_STENCIL_OP_INCREMENT_AND_CLAMP: return std::min(stored + 1, 255u);
-        case VK_STENCIL_OP_DECREMENT_AND_CLAMP: return stored == 0 ? 0 : stored - 1;
-        case VK_STENCIL_OP_INVERT: return ~stored & 255;
-        case VK_STENCIL_OP_INCREMENT_AND_WRAP: return (stored + 1) & 255;
-        default: return (stored - 1) & 255;
+        case VK_STENCIL_OP_KEEP:
+            return stored;
+        case VK_STENCIL_OP_ZERO:
+            return 0;
+        case VK_STENCIL_OP_REPLACE:
+            return reference;
+        case VK_STENCIL_OP_INCREMENT_AND_CLAMP:
+            return std::min(stored + 1, 255u);
+        case VK_STENCIL_OP_DECREMENT_AND_CLAMP:
+            return stored == 0 ? 0 : stored - 1;
+        case VK_STENCIL_OP_INVERT:
+            return ~stored & 255;
+        case VK_STENCIL_OP_INCREMENT_AND_WRAP:
+            return (stored + 1) & 255;
+        default:
+            return (stored - 1) & 255;
     }
 }
 
@@ -242,22 +273,28 @@ TEST_P(Stencil, AllOperationsOnAllValues) {
             for (uint32_t value = 0; value < 256; ++value) {
                 VkClearValue clear{};
                 clear.depthStencil = {0.5f, value};
-                pass.pass().clear(VK_IMAGE_ASPECT_STENCIL_BIT, 0, clear,
-                                  {{{static_cast<int32_t>(value % 16), static_cast<int32_t>(value / 16)}, {1, 1}}, 0, 1});
+                pass.pass().clear(
+                    VK_IMAGE_ASPECT_STENCIL_BIT, 0, clear,
+                    {{{static_cast<int32_t>(value % 16), static_cast<int32_t>(value / 16)}, {1, 1}}, 0, 1});
             }
             PipelineOptions options;
             options.fragment = "";
             options.state = plainState(VK_FORMAT_UNDEFINED, GetParam());
             options.state.stencilTest = true;
             options.state.stencilFront.compareOp = options.state.stencilBack.compareOp = VK_COMPARE_OP_ALWAYS;
-            options.state.stencilFront.passOp = options.state.stencilBack.passOp = static_cast<VkStencilOp>(op);
+            options.state.stencilFront.passOp = options.state.stencilBack.passOp =
+                static_cast<VkStencilOp>(op);
             DynamicState dynamic = dynamicFor(16, 16);
             dynamic.stencilFront = dynamic.stencilBack = {0xFF, writeMask, 0xA7};
-            pass.draw(makePipeline(options), dynamic, {at(0, 0, 16, 16), at(40, 0, 16, 16), at(0, 40, 16, 16)});
+            pass.draw(makePipeline(options), dynamic,
+                      {at(0, 0, 16, 16), at(40, 0, 16, 16), at(0, 40, 16, 16)});
             pass.end();
             for (uint32_t value = 0; value < 256; ++value) {
-                const uint32_t expected = (value & ~writeMask) | (stencilModel(static_cast<VkStencilOp>(op), value, 0xA7) & writeMask);
-                ASSERT_EQ(surface.stencil(value % 16, value / 16), expected) << "op " << op << " value " << value;
+                const uint32_t expected =
+                    (value & ~writeMask) |
+                    (stencilModel(static_cast<VkStencilOp>(op), value, 0xA7) & writeMask);
+                ASSERT_EQ(surface.stencil(value % 16, value / 16), expected)
+                    << "op " << op << " value " << value;
             }
         }
     }
@@ -277,17 +314,31 @@ TEST_P(Stencil, FailDepthFailPass) {
                           s.depthCompare = depthPasses ? VK_COMPARE_OP_LESS : VK_COMPARE_OP_GREATER;
                           s.stencilTest = true;
                           // reference & mask = 4, stored & mask = 4.
-                          const VkCompareOp compare = stencilPasses ? VK_COMPARE_OP_EQUAL : VK_COMPARE_OP_NOT_EQUAL;
-                          s.stencilFront = {VK_STENCIL_OP_ZERO, VK_STENCIL_OP_REPLACE, VK_STENCIL_OP_INVERT, compare, 0, 0, 0};
-                          s.stencilBack = {VK_STENCIL_OP_INCREMENT_AND_WRAP, VK_STENCIL_OP_DECREMENT_AND_WRAP,
-                                           VK_STENCIL_OP_INVERT, compare, 0, 0, 0};
+                          const VkCompareOp compare =
+                              stencilPasses ? VK_COMPARE_OP_EQUAL : VK_COMPARE_OP_NOT_EQUAL;
+                          s.stencilFront = {VK_STENCIL_OP_ZERO,
+                                            VK_STENCIL_OP_REPLACE,
+                                            VK_STENCIL_OP_INVERT,
+                                            compare,
+                                            0,
+                                            0,
+                                            0};
+                          s.stencilBack = {VK_STENCIL_OP_INCREMENT_AND_WRAP,
+                                           VK_STENCIL_OP_DECREMENT_AND_WRAP,
+                                           VK_STENCIL_OP_INVERT,
+                                           compare,
+                                           0,
+                                           0,
+                                           0};
                       },
                       [](DynamicState& d) {
                           d.stencilFront = {0x0F, 0xFF, 0xF4};
                           d.stencilBack = {0x0F, 0xFF, 0xE4};
                       }}},
                     GetParam(), 1, 0x14);
-                const uint32_t expected = !stencilPasses ? (front ? 0u : 0x15u) : !depthPasses ? 0xEBu : (front ? 0xF4u : 0x13u);
+                const uint32_t expected = !stencilPasses ? (front ? 0u : 0x15u)
+                                          : !depthPasses ? 0xEBu
+                                                         : (front ? 0xF4u : 0x13u);
                 for (uint32_t y = 0; y < kSize; ++y)
                     for (uint32_t x = 0; x < kSize; ++x) ASSERT_EQ(depth_->stencil(x, y), expected);
                 expectColor(stencilPasses && depthPasses ? 1 : 0);
@@ -299,21 +350,26 @@ TEST_P(Stencil, FailDepthFailPass) {
 TEST_P(Stencil, ParityOfAWatertightMesh) {
     std::mt19937 random(14);
     std::vector<Vertex> v;
-    // A closed fan drawn over itself in two different triangulations: every pixel is inverted twice or not at all.
+    // A closed fan drawn over itself in two different triangulations: every pixel is inverted twice or not at
+    // all.
     for (int fan = 0; fan < 2; ++fan) {
         const double cx = fan == 0 ? 15.37 : 11.2, cy = fan == 0 ? 14.81 : 17.9;
         for (int k = 0; k < 23; ++k) {
-            for (const auto& p : {std::pair{cx, cy}, {16 + 14 * std::cos(k * 0.2731821), 16 + 14 * std::sin(k * 0.2731821)},
-                                  {16 + 14 * std::cos((k + 1) % 23 * 0.2731821), 16 + 14 * std::sin((k + 1) % 23 * 0.2731821)}})
+            for (const auto& p : {std::pair{cx, cy},
+                                  {16 + 14 * std::cos(k * 0.2731821), 16 + 14 * std::sin(k * 0.2731821)},
+                                  {16 + 14 * std::cos((k + 1) % 23 * 0.2731821),
+                                   16 + 14 * std::sin((k + 1) % 23 * 0.2731821)}})
                 v.push_back(at(p.first, p.second, kSize, kSize));
         }
     }
-    run({{v, [](GraphicsState& s) {
+    run({{v,
+          [](GraphicsState& s) {
               s.depthTest = false;
               s.stencilTest = true;
               s.stencilFront.compareOp = s.stencilBack.compareOp = VK_COMPARE_OP_ALWAYS;
               s.stencilFront.passOp = s.stencilBack.passOp = VK_STENCIL_OP_INVERT;
-          }, {}}},
+          },
+          {}}},
         GetParam());
     for (uint32_t y = 0; y < kSize; ++y)
         for (uint32_t x = 0; x < kSize; ++x) ASSERT_EQ(depth_->stencil(x, y), 0u) << x << "," << y;
@@ -321,7 +377,8 @@ TEST_P(Stencil, ParityOfAWatertightMesh) {
 }
 
 INSTANTIATE_TEST_SUITE_P(StencilFormats, Stencil,
-                         testing::Values(VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT_S8_UINT, VK_FORMAT_S8_UINT),
+                         testing::Values(VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT_S8_UINT,
+                                         VK_FORMAT_S8_UINT),
                          [](const auto& format) { return std::string(findFormat(format.param)->name); });
 
 }  // namespace

@@ -13,12 +13,16 @@ struct Outcome {
     PassStatistics statistics;
 };
 
-/// A scene with some of everything: meshes, transparency, depth, stencil, clipping, discards, clears between draws.
+/// A scene with some of everything: meshes, transparency, depth, stencil, clipping, discards, clears between
+/// draws.
 Outcome render(uint32_t threads, Isa isa, const Accuracy& accuracy, uint32_t samples, bool flushes) {
     std::mt19937 random(17);
-    const auto value = [&](double low, double high) { return low + (high - low) * static_cast<double>(random() % 100000) / 100000; };
+    const auto value = [&](double low, double high) {
+        return low + (high - low) * static_cast<double>(random() % 100000) / 100000;
+    };
     ThreadPool pool(threads);
-    Surface color(VK_FORMAT_R8G8B8A8_UNORM, kWidth, kHeight, samples), depth(VK_FORMAT_D24_UNORM_S8_UINT, kWidth, kHeight, samples);
+    Surface color(VK_FORMAT_R8G8B8A8_UNORM, kWidth, kHeight, samples),
+        depth(VK_FORMAT_D24_UNORM_S8_UINT, kWidth, kHeight, samples);
     VkClearValue clearColor{}, clearDepth{};
     clearColor.color.float32[2] = 0.3f;
     clearDepth.depthStencil = {1, 7};
@@ -28,15 +32,28 @@ Outcome render(uint32_t threads, Isa isa, const Accuracy& accuracy, uint32_t sam
         PipelineOptions options;
         options.isa = isa;
         options.accuracy = accuracy;
-        options.fragment = std::array{"color_frag", "discard_frag", "derivative_frag", "fragdepth_frag"}[static_cast<size_t>(d % 4)];
+        options.fragment = std::array{"color_frag", "discard_frag", "derivative_frag",
+                                      "fragdepth_frag"}[static_cast<size_t>(d % 4)];
         options.state = plainState(VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_D24_UNORM_S8_UINT);
         options.state.samples = samples;
         options.state.depthTest = d % 3 != 0;
         options.state.depthWrite = d % 2 == 0;
         options.state.depthCompare = VK_COMPARE_OP_LESS_OR_EQUAL;
         options.state.stencilTest = d % 5 == 4;
-        options.state.stencilFront = {VK_STENCIL_OP_INVERT, VK_STENCIL_OP_INCREMENT_AND_WRAP, VK_STENCIL_OP_KEEP, VK_COMPARE_OP_LESS, 0, 0, 0};
-        options.state.stencilBack = {VK_STENCIL_OP_ZERO, VK_STENCIL_OP_DECREMENT_AND_WRAP, VK_STENCIL_OP_KEEP, VK_COMPARE_OP_ALWAYS, 0, 0, 0};
+        options.state.stencilFront = {VK_STENCIL_OP_INVERT,
+                                      VK_STENCIL_OP_INCREMENT_AND_WRAP,
+                                      VK_STENCIL_OP_KEEP,
+                                      VK_COMPARE_OP_LESS,
+                                      0,
+                                      0,
+                                      0};
+        options.state.stencilBack = {VK_STENCIL_OP_ZERO,
+                                     VK_STENCIL_OP_DECREMENT_AND_WRAP,
+                                     VK_STENCIL_OP_KEEP,
+                                     VK_COMPARE_OP_ALWAYS,
+                                     0,
+                                     0,
+                                     0};
         if (d % 2 == 1) {
             auto& b = options.state.blend[0];
             b.blendEnable = VK_TRUE;
@@ -48,10 +65,12 @@ Outcome render(uint32_t threads, Isa isa, const Accuracy& accuracy, uint32_t sam
         std::vector<Vertex> v;
         const int triangles = d % 3 == 0 ? 2500 : 40;
         for (int t = 0; t < triangles; ++t) {
-            const double x = value(-20, kWidth + 20), y = value(-20, kHeight + 20), size = d % 3 == 0 ? 6 : 160;
+            const double x = value(-20, kWidth + 20), y = value(-20, kHeight + 20),
+                         size = d % 3 == 0 ? 6 : 160;
             for (int k = 0; k < 3; ++k) {
                 Vertex vertex = at(x + value(-size, size), y + value(-size, size), kWidth, kHeight,
-                                   {static_cast<float>(value(0, 1)), static_cast<float>(value(0, 1)), static_cast<float>(value(0, 1)), static_cast<float>(value(0, 1))},
+                                   {static_cast<float>(value(0, 1)), static_cast<float>(value(0, 1)),
+                                    static_cast<float>(value(0, 1)), static_cast<float>(value(0, 1))},
                                    static_cast<float>(value(-0.1, 1.1)));
                 const auto w = static_cast<float>(value(0.2, 5));
                 for (float& c : vertex.position) c *= w;
@@ -80,12 +99,16 @@ TEST(Determinism, ThreadsInstructionSetsAndFlushes) {
                     if (isa > bestIsa() || (threads != 5 && isa == Isa::avx2)) continue;
                     for (const bool flushes : {false, true}) {
                         const Outcome outcome = render(threads, isa, accuracy, samples, flushes);
-                        EXPECT_EQ(outcome.color, expected.color) << threads << " threads, " << isaName(isa) << ", " << profileName(profile);
-                        EXPECT_EQ(outcome.depth, expected.depth) << threads << " threads, " << isaName(isa) << ", " << profileName(profile);
-                        EXPECT_EQ(outcome.statistics.fragmentInvocations, expected.statistics.fragmentInvocations);
+                        EXPECT_EQ(outcome.color, expected.color)
+                            << threads << " threads, " << isaName(isa) << ", " << profileName(profile);
+                        EXPECT_EQ(outcome.depth, expected.depth)
+                            << threads << " threads, " << isaName(isa) << ", " << profileName(profile);
+                        EXPECT_EQ(outcome.statistics.fragmentInvocations,
+                                  expected.statistics.fragmentInvocations);
                         EXPECT_EQ(outcome.statistics.samplesPassed, expected.statistics.samplesPassed);
                         if (!flushes) {
-                            EXPECT_EQ(outcome.statistics.vertexInvocations, expected.statistics.vertexInvocations);
+                            EXPECT_EQ(outcome.statistics.vertexInvocations,
+                                      expected.statistics.vertexInvocations);
                         }
                     }
                 }
@@ -104,7 +127,9 @@ TEST(Determinism, ReusedPassObject) {
     uint64_t first = 0;
     for (int n = 0; n < 4; ++n) {
         pass.begin();
-        pass.draw(pipeline, dynamicFor(100, 100), {at(3, 3, 100, 100, {1, 0, 0, 1}), at(93, 13, 100, 100, {0, 1, 0, 1}), at(33, 83, 100, 100, {0, 0, 1, 1})});
+        pass.draw(pipeline, dynamicFor(100, 100),
+                  {at(3, 3, 100, 100, {1, 0, 0, 1}), at(93, 13, 100, 100, {0, 1, 0, 1}),
+                   at(33, 83, 100, 100, {0, 0, 1, 1})});
         pass.end();
         if (n == 0) first = surface.hash();
         EXPECT_EQ(surface.hash(), first);
@@ -130,7 +155,8 @@ TEST(Determinism, ClearsAndLoadOperations) {
         pass.end();
     }
     for (uint32_t y = 0; y < 70; ++y)
-        for (uint32_t x = 0; x < 130; ++x) ASSERT_EQ(surface.red(x, y), x >= 60 && x < 70 && y >= 10 && y < 20 ? 0 : 1);
+        for (uint32_t x = 0; x < 130; ++x)
+            ASSERT_EQ(surface.red(x, y), x >= 60 && x < 70 && y >= 10 && y < 20 ? 0 : 1);
     {
         Pass pass(pool, {surface.target()}, {}, 130, 70);
         pass.begin();

@@ -10,7 +10,9 @@ namespace {
 
 constexpr uint32_t kPadding = 8;  // attachments are padded to whole blocks
 
-uint32_t padded(uint32_t size) { return (size + kPadding - 1) / kPadding * kPadding; }
+uint32_t padded(uint32_t size) {
+    return (size + kPadding - 1) / kPadding * kPadding;
+}
 
 ir::Program load(const std::string& name, ir::Stage stage) {
     ShaderSource source;
@@ -127,8 +129,8 @@ DynamicState dynamicFor(uint32_t width, uint32_t height) {
     return dynamic;
 }
 
-Pass::Pass(ThreadPool& pool, std::vector<RenderTarget> colors, RenderTarget depth, uint32_t width, uint32_t height,
-           uint32_t samples)
+Pass::Pass(ThreadPool& pool, std::vector<RenderTarget> colors, RenderTarget depth, uint32_t width,
+           uint32_t height, uint32_t samples)
     : pass_(pool) {
     targets_.colorCount = static_cast<uint32_t>(colors.size());
     for (size_t n = 0; n < colors.size(); ++n) targets_.colors[n] = colors[n];
@@ -138,7 +140,8 @@ Pass::Pass(ThreadPool& pool, std::vector<RenderTarget> colors, RenderTarget dept
 }
 
 void Pass::draw(std::shared_ptr<const GraphicsPipeline> pipeline, const DynamicState& dynamic,
-                const std::vector<Vertex>& vertices, const std::vector<uint32_t>& indices, uint32_t instances) {
+                const std::vector<Vertex>& vertices, const std::vector<uint32_t>& indices,
+                uint32_t instances) {
     Kept& kept = *kept_.emplace_back(new Kept{std::move(pipeline), dynamic, vertices, indices});
     DrawCall call;
     call.pipeline = kept.pipeline.get();

@@ -46,7 +46,8 @@ struct Vertex {
 };
 
 /// Pixels to clip coordinates of a viewport of the given size, w = 1.
-Vertex at(double x, double y, uint32_t width, uint32_t height, std::array<float, 4> color = {1, 1, 1, 1}, float z = 0.5f);
+Vertex at(double x, double y, uint32_t width, uint32_t height, std::array<float, 4> color = {1, 1, 1, 1},
+          float z = 0.5f);
 
 /// A pipeline with one vertex buffer of Vertex (locations 0 and 1). Empty fragment name: no fragment stage.
 struct PipelineOptions {
@@ -67,13 +68,14 @@ DynamicState dynamicFor(uint32_t width, uint32_t height);
 /// One pass over the given surfaces.
 class Pass {
   public:
-    Pass(ThreadPool& pool, std::vector<RenderTarget> colors, RenderTarget depth, uint32_t width, uint32_t height,
-         uint32_t samples = 1);
+    Pass(ThreadPool& pool, std::vector<RenderTarget> colors, RenderTarget depth, uint32_t width,
+         uint32_t height, uint32_t samples = 1);
     PassTargets& targets() { return targets_; }
     void begin() { pass_.begin(targets_); }
     /// Draws non-indexed, or indexed when there are indices. Keeps what it needs alive.
     void draw(std::shared_ptr<const GraphicsPipeline> pipeline, const DynamicState& dynamic,
-              const std::vector<Vertex>& vertices, const std::vector<uint32_t>& indices = {}, uint32_t instances = 1);
+              const std::vector<Vertex>& vertices, const std::vector<uint32_t>& indices = {},
+              uint32_t instances = 1);
     RenderPass& pass() { return pass_; }
     void end() { ASSERT_TRUE(pass_.end()); }
 

@@ -18,15 +18,17 @@ class Multisample : public testing::Test {
         PassStatistics statistics;
     };
     Result draw(VkFormat format, uint32_t samples, const std::vector<Vertex>& vertices,
-                const std::function<void(GraphicsState&)>& change = {}, const std::string& fragment = "one_frag",
-                const std::string& vertex = "color_vert") {
+                const std::function<void(GraphicsState&)>& change = {},
+                const std::string& fragment = "one_frag", const std::string& vertex = "color_vert") {
         PipelineOptions options;
         options.vertex = vertex;
         options.fragment = fragment;
         options.state = plainState(format);
         options.state.samples = samples;
         if (change) change(options.state);
-        Result result{std::make_unique<Surface>(format, kSize, kSize, samples), std::make_unique<Surface>(format, kSize, kSize), {}};
+        Result result{std::make_unique<Surface>(format, kSize, kSize, samples),
+                      std::make_unique<Surface>(format, kSize, kSize),
+                      {}};
         Pass pass(pool_, {result.color->cleared({})}, {}, kSize, kSize, samples);
         pass.targets().resolves[0] = result.resolved->target();
         pass.begin();
@@ -38,7 +40,8 @@ class Multisample : public testing::Test {
     ThreadPool pool_{2};
 };
 
-const std::vector<Vertex> kWhole{at(-5, -5, kSize, kSize), at(200, -5, kSize, kSize), at(-5, 200, kSize, kSize)};
+const std::vector<Vertex> kWhole{at(-5, -5, kSize, kSize), at(200, -5, kSize, kSize),
+                                 at(-5, 200, kSize, kSize)};
 
 TEST_F(Multisample, PartitionPerSample) {
     for (const uint32_t samples : {2u, 4u}) {
@@ -48,7 +51,8 @@ TEST_F(Multisample, PartitionPerSample) {
         for (int k = 0; k < 16; ++k) {
             const auto rim = [&](int n) {
                 const double angle = 6.283185307179586 * (n % 16) / 16;
-                return at(cx + std::round(14 * 16 * std::cos(angle)) / 16, cy + std::round(14 * 16 * std::sin(angle)) / 16, kSize, kSize);
+                return at(cx + std::round(14 * 16 * std::cos(angle)) / 16,
+                          cy + std::round(14 * 16 * std::sin(angle)) / 16, kSize, kSize);
             };
             v.push_back(at(cx, cy, kSize, kSize));
             v.push_back(rim(k));
@@ -79,10 +83,12 @@ TEST_F(Multisample, SamplesEqualSupersampling) {
     for (int n = 0; n < 10; ++n) {
         std::vector<Vertex> v, big;
         for (int k = 0; k < 3; ++k) {
-            const double x = static_cast<double>(random() % (kSize * 16)) / 16, y = static_cast<double>(random() % (kSize * 16)) / 16;
+            const double x = static_cast<double>(random() % (kSize * 16)) / 16,
+                         y = static_cast<double>(random() % (kSize * 16)) / 16;
             v.push_back(at(x, y, kSize, kSize));
             // Moved so that sample positions in sixteenths fall on centres: by 1/16 of a pixel.
-            big.push_back(at((x + 1.0 / 16) * kScale, (y + 1.0 / 16) * kScale, kSize * kScale, kSize * kScale));
+            big.push_back(
+                at((x + 1.0 / 16) * kScale, (y + 1.0 / 16) * kScale, kSize * kScale, kSize * kScale));
         }
         const Result result = draw(VK_FORMAT_R32_SFLOAT, 4, v);
         PipelineOptions options;
@@ -97,7 +103,8 @@ TEST_F(Multisample, SamplesEqualSupersampling) {
             const SamplePosition p = kSamplePositions4[s];
             for (uint32_t y = 0; y < kSize; ++y)
                 for (uint32_t x = 0; x < kSize; ++x)
-                    ASSERT_EQ(result.color->red(x, y, s), surface.red(x * kScale + p.x16 / 2u, y * kScale + p.y16 / 2u))
+                    ASSERT_EQ(result.color->red(x, y, s),
+                              surface.red(x * kScale + p.x16 / 2u, y * kScale + p.y16 / 2u))
                         << x << "," << y << " sample " << s;
         }
     }
@@ -121,8 +128,9 @@ TEST_F(Multisample, PerSampleRuns) {
 }
 
 TEST_F(Multisample, ResolveAverages) {
-    std::vector<Vertex> half{at(0, 0, kSize, kSize), at(20.5, 0, kSize, kSize), at(0, kSize, kSize, kSize),
-                             at(20.5, 0, kSize, kSize), at(20.5, kSize, kSize, kSize), at(0, kSize, kSize, kSize)};
+    std::vector<Vertex> half{at(0, 0, kSize, kSize),        at(20.5, 0, kSize, kSize),
+                             at(0, kSize, kSize, kSize),    at(20.5, 0, kSize, kSize),
+                             at(20.5, kSize, kSize, kSize), at(0, kSize, kSize, kSize)};
     const Result result = draw(VK_FORMAT_R8G8B8A8_UNORM, 4, half);
     // Samples at x = 2/16 and 6/16 are left of the edge.
     EXPECT_EQ(result.resolved->red(20, 5), 128.0f / 255);
@@ -132,7 +140,9 @@ TEST_F(Multisample, ResolveAverages) {
 
 TEST_F(Multisample, ResolveOfTheLargestFloatIsFinite) {
     const float big = 3.4e38f;
-    const std::vector<Vertex> v{at(-5, -5, kSize, kSize, {big, 0, 0, 0}), at(200, -5, kSize, kSize, {big, 0, 0, 0}), at(-5, 200, kSize, kSize, {big, 0, 0, 0})};
+    const std::vector<Vertex> v{at(-5, -5, kSize, kSize, {big, 0, 0, 0}),
+                                at(200, -5, kSize, kSize, {big, 0, 0, 0}),
+                                at(-5, 200, kSize, kSize, {big, 0, 0, 0})};
     EXPECT_EQ(draw(VK_FORMAT_R32G32B32A32_SFLOAT, 4, v, {}, "color_frag").resolved->red(3, 3), big);
 }
 
@@ -140,13 +150,15 @@ TEST_F(Multisample, Masks) {
     const auto coverage = [&](uint32_t pipelineMask, float shaderMask, const std::string& fragment) {
         std::vector<Vertex> v = kWhole;
         for (Vertex& vertex : v) vertex.color[0] = shaderMask;
-        const Result result = draw(VK_FORMAT_R8G8B8A8_UNORM, 4, v, [&](GraphicsState& s) { s.sampleMask = pipelineMask; }, fragment);
+        const Result result = draw(
+            VK_FORMAT_R8G8B8A8_UNORM, 4, v, [&](GraphicsState& s) { s.sampleMask = pipelineMask; }, fragment);
         uint32_t mask = 0;
         for (uint32_t s = 0; s < 4; ++s) mask |= (result.color->red(11, 11, s) > 0 ? 1u : 0u) << s;
         return mask;
     };
     for (uint32_t mask = 0; mask < 16; ++mask) EXPECT_EQ(coverage(mask, 0, "one_frag"), mask);
-    for (uint32_t mask = 0; mask < 16; ++mask) EXPECT_EQ(coverage(0xB, static_cast<float>(mask), "samplemask_frag"), mask & 0xB);
+    for (uint32_t mask = 0; mask < 16; ++mask)
+        EXPECT_EQ(coverage(0xB, static_cast<float>(mask), "samplemask_frag"), mask & 0xB);
 }
 
 TEST_F(Multisample, AlphaToCoverage) {
@@ -154,7 +166,8 @@ TEST_F(Multisample, AlphaToCoverage) {
     for (const float alpha : {0.0f, 0.1f, 0.25f, 0.4f, 0.5f, 0.75f, 0.9f, 1.0f}) {
         std::vector<Vertex> v = kWhole;
         for (Vertex& vertex : v) vertex.color = {1, 1, 1, alpha};
-        const Result result = draw(VK_FORMAT_R8G8B8A8_UNORM, 4, v, [](GraphicsState& s) { s.alphaToCoverage = true; }, "color_frag");
+        const Result result = draw(
+            VK_FORMAT_R8G8B8A8_UNORM, 4, v, [](GraphicsState& s) { s.alphaToCoverage = true; }, "color_frag");
         uint32_t count = 0;
         for (uint32_t s = 0; s < 4; ++s) count += result.color->red(11, 11, s) > 0;
         EXPECT_GE(count, previous);
@@ -166,7 +179,8 @@ TEST_F(Multisample, AlphaToCoverage) {
 
 TEST_F(Multisample, CentroidStaysInside) {
     // A sliver of a shape: values at covered samples lie between those of the vertices.
-    std::vector<Vertex> v{at(3, 3, kSize, kSize, {0, 0, 0, 0}), at(37, 4, kSize, kSize, {1, 1, 1, 1}), at(5, 36, kSize, kSize, {1, 1, 1, 1})};
+    std::vector<Vertex> v{at(3, 3, kSize, kSize, {0, 0, 0, 0}), at(37, 4, kSize, kSize, {1, 1, 1, 1}),
+                          at(5, 36, kSize, kSize, {1, 1, 1, 1})};
     const Result result = draw(VK_FORMAT_R32_SFLOAT, 4, v, {}, "centroid_frag", "centroid_vert");
     int seen = 0;
     for (uint32_t s = 0; s < 4; ++s) {
@@ -198,8 +212,9 @@ TEST_F(Multisample, DepthPerSample) {
     const auto plane = [&](float value, float left, float right) {
         const Color c{value, value, value, value};
         pass.draw(pipeline, dynamicFor(kSize, kSize),
-                  {at(0, 0, kSize, kSize, c, left), at(kSize, 0, kSize, kSize, c, right), at(0, kSize, kSize, kSize, c, left),
-                   at(kSize, 0, kSize, kSize, c, right), at(kSize, kSize, kSize, kSize, c, right), at(0, kSize, kSize, kSize, c, left)});
+                  {at(0, 0, kSize, kSize, c, left), at(kSize, 0, kSize, kSize, c, right),
+                   at(0, kSize, kSize, kSize, c, left), at(kSize, 0, kSize, kSize, c, right),
+                   at(kSize, kSize, kSize, kSize, c, right), at(0, kSize, kSize, kSize, c, left)});
     };
     plane(1, 0.1f, 0.9f);
     plane(2, 0.9f, 0.1f);

@@ -1,4 +1,5 @@
-// Triangles that share edges cover every sample once; coverage does not depend on how triangles are written down.
+// Triangles that share edges cover every sample once; coverage does not depend on how triangles are written
+// down.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -43,7 +44,9 @@ class Counter {
     std::shared_ptr<const GraphicsPipeline> pipeline_;
 };
 
-float sum(const std::vector<float>& counts) { return std::accumulate(counts.begin(), counts.end(), 0.0f); }
+float sum(const std::vector<float>& counts) {
+    return std::accumulate(counts.begin(), counts.end(), 0.0f);
+}
 
 TEST(Partition, QuadSplitThroughCentres) {
     // Diagonal through every centre between (1, 1) and (7, 7).
@@ -73,7 +76,8 @@ TEST(Partition, AllRotationsAndWindings) {
 
 TEST(Partition, TopAndLeftEdgesOwnTheirCentres) {
     Counter counter(8, 8);
-    const auto counts = counter.count({{1.5, 1.5}, {5.5, 1.5}, {1.5, 5.5}, {5.5, 1.5}, {5.5, 5.5}, {1.5, 5.5}});
+    const auto counts =
+        counter.count({{1.5, 1.5}, {5.5, 1.5}, {1.5, 5.5}, {5.5, 1.5}, {5.5, 5.5}, {1.5, 5.5}});
     for (uint32_t y = 0; y < 8; ++y)
         for (uint32_t x = 0; x < 8; ++x)
             EXPECT_EQ(counts[y * 8 + x], x >= 1 && x < 5 && y >= 1 && y < 5 ? 1.0f : 0.0f) << x << "," << y;
@@ -96,9 +100,10 @@ TEST(Partition, FanAroundACentre) {
     }
 }
 
-/// A triangulation of a rectangle: a jittered grid with diagonals either way. `grid`: vertices on the sub-pixel grid.
-std::vector<std::array<double, 2>> triangulation(std::mt19937& random, double x0, double y0, double x1, double y1,
-                                                 int cells, double jitter, bool grid) {
+/// A triangulation of a rectangle: a jittered grid with diagonals either way. `grid`: vertices on the
+/// sub-pixel grid.
+std::vector<std::array<double, 2>> triangulation(std::mt19937& random, double x0, double y0, double x1,
+                                                 double y1, int cells, double jitter, bool grid) {
     std::vector<std::array<double, 2>> nodes;
     for (int j = 0; j <= cells; ++j) {
         for (int i = 0; i <= cells; ++i) {
@@ -163,12 +168,28 @@ TEST(Partition, SliversAndTheirNeighbours) {
         // The band between two almost parallel lines, thinner than a sub-pixel unit, cut out of a rectangle.
         const double y0 = 5 + static_cast<double>(random() % 50), y1 = 5 + static_cast<double>(random() % 50);
         const double thin = 1.0 / 512;
-        const auto counts = counter.count({{2, 1}, {598, 1}, {2, y0}, {598, 1}, {598, y1}, {2, y0},           // above
-                                           {2, y0}, {598, y1}, {2, y0 + thin}, {598, y1}, {598, y1 + thin}, {2, y0 + thin},
-                                           {2, y0 + thin}, {598, y1 + thin}, {2, 63}, {598, y1 + thin}, {598, 63}, {2, 63}});
+        const auto counts = counter.count({{2, 1},
+                                           {598, 1},
+                                           {2, y0},
+                                           {598, 1},
+                                           {598, y1},
+                                           {2, y0},  // above
+                                           {2, y0},
+                                           {598, y1},
+                                           {2, y0 + thin},
+                                           {598, y1},
+                                           {598, y1 + thin},
+                                           {2, y0 + thin},
+                                           {2, y0 + thin},
+                                           {598, y1 + thin},
+                                           {2, 63},
+                                           {598, y1 + thin},
+                                           {598, 63},
+                                           {2, 63}});
         for (uint32_t y = 0; y < 64; ++y)
             for (uint32_t x = 0; x < 600; ++x)
-                ASSERT_EQ(counts[y * 600 + x], x >= 2 && x < 598 && y >= 1 && y < 63 ? 1.0f : 0.0f) << x << "," << y;
+                ASSERT_EQ(counts[y * 600 + x], x >= 2 && x < 598 && y >= 1 && y < 63 ? 1.0f : 0.0f)
+                    << x << "," << y;
     }
 }
 
@@ -186,7 +207,8 @@ TEST(Partition, HugeTrianglesCoverTheTargetOnce) {
         Counter counter(width, height);
         // Far outside: clipped against the guard band.
         const double far = 1e7;
-        const auto counts = counter.count({{-far, -far}, {far, -far}, {-far, far}, {far, -far}, {far, far}, {-far, far}});
+        const auto counts =
+            counter.count({{-far, -far}, {far, -far}, {-far, far}, {far, -far}, {far, far}, {-far, far}});
         EXPECT_EQ(sum(counts), static_cast<float>(width * height));
         EXPECT_EQ(*std::max_element(counts.begin(), counts.end()), 1.0f);
     }
@@ -196,19 +218,23 @@ TEST(Partition, ScissorOnlyCutsAway) {
     std::mt19937 random(5);
     Counter counter(80, 72);
     std::vector<Vertex> vertices;
-    for (const auto& p : triangulation(random, 1, 1, 79, 71, 9, 2.5, false)) vertices.push_back(at(p[0], p[1], 80, 72));
+    for (const auto& p : triangulation(random, 1, 1, 79, 71, 9, 2.5, false))
+        vertices.push_back(at(p[0], p[1], 80, 72));
     vertices.resize(vertices.size() - 60);  // with some holes
     const auto full = counter.draw(vertices, dynamicFor(80, 72));
     for (int step = 0; step < 70; ++step) {
         DynamicState dynamic = dynamicFor(80, 72);
-        dynamic.scissors[0] = {{step, step / 2}, {static_cast<uint32_t>(1 + step % 23), static_cast<uint32_t>(72 - step)}};
+        dynamic.scissors[0] = {{step, step / 2},
+                               {static_cast<uint32_t>(1 + step % 23), static_cast<uint32_t>(72 - step)}};
         const auto counts = counter.draw(vertices, dynamic);
         const VkRect2D& s = dynamic.scissors[0];
         for (int y = 0; y < 72; ++y) {
             for (int x = 0; x < 80; ++x) {
-                const bool inside = x >= s.offset.x && y >= s.offset.y && x < s.offset.x + static_cast<int>(s.extent.width) &&
+                const bool inside = x >= s.offset.x && y >= s.offset.y &&
+                                    x < s.offset.x + static_cast<int>(s.extent.width) &&
                                     y < s.offset.y + static_cast<int>(s.extent.height);
-                ASSERT_EQ(counts[static_cast<size_t>(y * 80 + x)], inside ? full[static_cast<size_t>(y * 80 + x)] : 0.0f)
+                ASSERT_EQ(counts[static_cast<size_t>(y * 80 + x)],
+                          inside ? full[static_cast<size_t>(y * 80 + x)] : 0.0f)
                     << step << ": " << x << "," << y;
             }
         }
@@ -219,7 +245,8 @@ TEST(Partition, OddAttachmentSizes) {
     for (const auto& [width, height] : {std::pair{1u, 1u}, {3u, 5u}, {8191u, 1u}, {1u, 300u}}) {
         Counter counter(width, height);
         const double w = width, h = height;
-        EXPECT_EQ(sum(counter.count({{0, 0}, {w, 0}, {0, h}, {w, 0}, {w, h}, {0, h}})), static_cast<float>(width * height));
+        EXPECT_EQ(sum(counter.count({{0, 0}, {w, 0}, {0, h}, {w, 0}, {w, h}, {0, h}})),
+                  static_cast<float>(width * height));
     }
 }
 
@@ -228,7 +255,8 @@ TEST(Partition, TranslationByWholePixelsChangesNothing) {
     Counter counter(200, 200);
     for (int n = 0; n < 20; ++n) {
         std::array<std::array<double, 2>, 3> triangle;
-        for (auto& p : triangle) p = {static_cast<double>(random() % 4096) / 64, static_cast<double>(random() % 4096) / 64};
+        for (auto& p : triangle)
+            p = {static_cast<double>(random() % 4096) / 64, static_cast<double>(random() % 4096) / 64};
         const auto moved = [&](double dx, double dy) {
             std::vector<std::array<double, 2>> points;
             for (const auto& p : triangle) points.push_back({p[0] + dx, p[1] + dy});

@@ -91,8 +91,11 @@ TEST_P(BatchMeaning, IsWhatTheIrSays) {
         std::vector<std::vector<uint32_t>> inputs;
         for (const ir::InterfaceSlot& slot : program.inputs) {
             inputs.emplace_back();
-            for (uint32_t lane = 0; lane < kLanes; ++lane)
-                inputs.back().push_back(someWord(slot.type, random));
+            // Alone, an invocation has derivatives of zero: so have quads of equal lanes.
+            for (uint32_t lane = 0; lane < kLanes; ++lane) {
+                const bool copies = program.usesQuads && lane % 4 != 0;
+                inputs.back().push_back(copies ? inputs.back().back() : someWord(slot.type, random));
+            }
         }
         const Memory memory(program, random);
         // Lanes of one batch see each other's stores, the machine's invocations do not: then one lane at a

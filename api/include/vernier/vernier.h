@@ -1,3 +1,4 @@
+/* clang-format off */
 /* Vernier: a software GPU with a small C API.
  *
  *   VnDevice device;  vnCreateDevice(NULL, &device);
@@ -28,6 +29,7 @@
  *
  * C99 and C++. Nothing global: several devices live side by side.
  */
+/* clang-format on */
 #ifndef VERNIER_H
 #define VERNIER_H
 
@@ -59,37 +61,42 @@ typedef enum VnResult {
     VN_ERROR_UNSUPPORTED = -4,      /* legal, but not implemented; the message names the feature */
     VN_ERROR_SHADER = -5,           /* the SPIR-V is broken or does not fit the other state */
     VN_ERROR_OUT_OF_MEMORY = -6,
-    VN_ERROR_DEVICE_LOST = -7       /* a shader looped beyond the budget; the device accepts no more work */
+    VN_ERROR_DEVICE_LOST = -7 /* a shader looped beyond the budget; the device accepts no more work */
 } VnResult;
 
 typedef enum VnSeverity { VN_SEVERITY_INFO = 0, VN_SEVERITY_WARNING = 1, VN_SEVERITY_ERROR = 2 } VnSeverity;
 
-/* Called on the thread whose call caused the message, with a zero-terminated UTF-8 text that lives during the call. It must
- * not call back into Vernier. */
+/* Called on the thread whose call caused the message, with a zero-terminated UTF-8 text that lives during the call. It
+ * must not call back into Vernier. */
 typedef void (*VnMessageCallback)(void* user, VnSeverity severity, const char* text);
 
 /* ---- Handles: typed, by value; {0} is no object ---- */
 
 typedef struct VnDevice_T* VnDevice;
 typedef struct VnContext_T* VnContext;
-typedef struct VnBuffer { uint64_t id; } VnBuffer;
-typedef struct VnImage { uint64_t id; } VnImage;
-typedef struct VnView { uint64_t id; } VnView;
-typedef struct VnSampler { uint64_t id; } VnSampler;
-typedef struct VnShader { uint64_t id; } VnShader;
-typedef struct VnProgram { uint64_t id; } VnProgram;
-typedef struct VnVertexLayout { uint64_t id; } VnVertexLayout;
-typedef struct VnRasterState { uint64_t id; } VnRasterState;
-typedef struct VnDepthStencilState { uint64_t id; } VnDepthStencilState;
-typedef struct VnBlendState { uint64_t id; } VnBlendState;
+#define VN_HANDLE(Name)   \
+    typedef struct Name { \
+        uint64_t id;      \
+    } Name
+VN_HANDLE(VnBuffer);
+VN_HANDLE(VnImage);
+VN_HANDLE(VnView);
+VN_HANDLE(VnSampler);
+VN_HANDLE(VnShader);
+VN_HANDLE(VnProgram);
+VN_HANDLE(VnVertexLayout);
+VN_HANDLE(VnRasterState);
+VN_HANDLE(VnDepthStencilState);
+VN_HANDLE(VnBlendState);
+#undef VN_HANDLE
 
 /* ---- Accuracy ---- */
 
 /* One ordered dial. Watertightness, drawing order, determinism and memory safety hold at every position. Results at
  * VN_PROFILE_STANDARD and above do not depend on the number of threads, the SIMD width or the CPU. */
 typedef enum VnProfile {
-    VN_PROFILE_DEFAULT = 0,  /* VN_PROFILE_STANDARD */
-    VN_PROFILE_DRAFT = 1,    /* below Vulkan's minimum */
+    VN_PROFILE_DEFAULT = 0, /* VN_PROFILE_STANDARD */
+    VN_PROFILE_DRAFT = 1,   /* below Vulkan's minimum */
     VN_PROFILE_FAST = 2,
     VN_PROFILE_STANDARD = 3, /* what Vulkan asks for, or better */
     VN_PROFILE_FINE = 4,
@@ -108,13 +115,13 @@ typedef struct VnAllocator {
 
 typedef struct VnDeviceDesc {
     uint32_t _start;
-    uint32_t threads;           /* worker threads, the background thread included; 0: one per usable CPU (affinity mask and
-                                   cgroup quota); at most 256 */
-    VnProfile profile;          /* of programs that do not choose their own */
-    VnMessageCallback message;  /* NULL: none. Also gets warnings */
+    uint32_t threads;  /* worker threads, the background thread included; 0: one per usable CPU (affinity mask and
+                          cgroup quota); at most 256 */
+    VnProfile profile; /* of programs that do not choose their own */
+    VnMessageCallback message; /* NULL: none. Also gets warnings */
     void* messageUser;
-    VnAllocator allocator;      /* both functions NULL: the C++ heap */
-    const char* maxIsa;         /* NULL: the best of this CPU; "sse4", "avx2" or "avx512" limits it (for tests) */
+    VnAllocator allocator; /* both functions NULL: the C++ heap */
+    const char* maxIsa;    /* NULL: the best of this CPU; "sse4", "avx2" or "avx512" limits it (for tests) */
     uint32_t _end;
 } VnDeviceDesc;
 
@@ -127,14 +134,14 @@ VN_API void vnDestroyDevice(VnDevice device);
 VN_API size_t vnGetError(VnDevice device, char* text, size_t capacity);
 
 typedef struct VnDeviceInfo {
-    const char* version;      /* "0.1.0" */
-    const char* isa;          /* "sse4", "avx2" or "avx512" */
+    const char* version; /* "0.1.0" */
+    const char* isa;     /* "sse4", "avx2" or "avx512" */
     uint32_t threads;
-    uint32_t maxImageSize;    /* texels on a side */
+    uint32_t maxImageSize; /* texels on a side */
     uint32_t maxSamples;
     uint32_t maxColorAttachments;
     uint32_t maxVertexAttributes;
-    uint32_t subPixelBits;    /* of the device's profile */
+    uint32_t subPixelBits; /* of the device's profile */
 } VnDeviceInfo;
 VN_API VnResult vnGetDeviceInfo(VnDevice device, VnDeviceInfo* info);
 
@@ -145,15 +152,15 @@ VN_API VkFormatFeatureFlags vnGetFormatFeatures(VnDevice device, VkFormat format
 
 typedef struct VnBufferDesc {
     uint32_t _start;
-    uint64_t size;       /* bytes; > 0. Every buffer can be used for every purpose */
-    const void* data;    /* initial contents, `size` bytes; NULL: zeros */
+    uint64_t size;    /* bytes; > 0. Every buffer can be used for every purpose */
+    const void* data; /* initial contents, `size` bytes; NULL: zeros */
     uint32_t _end;
 } VnBufferDesc;
 
 VN_API VnResult vnCreateBuffer(VnDevice device, const VnBufferDesc* desc, VnBuffer* buffer);
 VN_API VnResult vnDestroyBuffer(VnDevice device, VnBuffer buffer);
-/* The memory of the buffer, for reading and writing until the buffer is destroyed. The caller keeps clear of running work:
- * call vnFinish before, or write only what no command in flight touches. */
+/* The memory of the buffer, for reading and writing until the buffer is destroyed. The caller keeps clear of running
+ * work: call vnFinish before, or write only what no command in flight touches. */
 VN_API VnResult vnMapBuffer(VnDevice device, VnBuffer buffer, void** memory);
 
 /* ---- Images, views, samplers ---- */
@@ -162,13 +169,13 @@ VN_API VnResult vnMapBuffer(VnDevice device, VnBuffer buffer, void** memory);
 
 typedef struct VnImageDesc {
     uint32_t _start;
-    VkFormat format;      /* 0: VK_FORMAT_R8G8B8A8_UNORM */
-    uint32_t width;       /* texels; 1 .. VnDeviceInfo::maxImageSize */
+    VkFormat format; /* 0: VK_FORMAT_R8G8B8A8_UNORM */
+    uint32_t width;  /* texels; 1 .. VnDeviceInfo::maxImageSize */
     uint32_t height;
-    uint32_t mipLevels;   /* 0: 1; VN_ALL_MIPS: down to 1x1 */
-    uint32_t layers;      /* of an array; 0: 1 */
-    uint32_t samples;     /* 1 or 4; 0: 1. More than 1: one mip level, no initial contents */
-    int cube;             /* nonzero: layers come in sixes and a whole view is a cube (array) */
+    uint32_t mipLevels; /* 0: 1; VN_ALL_MIPS: down to 1x1 */
+    uint32_t layers;    /* of an array; 0: 1 */
+    uint32_t samples;   /* 1 or 4; 0: 1. More than 1: one mip level, no initial contents */
+    int cube;           /* nonzero: layers come in sixes and a whole view is a cube (array) */
     uint32_t _end;
 } VnImageDesc;
 
@@ -178,12 +185,12 @@ VN_API VnResult vnDestroyImage(VnDevice device, VnImage image);
 typedef struct VnViewDesc {
     uint32_t _start;
     VnImage image;
-    VkFormat format;               /* 0: the image's; else one of the same texel size */
-    VkImageAspectFlags aspect;     /* 0: colour, or depth where there is depth */
-    uint32_t baseMip, mipCount;    /* mipCount 0: all that are left */
+    VkFormat format;                /* 0: the image's; else one of the same texel size */
+    VkImageAspectFlags aspect;      /* 0: colour, or depth where there is depth */
+    uint32_t baseMip, mipCount;     /* mipCount 0: all that are left */
     uint32_t baseLayer, layerCount; /* layerCount 0: all that are left */
-    int array;                     /* nonzero: an array view even of one layer; more layers always make one */
-    VkComponentMapping swizzle;    /* 0: identity */
+    int array;                      /* nonzero: an array view even of one layer; more layers always make one */
+    VkComponentMapping swizzle;     /* 0: identity */
     uint32_t _end;
 } VnViewDesc;
 
@@ -194,15 +201,15 @@ VN_API VnResult vnGetImageView(VnDevice device, VnImage image, VnView* view);
 
 typedef struct VnSamplerDesc {
     uint32_t _start;
-    VkFilter magFilter, minFilter;     /* 0: nearest */
-    VkSamplerMipmapMode mipmapMode;    /* 0: nearest */
+    VkFilter magFilter, minFilter;                     /* 0: nearest */
+    VkSamplerMipmapMode mipmapMode;                    /* 0: nearest */
     VkSamplerAddressMode addressU, addressV, addressW; /* 0: repeat */
-    float lodBias;                     /* levels; -15 .. 15 */
-    float minLod;                      /* levels */
-    float maxLod;                      /* levels; 0: no limit. For the base level alone use a view of one level */
-    int compareEnable;                 /* nonzero: a shadow sampler */
+    float lodBias;                                     /* levels; -15 .. 15 */
+    float minLod;                                      /* levels */
+    float maxLod;      /* levels; 0: no limit. For the base level alone use a view of one level */
+    int compareEnable; /* nonzero: a shadow sampler */
     VkCompareOp compareOp;
-    VkBorderColor borderColor;         /* 0: transparent black */
+    VkBorderColor borderColor; /* 0: transparent black */
     uint32_t _end;
 } VnSamplerDesc;
 
@@ -213,15 +220,15 @@ VN_API VnResult vnDestroySampler(VnDevice device, VnSampler sampler);
 
 typedef struct VnSpecialization {
     uint32_t constantId;
-    uint32_t bits;         /* the 32 bits of the value: bool 0 or 1, int, uint or float */
+    uint32_t bits; /* the 32 bits of the value: bool 0 or 1, int, uint or float */
 } VnSpecialization;
 
 typedef struct VnShaderDesc {
     uint32_t _start;
-    VkShaderStageFlagBits stage;  /* VK_SHADER_STAGE_VERTEX_BIT or VK_SHADER_STAGE_FRAGMENT_BIT */
-    const uint32_t* words;        /* a SPIR-V module; copied */
+    VkShaderStageFlagBits stage; /* VK_SHADER_STAGE_VERTEX_BIT or VK_SHADER_STAGE_FRAGMENT_BIT */
+    const uint32_t* words;       /* a SPIR-V module; copied */
     size_t wordCount;
-    const char* entryPoint;       /* NULL: "main" */
+    const char* entryPoint;                  /* NULL: "main" */
     const VnSpecialization* specializations; /* copied */
     uint32_t specializationCount;
     uint32_t _end;
@@ -234,8 +241,8 @@ VN_API VnResult vnDestroyShader(VnDevice device, VnShader shader);
 typedef struct VnProgramDesc {
     uint32_t _start;
     VnShader vertex;
-    VnShader fragment;   /* {0}: no fragment stage: only depth and stencil are written */
-    VnProfile profile;   /* 0: the device's */
+    VnShader fragment; /* {0}: no fragment stage: only depth and stencil are written */
+    VnProfile profile; /* 0: the device's */
     uint32_t _end;
 } VnProgramDesc;
 
@@ -246,22 +253,22 @@ VN_API VnResult vnDestroyProgram(VnDevice device, VnProgram program);
 /* ---- State objects ---- */
 
 typedef struct VnVertexAttribute {
-    uint32_t location;  /* as in the shader; 0 .. 31 */
-    uint32_t binding;   /* which vertex buffer; 0 .. 31 */
-    VkFormat format;    /* e.g. VK_FORMAT_R32G32B32_SFLOAT */
-    uint32_t offset;    /* bytes from the start of the vertex */
+    uint32_t location; /* as in the shader; 0 .. 31 */
+    uint32_t binding;  /* which vertex buffer; 0 .. 31 */
+    VkFormat format;   /* e.g. VK_FORMAT_R32G32B32_SFLOAT */
+    uint32_t offset;   /* bytes from the start of the vertex */
 } VnVertexAttribute;
 
 typedef struct VnVertexBinding {
-    uint32_t stride;      /* bytes from one vertex to the next; 0: all read the same */
-    int perInstance;      /* nonzero: advances per instance instead of per vertex */
+    uint32_t stride; /* bytes from one vertex to the next; 0: all read the same */
+    int perInstance; /* nonzero: advances per instance instead of per vertex */
 } VnVertexBinding;
 
 typedef struct VnVertexLayoutDesc {
     uint32_t _start;
     const VnVertexAttribute* attributes; /* copied */
     uint32_t attributeCount;
-    const VnVertexBinding* bindings;     /* copied; index = binding number */
+    const VnVertexBinding* bindings; /* copied; index = binding number */
     uint32_t bindingCount;
     uint32_t _end;
 } VnVertexLayoutDesc;
@@ -271,18 +278,18 @@ VN_API VnResult vnDestroyVertexLayout(VnDevice device, VnVertexLayout layout);
 
 typedef struct VnRasterStateDesc {
     uint32_t _start;
-    VkPolygonMode polygonMode;    /* 0: fill */
-    VkCullModeFlags cullMode;     /* 0: none */
-    VkFrontFace frontFace;        /* 0: counter-clockwise, seen in the framebuffer (y down) */
-    int depthClamp;               /* nonzero: clamp to the viewport's depth range instead of clipping at near and far */
-    int depthBias;                /* nonzero: add the following */
-    float depthBiasConstant;      /* in units of the depth format's resolution */
-    float depthBiasSlope;         /* times the slope of the primitive */
-    float depthBiasClamp;         /* 0: none */
-    float lineWidth;              /* pixels; 0: 1 */
-    int provokingVertexLast;      /* nonzero: flat inputs come from the last vertex, as in GL */
-    uint32_t sampleMaskOff;       /* bits of samples that are never written; 0: all samples are */
-    int alphaToCoverage;          /* nonzero: the alpha of colour 0 makes a sample mask */
+    VkPolygonMode polygonMode; /* 0: fill */
+    VkCullModeFlags cullMode;  /* 0: none */
+    VkFrontFace frontFace;     /* 0: counter-clockwise, seen in the framebuffer (y down) */
+    int depthClamp;            /* nonzero: clamp to the viewport's depth range instead of clipping at near and far */
+    int depthBias;             /* nonzero: add the following */
+    float depthBiasConstant;   /* in units of the depth format's resolution */
+    float depthBiasSlope;      /* times the slope of the primitive */
+    float depthBiasClamp;      /* 0: none */
+    float lineWidth;           /* pixels; 0: 1 */
+    int provokingVertexLast;   /* nonzero: flat inputs come from the last vertex, as in GL */
+    uint32_t sampleMaskOff;    /* bits of samples that are never written; 0: all samples are */
+    int alphaToCoverage;       /* nonzero: the alpha of colour 0 makes a sample mask */
     uint32_t _end;
 } VnRasterStateDesc;
 
@@ -301,10 +308,10 @@ typedef struct VnStencilFace {
 
 typedef struct VnDepthStencilStateDesc {
     uint32_t _start;
-    int depthTest;             /* nonzero: on */
-    int depthWrite;            /* nonzero: on; needs depthTest */
-    VkCompareOp depthCompare;  /* 0: less */
-    int stencilTest;           /* nonzero: on */
+    int depthTest;            /* nonzero: on */
+    int depthWrite;           /* nonzero: on; needs depthTest */
+    VkCompareOp depthCompare; /* 0: less */
+    int stencilTest;          /* nonzero: on */
     VnStencilFace front, back;
     uint32_t _end;
 } VnDepthStencilStateDesc;
@@ -314,20 +321,20 @@ VN_API VnResult vnCreateDepthStencilState(VnDevice device, const VnDepthStencilS
 VN_API VnResult vnDestroyDepthStencilState(VnDevice device, VnDepthStencilState state);
 
 typedef struct VnBlendAttachment {
-    int enable;                              /* nonzero: blend; 0: replace */
+    int enable; /* nonzero: blend; 0: replace */
     /* All four factors 0: source over, (SRC_ALPHA, ONE_MINUS_SRC_ALPHA, ONE, ONE_MINUS_SRC_ALPHA). */
     VkBlendFactor srcColor, dstColor;
-    VkBlendOp colorOp;                       /* 0: add */
+    VkBlendOp colorOp; /* 0: add */
     VkBlendFactor srcAlpha, dstAlpha;
-    VkBlendOp alphaOp;                       /* 0: add */
-    VkColorComponentFlags writeMaskOff;      /* components not written; 0: all are */
+    VkBlendOp alphaOp;                  /* 0: add */
+    VkColorComponentFlags writeMaskOff; /* components not written; 0: all are */
 } VnBlendAttachment;
 
 typedef struct VnBlendStateDesc {
     uint32_t _start;
     VnBlendAttachment attachments[8];
-    int independent;          /* nonzero: each attachment its own; 0: attachments[0] counts for all */
-    int logicOpEnable;        /* nonzero: logicOp instead of blending (integer and normalised formats) */
+    int independent;   /* nonzero: each attachment its own; 0: attachments[0] counts for all */
+    int logicOpEnable; /* nonzero: logicOp instead of blending (integer and normalised formats) */
     VkLogicOp logicOp;
     uint32_t _end;
 } VnBlendStateDesc;
@@ -339,12 +346,12 @@ VN_API VnResult vnDestroyBlendState(VnDevice device, VnBlendState state);
 
 typedef struct VnContextDesc {
     uint32_t _start;
-    uint32_t reserved;  /* 0 */
+    uint32_t reserved; /* 0 */
     uint32_t _end;
 } VnContextDesc;
 
-/* `desc` may be NULL. Everything a context has bound or set starts at its default: no program, all state objects at their
- * defaults ({0}), triangle lists, blend constants 0, stencil reference 0. */
+/* `desc` may be NULL. Everything a context has bound or set starts at its default: no program, all state objects at
+ * their defaults ({0}), triangle lists, blend constants 0, stencil reference 0. */
 VN_API VnResult vnCreateContext(VnDevice device, const VnContextDesc* desc, VnContext* context);
 /* Waits for the context's work. NULL is allowed. */
 VN_API void vnDestroyContext(VnContext context);
@@ -369,16 +376,17 @@ typedef struct VnPassDesc {
     uint32_t _start;
     VnAttachment colors[8];
     VnAttachment depthStencil;
-    VkRect2D renderArea;       /* extent 0: all of the attachments */
+    VkRect2D renderArea; /* extent 0: all of the attachments */
     uint32_t _end;
 } VnPassDesc;
 
-/* Starts drawing to the attachments, which all have the same sample count. Sets viewport 0 and the scissor to the render
- * area. A program must not sample an attachment of the pass it runs in. */
+/* Starts drawing to the attachments, which all have the same sample count. Sets viewport 0 and the scissor to the
+ * render area. A program must not sample an attachment of the pass it runs in. */
 VN_API VnResult vnBeginPass(VnContext context, const VnPassDesc* desc);
 VN_API VnResult vnEndPass(VnContext context);
 /* Clears a rectangle of an attachment inside a pass, in order with the draws. `rect` NULL: the render area. */
-VN_API VnResult vnClearColor(VnContext context, uint32_t attachment, const VkClearColorValue* value, const VkRect2D* rect);
+VN_API VnResult vnClearColor(VnContext context, uint32_t attachment, const VkClearColorValue* value,
+                             const VkRect2D* rect);
 VN_API VnResult vnClearDepthStencil(VnContext context, VkImageAspectFlags aspects, float depth, uint32_t stencil,
                                     const VkRect2D* rect);
 
@@ -419,9 +427,10 @@ VN_API VnResult vnDraw(VnContext context, uint32_t vertexCount, uint32_t instanc
                        uint32_t firstInstance);
 VN_API VnResult vnDrawIndexed(VnContext context, uint32_t indexCount, uint32_t instanceCount, uint32_t firstIndex,
                               int32_t vertexOffset, uint32_t firstInstance);
-/* `drawCount` VkDrawIndirectCommand (or VkDrawIndexedIndirectCommand) structs, `stride` bytes apart (0: tightly packed),
- * from `offset` (a multiple of 4) in `buffer`; read when the command runs. */
-VN_API VnResult vnDrawIndirect(VnContext context, VnBuffer buffer, uint64_t offset, uint32_t drawCount, uint32_t stride);
+/* `drawCount` VkDrawIndirectCommand (or VkDrawIndexedIndirectCommand) structs, `stride` bytes apart (0: tightly
+ * packed), from `offset` (a multiple of 4) in `buffer`; read when the command runs. */
+VN_API VnResult vnDrawIndirect(VnContext context, VnBuffer buffer, uint64_t offset, uint32_t drawCount,
+                               uint32_t stride);
 VN_API VnResult vnDrawIndexedIndirect(VnContext context, VnBuffer buffer, uint64_t offset, uint32_t drawCount,
                                       uint32_t stride);
 
@@ -434,14 +443,15 @@ VN_API VnResult vnFillBuffer(VnContext context, VnBuffer buffer, uint64_t offset
 /* A rectangle of one mip level of one layer. */
 typedef struct VnRegion {
     uint32_t mip, layer;
-    uint32_t x, y;            /* texels */
-    uint32_t width, height;   /* texels; 0: to the edge of the level */
+    uint32_t x, y;             /* texels */
+    uint32_t width, height;    /* texels; 0: to the edge of the level */
     VkImageAspectFlags aspect; /* 0: colour, or depth where there is depth */
 } VnRegion;
 
-/* Rows of `data` are tightly packed texels in the image's format, `size` bytes in all (of a combined depth-stencil format:
- * of one aspect, as in vkCmdCopyBufferToImage). `region` NULL: level 0 of layer 0. */
-VN_API VnResult vnUpdateImage(VnContext context, VnImage image, const VnRegion* region, const void* data, uint64_t size);
+/* Rows of `data` are tightly packed texels in the image's format, `size` bytes in all (of a combined depth-stencil
+ * format: of one aspect, as in vkCmdCopyBufferToImage). `region` NULL: level 0 of layer 0. */
+VN_API VnResult vnUpdateImage(VnContext context, VnImage image, const VnRegion* region, const void* data,
+                              uint64_t size);
 /* The reverse: waits for all work of the context, then fills `data`. */
 VN_API VnResult vnReadImage(VnContext context, VnImage image, const VnRegion* region, void* data, uint64_t size);
 VN_API VnResult vnReadBuffer(VnContext context, VnBuffer buffer, uint64_t offset, void* data, uint64_t size);
@@ -466,24 +476,24 @@ typedef struct VnStatistics {
     uint64_t draws;
     uint64_t inputVertices, inputPrimitives;
     uint64_t vertexInvocations;
-    uint64_t clippedPrimitives;     /* really cut, not merely tested */
-    uint64_t rasterPrimitives;      /* reached the rasteriser */
-    uint64_t fragmentInvocations;   /* without helpers */
-    uint64_t helperInvocations;     /* run only to take derivatives */
+    uint64_t clippedPrimitives;   /* really cut, not merely tested */
+    uint64_t rasterPrimitives;    /* reached the rasteriser */
+    uint64_t fragmentInvocations; /* without helpers */
+    uint64_t helperInvocations;   /* run only to take derivatives */
     uint64_t samplesPassed;
-    uint64_t perspectiveDivides;    /* pixels */
-    uint64_t destinationReads;      /* pixels whose colour was read back */
-    uint64_t depthReads;            /* samples whose depth or stencil was read */
-    uint64_t plans;                 /* combinations of state that had to be planned */
+    uint64_t perspectiveDivides; /* pixels */
+    uint64_t destinationReads;   /* pixels whose colour was read back */
+    uint64_t depthReads;         /* samples whose depth or stencil was read */
+    uint64_t plans;              /* combinations of state that had to be planned */
 } VnStatistics;
 
 /* Waits for the context's work. */
 VN_API VnResult vnGetStatistics(VnContext context, VnStatistics* statistics);
 VN_API VnResult vnResetStatistics(VnContext context);
 
-/* What the next draw with the bound state would run, at what rate and accuracy, what is left out and why: lines of text,
- * zero-terminated, cut to `capacity` bytes. `length` (may be NULL) receives the full length without the zero. Inside a
- * pass. */
+/* What the next draw with the bound state would run, at what rate and accuracy, what is left out and why: lines of
+ * text, zero-terminated, cut to `capacity` bytes. `length` (may be NULL) receives the full length without the zero.
+ * Inside a pass. */
 VN_API VnResult vnExplain(VnContext context, char* text, size_t capacity, size_t* length);
 
 #ifdef __cplusplus
