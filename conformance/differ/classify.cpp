@@ -40,8 +40,7 @@ bool isLegal(const FormatComponent& component, uint32_t code, double value, doub
     const double decoded = decodeComponent(component, code);
     if ((decoded >= low || same(decoded, low)) && (decoded <= high || same(decoded, high))) return true;
     const bool below = decoded < low;
-    const std::optional<uint32_t> inward =
-        codeAtPlace(component, codePlace(component, code) + (below ? 1 : -1));
+    const std::optional<uint32_t> inward = codeAtPlace(component, codePlace(component, code) + (below ? 1 : -1));
     if (!inward) return true;  // the end of the scale: what lies beyond saturates
     const double next = decodeComponent(component, *inward);
     return below ? next > low && !same(next, low) : next < high && !same(next, high);
@@ -110,8 +109,7 @@ void add(ImageDiff& diff, size_t pixel, PixelClass pixelClass, const Distance& a
     }
     const PixelDiff& worst = diff.pixels[size_t{diff.worstY} * diff.extent.width + diff.worstX];
     const bool severer = pixelClass > diff.worstClass;
-    if (severer ||
-        (pixelClass == diff.worstClass && std::abs(int64_t{entry.error}) > std::abs(int64_t{worst.error}))) {
+    if (severer || (pixelClass == diff.worstClass && std::abs(int64_t{entry.error}) > std::abs(int64_t{worst.error}))) {
         diff.worstClass = pixelClass;
         diff.worstX = static_cast<uint32_t>(pixel % diff.extent.width);
         diff.worstY = static_cast<uint32_t>(pixel / diff.extent.width);
@@ -119,13 +117,12 @@ void add(ImageDiff& diff, size_t pixel, PixelClass pixelClass, const Distance& a
 }
 
 std::string describe(VkFormat format, VkExtent2D extent) {
-    return "format " + std::to_string(static_cast<int>(format)) + ", " + std::to_string(extent.width) +
-           " x " + std::to_string(extent.height);
+    return "format " + std::to_string(static_cast<int>(format)) + ", " + std::to_string(extent.width) + " x " +
+           std::to_string(extent.height);
 }
 
 Result<ImageDiff> start(const RenderedImage& image, VkFormat format, VkExtent2D extent) {
-    if (image.format != format || image.extent.width != extent.width ||
-        image.extent.height != extent.height) {
+    if (image.format != format || image.extent.width != extent.width || image.extent.height != extent.height) {
         return invalidArgument("images do not match: " + describe(image.format, image.extent) + " against " +
                                describe(format, extent));
     }
@@ -155,8 +152,8 @@ uint32_t nearestCode(const FormatComponent& component, double value) {
         const int64_t middle = low + (high - low) / 2;
         (decoded(middle) <= value ? low : high) = middle;
     }
-    const bool up = !codeAtPlace(component, low) ||
-                    (codeAtPlace(component, high) && decoded(high) - value < value - decoded(low));
+    const bool up =
+        !codeAtPlace(component, low) || (codeAtPlace(component, high) && decoded(high) - value < value - decoded(low));
     return codeAtPlace(component, up ? high : low).value_or(0);
 }
 
@@ -193,20 +190,18 @@ uint64_t ImageDiff::failures() const {
     return count(PixelClass::undecided) + count(PixelClass::oursWrong) + count(PixelClass::unexplained);
 }
 
-Result<ImageDiff> compareImages(const RenderedImage& ours, const RenderedImage& other,
-                                const OracleImage* oracle) {
+Result<ImageDiff> compareImages(const RenderedImage& ours, const RenderedImage& other, const OracleImage* oracle) {
     if (Result<ImageDiff> check = start(other, ours.format, ours.extent); !check) return check.error();
     if (oracle != nullptr) {
-        if (Result<ImageDiff> check = start(ours, oracle->format, oracle->extent); !check)
-            return check.error();
+        if (Result<ImageDiff> check = start(ours, oracle->format, oracle->extent); !check) return check.error();
     }
     Result<ImageDiff> started = start(ours, ours.format, ours.extent);
     if (!started) return started;
     ImageDiff diff = std::move(started).value();
     diff.hasOracle = oracle != nullptr;
     if (oracle != nullptr && oracle->pixels.size() != diff.pixels.size()) {
-        return invalidArgument("OracleImage::pixels has " + std::to_string(oracle->pixels.size()) +
-                               " elements, not " + std::to_string(diff.pixels.size()));
+        return invalidArgument("OracleImage::pixels has " + std::to_string(oracle->pixels.size()) + " elements, not " +
+                               std::to_string(diff.pixels.size()));
     }
     const SceneFormat& format = *sceneFormat(ours.format);
     for (size_t i = 0; i < diff.pixels.size(); ++i) {
@@ -217,8 +212,7 @@ Result<ImageDiff> compareImages(const RenderedImage& ours, const RenderedImage& 
         if (unknown) ++diff.unknownPixels;
         const bool judged = judge != nullptr && !unknown;
         add(diff, i,
-            classifyPair(apart, judged && isLegal(format, a, *judge), judged && isLegal(format, b, *judge),
-                         judge),
+            classifyPair(apart, judged && isLegal(format, a, *judge), judged && isLegal(format, b, *judge), judge),
             apart);
     }
     return diff;
@@ -230,8 +224,8 @@ Result<ImageDiff> compareWithOracle(const RenderedImage& image, const OracleImag
     ImageDiff diff = std::move(started).value();
     diff.hasOracle = true;
     if (oracle.pixels.size() != diff.pixels.size()) {
-        return invalidArgument("OracleImage::pixels has " + std::to_string(oracle.pixels.size()) +
-                               " elements, not " + std::to_string(diff.pixels.size()));
+        return invalidArgument("OracleImage::pixels has " + std::to_string(oracle.pixels.size()) + " elements, not " +
+                               std::to_string(diff.pixels.size()));
     }
     const SceneFormat& format = *sceneFormat(image.format);
     for (size_t i = 0; i < diff.pixels.size(); ++i) {

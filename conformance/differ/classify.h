@@ -40,8 +40,7 @@ bool isFailure(PixelClass pixelClass);
 
 struct PixelDiff {
     PixelClass pixelClass = PixelClass::equal;
-    int32_t error =
-        0;  // ours minus other in codes (ULP for floats), of the component that is furthest off; saturated
+    int32_t error = 0;  // ours minus other in codes (ULP for floats), of the component that is furthest off; saturated
 };
 
 struct ImageDiff {
@@ -61,8 +60,7 @@ struct ImageDiff {
 
 /// Compares `ours` with `other`; `oracle` may be nullptr. Refuses images of different formats or sizes,
 /// formats scenes may not use, and texel data of the wrong size.
-Result<ImageDiff> compareImages(const RenderedImage& ours, const RenderedImage& other,
-                                const OracleImage* oracle);
+Result<ImageDiff> compareImages(const RenderedImage& ours, const RenderedImage& other, const OracleImage* oracle);
 
 /// How one image stands against the oracle alone: `equal` is the oracle's own value, `rounding` a neighbour,
 /// `tolerance` and `edge` legal otherwise, `oursWrong` outside. Errors are against the oracle's value.

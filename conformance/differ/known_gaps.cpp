@@ -24,9 +24,8 @@ bool matches(const KnownGap& gap, const Finding& finding) {
 }
 
 std::string describe(const Finding& finding) {
-    return finding.scene + ", " + finding.driver +
-           (finding.against.empty() ? "" : " against " + finding.against) + ": " +
-           std::to_string(finding.count) + " " + finding.kind;
+    return finding.scene + ", " + finding.driver + (finding.against.empty() ? "" : " against " + finding.against) +
+           ": " + std::to_string(finding.count) + " " + finding.kind;
 }
 
 bool contains(const std::vector<std::string>& list, const std::string& value) {
@@ -48,8 +47,7 @@ Result<std::vector<KnownGap>> parseKnownGaps(std::string_view json) {
             gap.maxCount = entry.at("max").get<uint64_t>();
             gap.reason = entry.at("reason").get<std::string>();
             const std::string where = "known gap " + std::to_string(gaps.size()) + " (" + gap.scene + "): ";
-            if (!isKind(gap.kind))
-                return invalidArgument(where + "class is '" + gap.kind + "', not one that fails");
+            if (!isKind(gap.kind)) return invalidArgument(where + "class is '" + gap.kind + "', not one that fails");
             if (gap.maxCount == 0) return invalidArgument(where + "max is 0: that is no gap");
             if (gap.reason.empty()) return invalidArgument(where + "reason is empty");
             gaps.push_back(std::move(gap));
@@ -60,8 +58,7 @@ Result<std::vector<KnownGap>> parseKnownGaps(std::string_view json) {
     }
 }
 
-GapJudgement judgeFindings(std::span<const Finding> findings, std::span<const KnownGap> gaps,
-                           const RunExtent& run) {
+GapJudgement judgeFindings(std::span<const Finding> findings, std::span<const KnownGap> gaps, const RunExtent& run) {
     GapJudgement judgement;
     std::vector<bool> needed(gaps.size());
     for (const Finding& finding : findings) {

@@ -47,7 +47,6 @@ struct RunExtent {
     std::vector<std::string> drivers;  // all that were tried
 };
 
-GapJudgement judgeFindings(std::span<const Finding> findings, std::span<const KnownGap> gaps,
-                           const RunExtent& run);
+GapJudgement judgeFindings(std::span<const Finding> findings, std::span<const KnownGap> gaps, const RunExtent& run);
 
 }  // namespace vernier::conformance

@@ -95,24 +95,23 @@ Status SceneRun::runPass(const ScenePass& pass) {
 
 Status SceneRun::bindResources(const SceneDraw& draw) {
     for (const SceneVertexBuffer& each : draw.vertexBuffers) {
-        VERNIER_TRY_API(
-            vnBindVertexBuffer(context_, each.binding, objects_.buffer(each.buffer), each.offset));
+        VERNIER_TRY_API(vnBindVertexBuffer(context_, each.binding, objects_.buffer(each.buffer), each.offset));
     }
     for (const SceneBinding& each : draw.bindings) {
         if (each.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER) {
             const Result<VnView> view = objects_.sampledView(scene_, each);
             if (!view) return view.error();
-            VERNIER_TRY_API(vnBindTexture(context_, each.set, each.binding, 0, view.value(),
-                                          objects_.sampler(each.sampler)));
+            VERNIER_TRY_API(
+                vnBindTexture(context_, each.set, each.binding, 0, view.value(), objects_.sampler(each.sampler)));
         } else {
             const uint64_t size = each.range == VK_WHOLE_SIZE ? 0 : each.range;
-            VERNIER_TRY_API(vnBindBuffer(context_, each.set, each.binding, 0, objects_.buffer(each.buffer),
-                                         each.offset, size));
+            VERNIER_TRY_API(
+                vnBindBuffer(context_, each.set, each.binding, 0, objects_.buffer(each.buffer), each.offset, size));
         }
     }
     if (!draw.pushConstants.empty()) {
-        VERNIER_TRY_API(vnPushConstants(context_, 0, draw.pushConstants.data(),
-                                        static_cast<uint32_t>(draw.pushConstants.size())));
+        VERNIER_TRY_API(
+            vnPushConstants(context_, 0, draw.pushConstants.data(), static_cast<uint32_t>(draw.pushConstants.size())));
     }
     return {};
 }
@@ -135,16 +134,14 @@ Status SceneRun::runDraw(const SceneDraw& draw) {
         VERNIER_TRY_API(vnDraw(context_, draw.count, draw.instances, draw.first, draw.firstInstance));
         return {};
     }
+    VERNIER_TRY_API(vnBindIndexBuffer(context_, objects_.buffer(draw.indexBuffer), draw.indexOffset, draw.indexType));
     VERNIER_TRY_API(
-        vnBindIndexBuffer(context_, objects_.buffer(draw.indexBuffer), draw.indexOffset, draw.indexType));
-    VERNIER_TRY_API(vnDrawIndexed(context_, draw.count, draw.instances, draw.first, draw.vertexOffset,
-                                  draw.firstInstance));
+        vnDrawIndexed(context_, draw.count, draw.instances, draw.first, draw.vertexOffset, draw.firstInstance));
     return {};
 }
 
 /// The region of one layer between two corners; mirrored ones cannot be said in the API.
-Result<VnRegion> regionBetween(const VkImageSubresourceLayers& layers, const VkOffset3D& low,
-                               const VkOffset3D& high) {
+Result<VnRegion> regionBetween(const VkImageSubresourceLayers& layers, const VkOffset3D& low, const VkOffset3D& high) {
     if (layers.layerCount != 1) return unsupported("copies of several layers cannot be said in the API");
     if (high.x < low.x || high.y < low.y) return unsupported("mirrored blits cannot be said in the API");
     VnRegion region{};
@@ -163,11 +160,9 @@ Status SceneRun::runCopy(const SceneCopyImage& copy) {
                           offset.y + static_cast<int32_t>(copy.region.extent.height), 1};
     };
     const VkImageCopy& region = copy.region;
-    const Result<VnRegion> source =
-        regionBetween(region.srcSubresource, region.srcOffset, corner(region.srcOffset));
+    const Result<VnRegion> source = regionBetween(region.srcSubresource, region.srcOffset, corner(region.srcOffset));
     if (!source) return source.error();
-    const Result<VnRegion> target =
-        regionBetween(region.dstSubresource, region.dstOffset, corner(region.dstOffset));
+    const Result<VnRegion> target = regionBetween(region.dstSubresource, region.dstOffset, corner(region.dstOffset));
     if (!target) return target.error();
     VERNIER_TRY_API(vnCopyImage(context_, objects_.image(copy.source), &source.value(),
                                 objects_.image(copy.destination), &target.value()));
@@ -176,11 +171,9 @@ Status SceneRun::runCopy(const SceneCopyImage& copy) {
 
 Status SceneRun::runBlit(const SceneBlitImage& blit) {
     const VkImageBlit& region = blit.region;
-    const Result<VnRegion> source =
-        regionBetween(region.srcSubresource, region.srcOffsets[0], region.srcOffsets[1]);
+    const Result<VnRegion> source = regionBetween(region.srcSubresource, region.srcOffsets[0], region.srcOffsets[1]);
     if (!source) return source.error();
-    const Result<VnRegion> target =
-        regionBetween(region.dstSubresource, region.dstOffsets[0], region.dstOffsets[1]);
+    const Result<VnRegion> target = regionBetween(region.dstSubresource, region.dstOffsets[0], region.dstOffsets[1]);
     if (!target) return target.error();
     VERNIER_TRY_API(vnBlitImage(context_, objects_.image(blit.source), &source.value(),
                                 objects_.image(blit.destination), &target.value(), blit.filter));
@@ -192,8 +185,7 @@ Result<std::vector<RenderedImage>> SceneRun::readBack() {
     for (const uint32_t output : scene_.outputs) {
         const SceneImage& scene = scene_.images[output];
         RenderedImage image{scene.format, scene.extent, {}};
-        image.texels.resize(size_t{scene.extent.width} * scene.extent.height *
-                            sceneFormat(scene.format)->texelBytes);
+        image.texels.resize(size_t{scene.extent.width} * scene.extent.height * sceneFormat(scene.format)->texelBytes);
         VERNIER_TRY_API(
             vnReadImage(context_, objects_.image(output), nullptr, image.texels.data(), image.texels.size()));
         images.push_back(std::move(image));

@@ -11,8 +11,8 @@ namespace vernier::conformance {
 
 struct ApiOptions {
     VnProfile profile = VN_PROFILE_DEFAULT;
-    uint32_t threads = 0;            // 0: one per usable CPU
-    const char* maxIsa = nullptr;    // "sse4", "avx2", "avx512"; nullptr: the best of this CPU
+    uint32_t threads = 0;          // 0: one per usable CPU
+    const char* maxIsa = nullptr;  // "sse4", "avx2", "avx512"; nullptr: the best of this CPU
 };
 
 class ApiDriver final : public Driver {

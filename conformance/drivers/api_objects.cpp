@@ -207,17 +207,15 @@ Result<ApiPipeline> ApiObjects::createPipeline(const ScenePipeline& scene) {
         if (from.blendEnable == VK_TRUE && allFactorsZero(from)) {
             return unsupported("blending with four factors ZERO cannot be said in the API");
         }
-        blend.attachments[i] = {from.blendEnable == VK_TRUE, from.srcColorBlendFactor,
-                                from.dstColorBlendFactor,    from.colorBlendOp,
-                                from.srcAlphaBlendFactor,    from.dstAlphaBlendFactor,
+        blend.attachments[i] = {from.blendEnable == VK_TRUE, from.srcColorBlendFactor,  from.dstColorBlendFactor,
+                                from.colorBlendOp,           from.srcAlphaBlendFactor,  from.dstAlphaBlendFactor,
                                 from.alphaBlendOp,           ~from.colorWriteMask & 0xf};
     }
     VERNIER_TRY_API(vnCreateBlendState(device_, &blend, &pipeline.blend));
     return pipeline;
 }
 
-Result<VnView> ApiObjects::attachmentView(const Scene& scene, uint32_t image, uint32_t mipLevel,
-                                          uint32_t layer) {
+Result<VnView> ApiObjects::attachmentView(const Scene& scene, uint32_t image, uint32_t mipLevel, uint32_t layer) {
     VnViewDesc desc{};
     desc.image = images_[image];
     desc.aspect = sceneFormat(scene.images[image].format)->aspects;

@@ -13,8 +13,8 @@ class Checker {
 
     void index(std::string_view where, uint32_t value, size_t limit, bool optional = false) {
         if (value < limit || (optional && value == kNone)) return;
-        fail(std::string(where) + " is " + (value == kNone ? "absent" : std::to_string(value)) +
-             ", must be below " + std::to_string(limit));
+        fail(std::string(where) + " is " + (value == kNone ? "absent" : std::to_string(value)) + ", must be below " +
+             std::to_string(limit));
     }
 
     void fail(const std::string& message) {
@@ -35,19 +35,17 @@ std::string at(const char* list, size_t index, const char* field) {
 void checkImage(Checker& check, const SceneImage& image, size_t index) {
     const SceneFormat* format = sceneFormat(image.format);
     if (format == nullptr) {
-        check.fail(at("images", index, "format") + " is " + std::to_string(image.format) +
-                   ", not one scenes may use");
+        check.fail(at("images", index, "format") + " is " + std::to_string(image.format) + ", not one scenes may use");
         return;
     }
-    if (image.extent.width == 0 || image.extent.height == 0 || image.mipLevels == 0 ||
-        image.arrayLayers == 0) {
+    if (image.extent.width == 0 || image.extent.height == 0 || image.mipLevels == 0 || image.arrayLayers == 0) {
         check.fail(at("images", index, "extent") + ", mipLevels or arrayLayers is 0");
         return;
     }
     const size_t subresources = size_t{image.mipLevels} * image.arrayLayers;
     if (!image.data.empty() && image.data.size() != subresources) {
-        check.fail(at("images", index, "data") + " has " + std::to_string(image.data.size()) +
-                   " entries, not " + std::to_string(subresources));
+        check.fail(at("images", index, "data") + " has " + std::to_string(image.data.size()) + " entries, not " +
+                   std::to_string(subresources));
     }
     for (size_t i = 0; i < image.data.size(); ++i) {
         const uint32_t mip = static_cast<uint32_t>(i / image.arrayLayers);
@@ -65,9 +63,8 @@ void checkDraw(Checker& check, const Scene& scene, const ScenePass& pass, const 
     if (draw.pipeline >= scene.pipelines.size()) return;
     const ScenePipeline& pipeline = scene.pipelines[draw.pipeline];
     if (pipeline.blend.size() != pass.colors.size()) {
-        check.fail("pipeline " + std::to_string(draw.pipeline) + " blends " +
-                   std::to_string(pipeline.blend.size()) + " targets in a pass of " +
-                   std::to_string(pass.colors.size()));
+        check.fail("pipeline " + std::to_string(draw.pipeline) + " blends " + std::to_string(pipeline.blend.size()) +
+                   " targets in a pass of " + std::to_string(pass.colors.size()));
     }
     if (draw.pushConstants.size() > pipeline.pushConstantBytes) {
         check.fail("SceneDraw::pushConstants has " + std::to_string(draw.pushConstants.size()) +
@@ -103,10 +100,9 @@ Status validateScene(const Scene& scene) {
         if (scene.shaders[i].spirv.empty()) check.fail(at("shaders", i, "spirv") + " is empty");
     }
     for (size_t i = 0; i < scene.pipelines.size(); ++i) {
-        check.index(at("pipelines", i, "vertexShader"), scene.pipelines[i].vertexShader,
-                    scene.shaders.size());
-        check.index(at("pipelines", i, "fragmentShader"), scene.pipelines[i].fragmentShader,
-                    scene.shaders.size(), true);
+        check.index(at("pipelines", i, "vertexShader"), scene.pipelines[i].vertexShader, scene.shaders.size());
+        check.index(at("pipelines", i, "fragmentShader"), scene.pipelines[i].fragmentShader, scene.shaders.size(),
+                    true);
     }
     for (const SceneStep& step : scene.steps) {
         if (const auto* pass = std::get_if<ScenePass>(&step)) {

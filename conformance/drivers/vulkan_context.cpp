@@ -111,8 +111,7 @@ Status VulkanContext::createInstance(bool validate) {
     return {};
 }
 
-VkBool32 VulkanContext::onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
-                                  VkDebugUtilsMessageTypeFlagsEXT types,
+VkBool32 VulkanContext::onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT types,
                                   const VkDebugUtilsMessengerCallbackDataEXT* data, void* context) {
     // The loader reports other drivers' missing libraries as general errors: not a matter of the scene.
     if ((types & VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT) != 0) {
@@ -139,28 +138,24 @@ Status VulkanContext::createDevice(uint32_t deviceIndex) {
     vkGetPhysicalDeviceQueueFamilyProperties(physicalDevice_, &familyCount, nullptr);
     std::vector<VkQueueFamilyProperties> families(familyCount);
     vkGetPhysicalDeviceQueueFamilyProperties(physicalDevice_, &familyCount, families.data());
-    const auto family = std::find_if(
-        families.begin(), families.end(),
-        [](const VkQueueFamilyProperties& each) { return (each.queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0; });
-    if (family == families.end())
-        return unsupported(std::string(properties_.deviceName) + " has no graphics queue");
+    const auto family = std::find_if(families.begin(), families.end(), [](const VkQueueFamilyProperties& each) {
+        return (each.queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0;
+    });
+    if (family == families.end()) return unsupported(std::string(properties_.deviceName) + " has no graphics queue");
     queueFamily_ = static_cast<uint32_t>(family - families.begin());
 
-    negativeViewports_ =
-        instanceVersion_ >= VK_API_VERSION_1_1 && properties_.apiVersion >= VK_API_VERSION_1_1;
+    negativeViewports_ = instanceVersion_ >= VK_API_VERSION_1_1 && properties_.apiVersion >= VK_API_VERSION_1_1;
     const char* maintenance = VK_KHR_MAINTENANCE_1_EXTENSION_NAME;
     bool useMaintenance = false;
     if (!negativeViewports_) {
         uint32_t extensionCount = 0;
-        VERNIER_TRY_VK(
-            vkEnumerateDeviceExtensionProperties(physicalDevice_, nullptr, &extensionCount, nullptr));
+        VERNIER_TRY_VK(vkEnumerateDeviceExtensionProperties(physicalDevice_, nullptr, &extensionCount, nullptr));
         std::vector<VkExtensionProperties> extensions(extensionCount);
-        VERNIER_TRY_VK(vkEnumerateDeviceExtensionProperties(physicalDevice_, nullptr, &extensionCount,
-                                                            extensions.data()));
-        useMaintenance =
-            std::any_of(extensions.begin(), extensions.end(), [&](const VkExtensionProperties& each) {
-                return std::strcmp(each.extensionName, maintenance) == 0;
-            });
+        VERNIER_TRY_VK(
+            vkEnumerateDeviceExtensionProperties(physicalDevice_, nullptr, &extensionCount, extensions.data()));
+        useMaintenance = std::any_of(extensions.begin(), extensions.end(), [&](const VkExtensionProperties& each) {
+            return std::strcmp(each.extensionName, maintenance) == 0;
+        });
         negativeViewports_ = useMaintenance;
     }
 

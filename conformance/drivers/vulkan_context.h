@@ -79,8 +79,7 @@ class VulkanContext {
     Status createDevice(uint32_t deviceIndex);
     static VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                                     VkDebugUtilsMessageTypeFlagsEXT types,
-                                                    const VkDebugUtilsMessengerCallbackDataEXT* data,
-                                                    void* context);
+                                                    const VkDebugUtilsMessengerCallbackDataEXT* data, void* context);
 
     std::string validationErrors_;  // outlives the instance, whose destruction may still report
     Cleanup cleanup_;

@@ -108,8 +108,8 @@ void SceneRun::recordDraw(const SceneDraw& scene, const VulkanDraw& draw, const 
                                 static_cast<uint32_t>(draw.sets.size()), draw.sets.data(), 0, nullptr);
     }
     if (!scene.pushConstants.empty()) {
-        vkCmdPushConstants(frame_, pipeline.layout, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT,
-                           0, static_cast<uint32_t>(scene.pushConstants.size()), scene.pushConstants.data());
+        vkCmdPushConstants(frame_, pipeline.layout, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                           static_cast<uint32_t>(scene.pushConstants.size()), scene.pushConstants.data());
     }
     for (const SceneVertexBuffer& vertices : scene.vertexBuffers) {
         const VkBuffer buffer = resources_.buffer(vertices.buffer);
@@ -120,8 +120,7 @@ void SceneRun::recordDraw(const SceneDraw& scene, const VulkanDraw& draw, const 
         return;
     }
     vkCmdBindIndexBuffer(frame_, resources_.buffer(scene.indexBuffer), scene.indexOffset, scene.indexType);
-    vkCmdDrawIndexed(frame_, scene.count, scene.instances, scene.first, scene.vertexOffset,
-                     scene.firstInstance);
+    vkCmdDrawIndexed(frame_, scene.count, scene.instances, scene.first, scene.vertexOffset, scene.firstInstance);
 }
 
 void SceneRun::recordMips(const SceneGenerateMips& mips) {
@@ -172,8 +171,7 @@ Result<std::vector<RenderedImage>> SceneRun::readBack() {
         if (!buffer) return buffer.error();
         resources_.use(*commands, output, ImageUse::transferSource, 0, 1, 0, 1);
         VkBufferImageCopy region{};
-        region.imageSubresource = {format.aspects & ~VkImageAspectFlags{VK_IMAGE_ASPECT_STENCIL_BIT}, 0, 0,
-                                   1};
+        region.imageSubresource = {format.aspects & ~VkImageAspectFlags{VK_IMAGE_ASPECT_STENCIL_BIT}, 0, 0, 1};
         region.imageExtent = {scene.extent.width, scene.extent.height, 1};
         vkCmdCopyImageToBuffer(*commands, resources_.image(output), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                                buffer->handle, 1, &region);
@@ -184,8 +182,8 @@ Result<std::vector<RenderedImage>> SceneRun::readBack() {
     barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
     barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
     barrier.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
-    vkCmdPipelineBarrier(*commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
-                         &barrier, 0, nullptr, 0, nullptr);
+    vkCmdPipelineBarrier(*commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &barrier, 0,
+                         nullptr, 0, nullptr);
     VERNIER_TRY_VK(vkEndCommandBuffer(*commands));
     VERNIER_TRY(resources_.run(*commands));
     for (size_t i = 0; i < images.size(); ++i) {
@@ -219,9 +217,8 @@ std::string VulkanDriver::name() const {
 std::string VulkanDriver::version() const {
     const VkPhysicalDeviceProperties& properties = context_.properties();
     const auto dotted = [](uint32_t version) {
-        return std::to_string(VK_API_VERSION_MAJOR(version)) + "." +
-               std::to_string(VK_API_VERSION_MINOR(version)) + "." +
-               std::to_string(VK_API_VERSION_PATCH(version));
+        return std::to_string(VK_API_VERSION_MAJOR(version)) + "." + std::to_string(VK_API_VERSION_MINOR(version)) +
+               "." + std::to_string(VK_API_VERSION_PATCH(version));
     };
     return "driver " + dotted(properties.driverVersion) + ", Vulkan " + dotted(properties.apiVersion);
 }
@@ -243,8 +240,7 @@ Result<std::vector<RenderedImage>> VulkanDriver::render(const Scene& scene, Timi
     const Stopwatch watch;
     VERNIER_TRY(validateScene(scene));
     if (hasNegativeViewport(scene) && !context_.hasNegativeViewports()) {
-        return unsupported(
-            "viewports of negative height: the device has neither Vulkan 1.1 nor VK_KHR_maintenance1");
+        return unsupported("viewports of negative height: the device has neither Vulkan 1.1 nor VK_KHR_maintenance1");
     }
     SceneRun run(context_, scene);
     VERNIER_TRY(run.prepare());

@@ -27,8 +27,7 @@ using PipelineKey = std::tuple<uint32_t, std::vector<std::tuple<uint32_t, uint32
 
 PipelineKey pipelineKey(const SceneDraw& draw) {
     PipelineKey key{draw.pipeline, {}};
-    for (const SceneBinding& each : draw.bindings)
-        std::get<1>(key).emplace_back(each.set, each.binding, each.type);
+    for (const SceneBinding& each : draw.bindings) std::get<1>(key).emplace_back(each.set, each.binding, each.type);
     return key;
 }
 
@@ -65,8 +64,8 @@ Status VulkanPassBuilder::createRenderPass(const ScenePass& scenePass, VulkanPas
     const auto attach = [&](const SceneAttachment& attachment, uint32_t image, VkAttachmentLoadOp loadOp,
                             VkImageLayout layout) -> Result<VkAttachmentReference> {
         const bool resolve = image == attachment.resolveImage;
-        const Result<VkImageView> view = resources_.attachmentView(image, resolve ? 0 : attachment.mipLevel,
-                                                                   resolve ? 0 : attachment.layer);
+        const Result<VkImageView> view =
+            resources_.attachmentView(image, resolve ? 0 : attachment.mipLevel, resolve ? 0 : attachment.layer);
         if (!view) return view.error();
         views.push_back(*view);
         attachments.push_back(attachmentDescription(scene_.images[image], loadOp, layout));
@@ -74,8 +73,7 @@ Status VulkanPassBuilder::createRenderPass(const ScenePass& scenePass, VulkanPas
         return VkAttachmentReference{static_cast<uint32_t>(attachments.size() - 1), layout};
     };
     for (const SceneAttachment& color : scenePass.colors) {
-        const auto reference =
-            attach(color, color.image, color.loadOp, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+        const auto reference = attach(color, color.image, color.loadOp, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
         if (!reference) return reference.error();
         colors.push_back(*reference);
         VkAttachmentReference resolve{VK_ATTACHMENT_UNUSED, VK_IMAGE_LAYOUT_UNDEFINED};
@@ -89,9 +87,8 @@ Status VulkanPassBuilder::createRenderPass(const ScenePass& scenePass, VulkanPas
         resolves.push_back(resolve);
     }
     if (scenePass.depthStencil.image != kNone) {
-        const auto reference =
-            attach(scenePass.depthStencil, scenePass.depthStencil.image, scenePass.depthStencil.loadOp,
-                   VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
+        const auto reference = attach(scenePass.depthStencil, scenePass.depthStencil.image,
+                                      scenePass.depthStencil.loadOp, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
         if (!reference) return reference.error();
         depth = *reference;
     }
@@ -108,8 +105,7 @@ Status VulkanPassBuilder::createRenderPass(const ScenePass& scenePass, VulkanPas
     info.subpassCount = 1;
     info.pSubpasses = &subpass;
     VERNIER_TRY_VK(vkCreateRenderPass(device, &info, nullptr, &pass.renderPass));
-    resources_.cleanup().add(
-        [device, handle = pass.renderPass] { vkDestroyRenderPass(device, handle, nullptr); });
+    resources_.cleanup().add([device, handle = pass.renderPass] { vkDestroyRenderPass(device, handle, nullptr); });
     VkFramebufferCreateInfo framebuffer{};
     framebuffer.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
     framebuffer.renderPass = pass.renderPass;
@@ -119,23 +115,19 @@ Status VulkanPassBuilder::createRenderPass(const ScenePass& scenePass, VulkanPas
     framebuffer.height = scenePass.extent.height;
     framebuffer.layers = 1;
     VERNIER_TRY_VK(vkCreateFramebuffer(device, &framebuffer, nullptr, &pass.framebuffer));
-    resources_.cleanup().add(
-        [device, handle = pass.framebuffer] { vkDestroyFramebuffer(device, handle, nullptr); });
+    resources_.cleanup().add([device, handle = pass.framebuffer] { vkDestroyFramebuffer(device, handle, nullptr); });
     return {};
 }
 
 Status VulkanPassBuilder::checkFeatures(const ScenePipeline& scene) const {
     const VkPhysicalDeviceFeatures& features = context_.features();
     const auto need = [](bool wanted, VkBool32 feature, const char* name) -> Status {
-        if (wanted && feature == VK_FALSE)
-            return unsupported(std::string("the device lacks feature ") + name);
+        if (wanted && feature == VK_FALSE) return unsupported(std::string("the device lacks feature ") + name);
         return {};
     };
     VERNIER_TRY(need(scene.depthClamp, features.depthClamp, "depthClamp"));
-    VERNIER_TRY(
-        need(scene.depthBias && scene.depthBiasClamp != 0, features.depthBiasClamp, "depthBiasClamp"));
-    VERNIER_TRY(
-        need(scene.polygonMode != VK_POLYGON_MODE_FILL, features.fillModeNonSolid, "fillModeNonSolid"));
+    VERNIER_TRY(need(scene.depthBias && scene.depthBiasClamp != 0, features.depthBiasClamp, "depthBiasClamp"));
+    VERNIER_TRY(need(scene.polygonMode != VK_POLYGON_MODE_FILL, features.fillModeNonSolid, "fillModeNonSolid"));
     return {};
 }
 
@@ -165,8 +157,7 @@ Status VulkanPassBuilder::createLayouts(const SceneDraw& draw, VulkanPipeline& p
     info.pushConstantRangeCount = range.size != 0 ? 1 : 0;
     info.pPushConstantRanges = &range;
     VERNIER_TRY_VK(vkCreatePipelineLayout(device, &info, nullptr, &pipeline.layout));
-    resources_.cleanup().add(
-        [device, handle = pipeline.layout] { vkDestroyPipelineLayout(device, handle, nullptr); });
+    resources_.cleanup().add([device, handle = pipeline.layout] { vkDestroyPipelineLayout(device, handle, nullptr); });
     return {};
 }
 
@@ -272,8 +263,7 @@ Result<VulkanPipeline> VulkanPassBuilder::createPipeline(const SceneDraw& draw, 
     info.layout = pipeline.layout;
     info.renderPass = renderPass;
     VERNIER_TRY_VK(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline.handle));
-    resources_.cleanup().add(
-        [device, handle = pipeline.handle] { vkDestroyPipeline(device, handle, nullptr); });
+    resources_.cleanup().add([device, handle = pipeline.handle] { vkDestroyPipeline(device, handle, nullptr); });
     return pipeline;
 }
 
@@ -308,11 +298,10 @@ Result<std::vector<VkDescriptorSet>> VulkanPassBuilder::createSets(const SceneDr
         write.descriptorCount = 1;
         write.descriptorType = each.type;
         if (each.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER) {
-            const bool color =
-                (scene_.images[each.image].usage & VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT) == 0;
-            image = {resources_.sampler(each.sampler), resources_.sampledView(each.image),
-                     color ? VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
-                           : VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL};
+            const bool color = (scene_.images[each.image].usage & VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT) == 0;
+            image = {
+                resources_.sampler(each.sampler), resources_.sampledView(each.image),
+                color ? VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL : VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL};
             write.pImageInfo = &image;
         } else {
             buffer = {resources_.buffer(each.buffer), each.offset, each.range};

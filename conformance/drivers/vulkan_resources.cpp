@@ -21,11 +21,11 @@ UseState stateOf(ImageUse use, VkImageAspectFlags aspects) {
             // The frame before may still be at it, in any way.
             return {VK_IMAGE_LAYOUT_UNDEFINED, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, true};
         case ImageUse::transferSource:
-            return {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_TRANSFER_BIT,
-                    VK_ACCESS_TRANSFER_READ_BIT, false};
+            return {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT,
+                    false};
         case ImageUse::transferDestination:
-            return {VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_TRANSFER_BIT,
-                    VK_ACCESS_TRANSFER_WRITE_BIT, true};
+            return {VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+                    true};
         case ImageUse::sampled:
             return {aspects == VK_IMAGE_ASPECT_COLOR_BIT ? VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
                                                          : VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL,
@@ -35,11 +35,9 @@ UseState stateOf(ImageUse use, VkImageAspectFlags aspects) {
             return {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
                     VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT, true};
         case ImageUse::depthAttachment:
-            return {
-                VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
-                VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT,
-                VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
-                true};
+            return {VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+                    VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT,
+                    VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, true};
     }
     return {};
 }
@@ -47,8 +45,7 @@ UseState stateOf(ImageUse use, VkImageAspectFlags aspects) {
 VkFormatFeatureFlags neededFeatures(VkImageUsageFlags usage) {
     VkFormatFeatureFlags features = 0;
     if ((usage & VK_IMAGE_USAGE_SAMPLED_BIT) != 0) features |= VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT;
-    if ((usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT) != 0)
-        features |= VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT;
+    if ((usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT) != 0) features |= VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT;
     if ((usage & VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT) != 0) {
         features |= VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT;
     }
@@ -90,9 +87,8 @@ Result<VulkanBuffer> VulkanResources::createHostBuffer(VkDeviceSize size, VkBuff
     cleanup_.add([device, handle = buffer.handle] { vkDestroyBuffer(device, handle, nullptr); });
     VkMemoryRequirements requirements{};
     vkGetBufferMemoryRequirements(device, buffer.handle, &requirements);
-    const Result<uint32_t> type =
-        context_.memoryType(requirements.memoryTypeBits,
-                            VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+    const Result<uint32_t> type = context_.memoryType(
+        requirements.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
     if (!type) return type.error();
     VkMemoryAllocateInfo allocation{};
     allocation.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
@@ -150,8 +146,7 @@ Status VulkanResources::createImage(const SceneImage& scene) {
         image.view = *view;
     }
     if (!scene.data.empty()) {
-        image.rest =
-            (scene.usage & VK_IMAGE_USAGE_SAMPLED_BIT) != 0 ? ImageUse::sampled : ImageUse::transferSource;
+        image.rest = (scene.usage & VK_IMAGE_USAGE_SAMPLED_BIT) != 0 ? ImageUse::sampled : ImageUse::transferSource;
     }
     image.uses.assign(size_t{scene.mipLevels} * scene.arrayLayers, ImageUse::undefined);
     images_.push_back(std::move(image));
@@ -218,10 +213,9 @@ Status VulkanResources::uploadImages() {
             const auto mip = static_cast<uint32_t>(i / scene.arrayLayers);
             const auto layer = static_cast<uint32_t>(i % scene.arrayLayers);
             VkBufferImageCopy region{};
-            region.imageSubresource = {
-                images_[index].aspects & ~VkImageAspectFlags{VK_IMAGE_ASPECT_STENCIL_BIT}, mip, layer, 1};
-            region.imageExtent = {std::max(1u, scene.extent.width >> mip),
-                                  std::max(1u, scene.extent.height >> mip), 1};
+            region.imageSubresource = {images_[index].aspects & ~VkImageAspectFlags{VK_IMAGE_ASPECT_STENCIL_BIT}, mip,
+                                       layer, 1};
+            region.imageExtent = {std::max(1u, scene.extent.width >> mip), std::max(1u, scene.extent.height >> mip), 1};
             vkCmdCopyBufferToImage(*commands, staging->handle, images_[index].handle,
                                    VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
         }
@@ -231,8 +225,8 @@ Status VulkanResources::uploadImages() {
     return run(*commands);
 }
 
-void VulkanResources::use(VkCommandBuffer commands, uint32_t index, ImageUse next, uint32_t mip,
-                          uint32_t mipCount, uint32_t layer, uint32_t layerCount) {
+void VulkanResources::use(VkCommandBuffer commands, uint32_t index, ImageUse next, uint32_t mip, uint32_t mipCount,
+                          uint32_t layer, uint32_t layerCount) {
     Image& image = images_[index];
     const UseState after = stateOf(next, image.aspects);
     for (uint32_t m = mip; m < mip + mipCount; ++m) {
@@ -249,8 +243,7 @@ void VulkanResources::use(VkCommandBuffer commands, uint32_t index, ImageUse nex
             barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
             barrier.image = image.handle;
             barrier.subresourceRange = {image.aspects, m, 1, l, 1};
-            vkCmdPipelineBarrier(commands, before.stages, after.stages, 0, 0, nullptr, 0, nullptr, 1,
-                                 &barrier);
+            vkCmdPipelineBarrier(commands, before.stages, after.stages, 0, 0, nullptr, 0, nullptr, 1, &barrier);
             last = next;
         }
     }

@@ -42,8 +42,8 @@ class VulkanResources {
     Result<VkImageView> attachmentView(uint32_t index, uint32_t mipLevel, uint32_t layer);
 
     /// Records the barrier that takes subresources from their last use to the next one.
-    void use(VkCommandBuffer commands, uint32_t image, ImageUse next, uint32_t mip, uint32_t mipCount,
-             uint32_t layer, uint32_t layerCount);
+    void use(VkCommandBuffer commands, uint32_t image, ImageUse next, uint32_t mip, uint32_t mipCount, uint32_t layer,
+             uint32_t layerCount);
     void useAll(VkCommandBuffer commands, uint32_t image, ImageUse next);
 
     /// Forgets the contents of images without initial data, so that commands recorded next may run again and
@@ -74,8 +74,7 @@ class VulkanResources {
 
     Status createImage(const SceneImage& scene);
     Status createSampler(const SceneSampler& scene);
-    Result<VkImageView> createView(const Image& image, const VkImageSubresourceRange& range,
-                                   VkImageViewType type);
+    Result<VkImageView> createView(const Image& image, const VkImageSubresourceRange& range, VkImageViewType type);
     Status uploadImages();
 
     VulkanContext& context_;

@@ -42,8 +42,7 @@ Answer compareDepth(VkCompareOp op, const Interval& fragment, const Interval& st
     if (op == VK_COMPARE_OP_NEVER || op == VK_COMPARE_OP_ALWAYS) return {op == VK_COMPARE_OP_ALWAYS, false};
     if (sameTriangle) return {holds(op, 0, 0), false};
     const bool value = holds(op, fragment.value, stored.value);
-    if (fragment.high < stored.low || fragment.low > stored.high ||
-        (fragment.isExact() && stored.isExact())) {
+    if (fragment.high < stored.low || fragment.low > stored.high || (fragment.isExact() && stored.isExact())) {
         return {value, false};
     }
     // Touching ranges with one common point still decide the inclusive or exclusive comparison.
@@ -76,23 +75,21 @@ uint8_t applyStencilOp(VkStencilOp op, uint8_t stored, uint8_t reference) {
 }
 
 void updateStencil(const VkStencilOpState& state, VkStencilOp op, SampleState& s) {
-    const auto reference = static_cast<uint8_t>(state.reference),
-               mask = static_cast<uint8_t>(state.writeMask);
+    const auto reference = static_cast<uint8_t>(state.reference), mask = static_cast<uint8_t>(state.writeMask);
     const uint8_t updated = applyStencilOp(op, s.stencil, reference);
     s.stencil = static_cast<uint8_t>((s.stencil & ~mask) | (updated & mask));
 }
 
 Color clampForFormat(const PixelFormat& format, Color color) {
     const Encoding encoding = format.components[0].encoding;
-    const bool fixed =
-        encoding == Encoding::unorm || encoding == Encoding::srgb || encoding == Encoding::snorm;
+    const bool fixed = encoding == Encoding::unorm || encoding == Encoding::srgb || encoding == Encoding::snorm;
     if (!fixed) return color;
     for (Interval& c : color) c = c.clamped(encoding == Encoding::snorm ? -1 : 0, 1);
     return color;
 }
 
-// Blending needs the precision of the destination only: products and sums may each be rounded to its codes,
-// one code altogether. Factors of 0 and 1 leave nothing to round.
+// Blending needs the precision of the destination only: the source, products and sums may each be rounded to its codes,
+// one code altogether. A source that is a code already, with factors of 0 and 1, leaves nothing to round.
 constexpr double kBlendBudget = 1;
 
 bool isTrivial(VkBlendFactor factor, size_t channel, const Color& source, const Color& destination,
@@ -116,8 +113,7 @@ void writeColors(const OutputState& output, const FragmentResult& fragment, Samp
         std::array<double, 4> budget{};
         if (blend) {
             Color constants;
-            for (size_t c = 0; c < 4; ++c)
-                constants[c] = static_cast<double>(output.pipeline->blendConstants[c]);
+            for (size_t c = 0; c < 4; ++c) constants[c] = static_cast<double>(output.pipeline->blendConstants[c]);
             constants = clampForFormat(*format, constants);
             const Color source1 = clampForFormat(*format, fragment.source1.value_or(Color{}));
             for (size_t c = 0; c < 4; ++c) {
@@ -127,7 +123,9 @@ void writeColors(const OutputState& output, const FragmentResult& fragment, Samp
                 };
                 const bool exactly = trivial(state.srcColorBlendFactor, state.srcAlphaBlendFactor) &&
                                      trivial(state.dstColorBlendFactor, state.dstAlphaBlendFactor);
-                budget[c] = exactly ? 0 : kBlendBudget;
+                const Component* component = format->channel(static_cast<uint8_t>(c));
+                const bool stored = component && quantise(*component, source[c]).isExact();
+                budget[c] = exactly && stored ? 0 : kBlendBudget;
             }
         }
         uint8_t& flags = s.flags[i];
@@ -209,9 +207,7 @@ class Splitter {
         const bool stencilTest = pipeline.stencilTest && output_.depthFormat && output_.depthFormat->stencil;
         const bool depthTest = pipeline.depthTest && output_.depthFormat && output_.depthFormat->depth;
         if (stencilTest) {
-            const auto masked = [&stencil](uint32_t v) {
-                return static_cast<double>(v & stencil.compareMask & 0xff);
-            };
+            const auto masked = [&stencil](uint32_t v) { return static_cast<double>(v & stencil.compareMask & 0xff); };
             if (!holds(stencil.compareOp, masked(stencil.reference), masked(state.stencil))) {
                 updateStencil(stencil, stencil.failOp, state);
                 add(std::move(state), nominal);

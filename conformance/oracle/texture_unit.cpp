@@ -65,8 +65,7 @@ Interval compareRanges(VkCompareOp op, const Interval& a, const Interval& b) {
                 return true;
         }
     };
-    const bool value = holds(a.value, b.value), oneWay = holds(a.low, b.high),
-               otherWay = holds(a.high, b.low);
+    const bool value = holds(a.value, b.value), oneWay = holds(a.low, b.high), otherWay = holds(a.high, b.low);
     const bool overlap = a.low <= b.high && b.low <= a.high && !(a.isExact() && b.isExact());
     const bool equality = op == VK_COMPARE_OP_EQUAL || op == VK_COMPARE_OP_NOT_EQUAL;
     const bool open = equality ? overlap : oneWay != otherWay;
@@ -141,14 +140,11 @@ std::vector<double> breaks(double at, double reach, double phase) {
     return result;
 }
 
-SampleResult filterLevel(const Sampler& s, uint32_t mip, VkFilter filter, double sCoordinate,
-                         double tCoordinate) {
+SampleResult filterLevel(const Sampler& s, uint32_t mip, VkFilter filter, double sCoordinate, double tCoordinate) {
     const VkExtent2D extent = s.image.level(mip, s.layer).extent;
     const double u = sCoordinate * extent.width, v = tCoordinate * extent.height;
-    const double reachU =
-        s.weightSlack + kCoordinateSlack * extent.width * std::max(1.0, std::abs(sCoordinate));
-    const double reachV =
-        s.weightSlack + kCoordinateSlack * extent.height * std::max(1.0, std::abs(tCoordinate));
+    const double reachU = s.weightSlack + kCoordinateSlack * extent.width * std::max(1.0, std::abs(sCoordinate));
+    const double reachV = s.weightSlack + kCoordinateSlack * extent.height * std::max(1.0, std::abs(tCoordinate));
     Box box;
     if (filter == VK_FILTER_NEAREST) {
         const auto nearest = [&](double x, double y) {
@@ -171,8 +167,7 @@ SampleResult filterLevel(const Sampler& s, uint32_t mip, VkFilter filter, double
 
 // All that one lambda allows: magnification at or below 0, otherwise the minification filter over one or two
 // levels.
-void addAtLod(Box& box, const Sampler& s, double lambda, bool magnify, double sCoordinate,
-              double tCoordinate) {
+void addAtLod(Box& box, const Sampler& s, double lambda, bool magnify, double sCoordinate, double tCoordinate) {
     if (magnify) {
         box.add(filterLevel(s, 0, s.state.magFilter, sCoordinate, tCoordinate));
         return;
@@ -180,8 +175,7 @@ void addAtLod(Box& box, const Sampler& s, double lambda, bool magnify, double sC
     const double last = s.image.mipLevels() - 1;
     const VkFilter filter = s.state.minFilter;
     const auto at = [&](double level) {
-        return filterLevel(s, static_cast<uint32_t>(std::clamp(level, 0.0, last)), filter, sCoordinate,
-                           tCoordinate);
+        return filterLevel(s, static_cast<uint32_t>(std::clamp(level, 0.0, last)), filter, sCoordinate, tCoordinate);
     };
     if (s.state.mipmapMode == VK_SAMPLER_MIPMAP_MODE_NEAREST) {
         box.add(at(std::ceil(lambda + 0.5) - 1));
@@ -212,15 +206,26 @@ SampleResult filterLod(const Sampler& s, const Interval& lambda, double sCoordin
 void allowFilterRounding(const PixelFormat& format, SampleResult& result) {
     for (const Component& component : format.all()) {
         Interval& v = result.color[component.channel];
-        if (v.isExact() || component.encoding == Encoding::sfloat || component.encoding == Encoding::ufloat)
-            continue;
+        if (v.isExact() || component.encoding == Encoding::sfloat || component.encoding == Encoding::ufloat) continue;
         v = v.united(quantise(component, v, 1));
     }
 }
 
+// Coordinates whose texels are known: not NaN, and not so large that no implementation's float has a fraction left.
+bool isAddressable(const SampleQuery& query) {
+    constexpr double kLimit = 0x1p30;
+    return std::abs(query.s) < kLimit && std::abs(query.t) < kLimit;
+}
+
+SampleResult unknownTexel() {
+    SampleResult unknown;
+    unknown.flags = kOracleUnknown;
+    return unknown;
+}
+
 uint32_t selectLayer(const ImageStore& image, double layer) {
     const double last = image.arrayLayers() - 1;
-    return static_cast<uint32_t>(std::clamp(std::nearbyint(layer), 0.0, last));
+    return std::isnan(layer) ? 0 : static_cast<uint32_t>(std::clamp(std::nearbyint(layer), 0.0, last));
 }
 
 Sampler prepare(const ImageStore& image, const SceneSampler& state, const SampleQuery& query) {
@@ -263,11 +268,7 @@ Interval levelOfDetail(const SampleQuery& query, const SceneSampler& sampler, Vk
 SampleResult sampleImage(const ImageStore& image, const SceneSampler& sampler, const SampleQuery& query) {
     const Sampler s = prepare(image, sampler, query);
     Interval lambda = levelOfDetail(query, sampler, image.level(0, s.layer).extent);
-    if (!std::isfinite(query.s) || !std::isfinite(query.t) || std::isnan(lambda.value)) {
-        SampleResult unknown;
-        unknown.flags = kOracleUnknown;
-        return unknown;
-    }
+    if (!isAddressable(query) || std::isnan(lambda.value)) return unknownTexel();
     const double floorLod = -1;  // anything below magnifies alike
     lambda = lambda.clamped(floorLod, std::numeric_limits<double>::max());
     SampleResult result = filterLod(s, lambda, query.s, query.t);
@@ -277,7 +278,8 @@ SampleResult sampleImage(const ImageStore& image, const SceneSampler& sampler, c
 
 SampleResult gatherImage(const ImageStore& image, const SceneSampler& sampler, const SampleQuery& query,
                          uint32_t channel) {
-    Sampler s = prepare(image, sampler, query);
+    if (!isAddressable(query)) return unknownTexel();
+    const Sampler s = prepare(image, sampler, query);
     const VkExtent2D extent = image.level(0, s.layer).extent;
     const double u = query.s * extent.width - 0.5, v = query.t * extent.height - 0.5;
     SampleResult result;
@@ -298,18 +300,15 @@ SampleResult gatherImage(const ImageStore& image, const SceneSampler& sampler, c
     return result;
 }
 
-SampleResult fetchImage(const ImageStore& image, int64_t x, int64_t y, int64_t layer, int64_t mip,
-                        uint32_t sample) {
+SampleResult fetchImage(const ImageStore& image, int64_t x, int64_t y, int64_t layer, int64_t mip, uint32_t sample) {
     if (mip < 0 || mip >= image.mipLevels() || layer < 0 || layer >= image.arrayLayers()) return {};
     const ImageLevel& level = image.level(static_cast<uint32_t>(mip), static_cast<uint32_t>(layer));
-    if (x < 0 || y < 0 || x >= level.extent.width || y >= level.extent.height || sample >= level.samples)
-        return {};
+    if (x < 0 || y < 0 || x >= level.extent.width || y >= level.extent.height || sample >= level.samples) return {};
     const StoredTexel& texel = level.at(static_cast<uint32_t>(x), static_cast<uint32_t>(y), sample);
     return {texel.channels, texel.flags};
 }
 
-SampleResult blitTexel(const ImageStore& image, uint32_t mip, uint32_t layer, double u, double v,
-                       VkFilter filter) {
+SampleResult blitTexel(const ImageStore& image, uint32_t mip, uint32_t layer, double u, double v, VkFilter filter) {
     SceneSampler state;
     state.addressModeU = state.addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     // Texel centres map to dyadic positions in nearly all blits: a nearest blit has coordinate error only.

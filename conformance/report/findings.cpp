@@ -28,12 +28,11 @@ Status compareScene(ReportScene& scene, const std::vector<ReportDriver>& drivers
         if (left == nullptr) continue;
         if (left->images.size() != outputs) {
             return invalidArgument(scene.scene.name + ", " + drivers[i].name + ": " +
-                                   std::to_string(left->images.size()) + " images, not " +
-                                   std::to_string(outputs));
+                                   std::to_string(left->images.size()) + " images, not " + std::to_string(outputs));
         }
         for (size_t output = 0; output < outputs && !scene.oracle.empty(); ++output) {
-            Status status = add(drivers[i], "oracle", output,
-                                compareWithOracle(left->images[output], scene.oracle[output]));
+            Status status =
+                add(drivers[i], "oracle", output, compareWithOracle(left->images[output], scene.oracle[output]));
             if (!status) return status;
         }
         for (size_t j = i + 1; j < drivers.size(); ++j) {

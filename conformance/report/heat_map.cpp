@@ -50,8 +50,7 @@ Picture heatMap(const ImageDiff& diff, uint32_t spread) {
         for (uint32_t x = 0; x < picture.width; ++x) {
             PixelDiff shown = diff.pixels[size_t{y} * picture.width + x];
             for (uint32_t v = y - std::min(y, spread); v <= std::min(y + spread, picture.height - 1); ++v) {
-                for (uint32_t u = x - std::min(x, spread); u <= std::min(x + spread, picture.width - 1);
-                     ++u) {
+                for (uint32_t u = x - std::min(x, spread); u <= std::min(x + spread, picture.width - 1); ++u) {
                     const PixelDiff& near = diff.pixels[size_t{v} * picture.width + u];
                     if (weight(near) > weight(shown)) shown = near;
                 }
@@ -64,8 +63,7 @@ Picture heatMap(const ImageDiff& diff, uint32_t spread) {
 
 Picture classMap(const ImageDiff& diff) {
     Picture picture(diff.extent.width, diff.extent.height);
-    for (size_t i = 0; i < picture.pixels.size(); ++i)
-        picture.pixels[i] = classColor(diff.pixels[i].pixelClass);
+    for (size_t i = 0; i < picture.pixels.size(); ++i) picture.pixels[i] = classColor(diff.pixels[i].pixelClass);
     return picture;
 }
 

@@ -124,34 +124,29 @@ std::string classBar(const std::array<uint64_t, kPixelClassCount>& counts, bool 
         const std::string name = shownName(pixelClass, ours);
         // A class of one pixel must be seen too.
         const double share = 100.0 * static_cast<double>(counts[i]) / static_cast<double>(total);
-        bar += "<i style=\"flex:" + format("%.4f", share) +
-               " 0 auto;background:" + cssColor(classColor(pixelClass)) + "\" title=\"" + name + ": " +
-               grouped(counts[i]) + "\"></i>";
-        words += "<span class=\"" + std::string(ours && isFailure(pixelClass) ? "bad" : "fine") + "\">" +
-                 name + "\u00a0<b>" + grouped(counts[i]) + "</b></span> ";
+        bar += "<i style=\"flex:" + format("%.4f", share) + " 0 auto;background:" + cssColor(classColor(pixelClass)) +
+               "\" title=\"" + name + ": " + grouped(counts[i]) + "\"></i>";
+        words += "<span class=\"" + std::string(ours && isFailure(pixelClass) ? "bad" : "fine") + "\">" + name +
+                 "\u00a0<b>" + grouped(counts[i]) + "</b></span> ";
     }
     return bar + "</div><div class=\"counts\">" + words + "</div>";
 }
 
 std::string legend() {
-    std::string html =
-        "<div class=\"legend\"><div><h3>Why pixels agree or differ</h3><ul class=\"swatches\">";
+    std::string html = "<div class=\"legend\"><div><h3>Why pixels agree or differ</h3><ul class=\"swatches\">";
     for (size_t i = 0; i < kPixelClassCount; ++i) {
         const auto pixelClass = static_cast<PixelClass>(i);
         html += "<li><i style=\"background:" + cssColor(classColor(pixelClass)) + "\"></i><b>" +
-                std::string(pixelClassName(pixelClass)) + "</b> " + escapeHtml(pixelClassText(pixelClass)) +
-                "</li>";
+                std::string(pixelClassName(pixelClass)) + "</b> " + escapeHtml(pixelClassText(pixelClass)) + "</li>";
     }
     html +=
         "</ul></div><div><h3>Heat maps: ours minus other, in codes (ULP of float formats)</h3>"
         "<div class=\"scale\">";
     const auto step = [&](int32_t codes, const std::string& label) {
-        html += "<span><i style=\"background:" + cssColor(heatColor(codes, false)) + "\"></i>" + label +
-                "</span>";
+        html += "<span><i style=\"background:" + cssColor(heatColor(codes, false)) + "\"></i>" + label + "</span>";
     };
     for (int exponent = 7; exponent >= 0; --exponent) {
-        step(-(1 << exponent),
-             (exponent == 7 ? "\u2264\u2009\u2212" : "\u2212") + std::to_string(1 << exponent));
+        step(-(1 << exponent), (exponent == 7 ? "\u2264\u2009\u2212" : "\u2212") + std::to_string(1 << exponent));
     }
     step(0, "0");
     for (int exponent = 0; exponent < 8; ++exponent) {
@@ -178,8 +173,7 @@ bool isOurs(const Report& report, std::string_view driver) {
 
 std::string verdictPill(const ReportScene& scene) {
     if (!scene.judged) return "<span class=\"pill\">not judged</span>";
-    return scene.failed ? "<span class=\"pill bad\">unexplained</span>"
-                        : "<span class=\"pill good\">explained</span>";
+    return scene.failed ? "<span class=\"pill bad\">unexplained</span>" : "<span class=\"pill good\">explained</span>";
 }
 
 }  // namespace vernier::conformance

@@ -28,8 +28,7 @@ std::string thumbnail(const ReportScene& scene, const ReportDriver& driver, cons
     if (rendering == nullptr) return figure(missing("absent", false), driver.title, "&nbsp;");
     if (!rendering->failure.empty()) return figure(missing(rendering->failure, true), driver.title, "&nbsp;");
     const ReportRendering* reference = renderingOf(scene, "lavapipe");
-    const double referenceTime =
-        reference != nullptr && driver.name != "lavapipe" ? reference->timing.frame : 0;
+    const double referenceTime = reference != nullptr && driver.name != "lavapipe" ? reference->timing.frame : 0;
     const Timing& timing = rendering->timing;
     return figure(imageTag(pictureOf(rendering->images[0], stretch), driver.title), driver.title,
                   duration(timing.frame) + " " + ratio(timing.frame, referenceTime) + "<br>first image " +
@@ -41,8 +40,7 @@ std::string thumbnail(const ReportScene& scene, const ReportDriver& driver, cons
 const ReportComparison* headline(const Report& report, const ReportScene& scene) {
     const ReportComparison* chosen = nullptr;
     for (const ReportComparison& each : scene.comparisons) {
-        if (chosen == nullptr ||
-            (isOurs(report, each.ours) && each.diff.worstClass > chosen->diff.worstClass)) {
+        if (chosen == nullptr || (isOurs(report, each.ours) && each.diff.worstClass > chosen->diff.worstClass)) {
             chosen = &each;
         }
     }
@@ -54,8 +52,7 @@ std::string comparisonRows(const Report& report, const ReportScene& scene) {
     std::vector<std::pair<std::pair<std::string, std::string>, std::array<uint64_t, kPixelClassCount>>> rows;
     for (const ReportComparison& each : scene.comparisons) {
         const std::pair key(each.ours, each.other);
-        auto row =
-            std::find_if(rows.begin(), rows.end(), [&](const auto& known) { return known.first == key; });
+        auto row = std::find_if(rows.begin(), rows.end(), [&](const auto& known) { return known.first == key; });
         if (row == rows.end()) row = rows.insert(rows.end(), {key, {}});
         for (size_t i = 0; i < kPixelClassCount; ++i) row->second[i] += each.diff.counts[i];
     }
@@ -78,9 +75,9 @@ std::string comparisonRows(const Report& report, const ReportScene& scene) {
 
 std::string sceneRow(const Report& report, const ReportScene& scene) {
     std::string html = "<section class=\"scene" + std::string(scene.failed ? " failed" : "") +
-                       "\"><div class=\"head\"><a href=\"" + scene.scene.name + ".html\">" +
-                       scene.scene.name + "</a>" + verdictPill(scene) + "<p>" +
-                       escapeHtml(scene.scene.description) + "</p></div><div class=\"strip\">";
+                       "\"><div class=\"head\"><a href=\"" + scene.scene.name + ".html\">" + scene.scene.name + "</a>" +
+                       verdictPill(scene) + "<p>" + escapeHtml(scene.scene.description) +
+                       "</p></div><div class=\"strip\">";
     Stretch stretch;
     for (const auto& [name, rendering] : scene.renderings) {
         if (rendering.failure.empty()) stretch = stretchFor(rendering.images[0]);
@@ -93,9 +90,9 @@ std::string sceneRow(const Report& report, const ReportScene& scene) {
                        duration(scene.oracleSeconds * 1000));
     }
     if (const ReportComparison* worst = headline(report, scene)) {
-        html += figure(imageTag(heatMap(worst->diff, 1), "signed difference"), "signed difference",
-                       escapeHtml(titleOf(report, worst->ours)) + " \u2212 " +
-                           escapeHtml(titleOf(report, worst->other)));
+        html +=
+            figure(imageTag(heatMap(worst->diff, 1), "signed difference"), "signed difference",
+                   escapeHtml(titleOf(report, worst->ours)) + " \u2212 " + escapeHtml(titleOf(report, worst->other)));
     } else {
         html += figure(missing("nothing to compare", false), "signed difference", "&nbsp;");
     }
@@ -176,8 +173,7 @@ std::string indexPage(const Report& report) {
     if (!report.judgement.violations.empty()) {
         html += "<h2>Unexplained</h2>" + list(report.judgement.violations, "bad");
     }
-    if (!report.judgement.stale.empty())
-        html += "<h2>Gaps that pass now</h2>" + list(report.judgement.stale, "bad");
+    if (!report.judgement.stale.empty()) html += "<h2>Gaps that pass now</h2>" + list(report.judgement.stale, "bad");
     if (!report.judgement.covered.empty()) html += "<h2>Known gaps</h2>" + list(report.judgement.covered, "");
     html += "<h2>Drivers</h2>" + driverCards(report) + "<h2>Settings</h2><table class=\"facts\">";
     for (const auto& [name, value] : report.facts) {

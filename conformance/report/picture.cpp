@@ -105,11 +105,9 @@ Picture magnified(const Picture& picture, uint32_t x, uint32_t y, uint32_t size,
     Picture result(size * scale, size * scale, kOutside);
     for (uint32_t row = 0; row < result.height; ++row) {
         for (uint32_t column = 0; column < result.width; ++column) {
-            const int64_t fromX = int64_t{x} + column / scale - size / 2,
-                          fromY = int64_t{y} + row / scale - size / 2;
+            const int64_t fromX = int64_t{x} + column / scale - size / 2, fromY = int64_t{y} + row / scale - size / 2;
             if (fromX >= 0 && fromY >= 0 && fromX < picture.width && fromY < picture.height) {
-                result.at(column, row) =
-                    picture.at(static_cast<uint32_t>(fromX), static_cast<uint32_t>(fromY));
+                result.at(column, row) = picture.at(static_cast<uint32_t>(fromX), static_cast<uint32_t>(fromY));
             }
             const uint32_t inX = column - size / 2 * scale, inY = row - size / 2 * scale;  // wraps outside
             if (inX < scale && inY < scale) {
@@ -142,8 +140,7 @@ Result<std::string> encodePng(const Picture& picture, const std::string& text) {
     png_set_write_fn(
         png, &file,
         [](png_structp writer, png_bytep data, png_size_t size) {
-            static_cast<std::string*>(png_get_io_ptr(writer))
-                ->append(reinterpret_cast<const char*>(data), size);
+            static_cast<std::string*>(png_get_io_ptr(writer))->append(reinterpret_cast<const char*>(data), size);
         },
         nullptr);
     png_set_IHDR(png, info, picture.width, picture.height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,

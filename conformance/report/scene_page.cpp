@@ -29,9 +29,8 @@ std::string outputViewers(const Report& report, const ReportScene& scene) {
         const SceneImage& image = scene.scene.images[scene.scene.outputs[output]];
         const SceneFormat* format = sceneFormat(image.format);
         html += "<h2>Output " + std::to_string(output + 1) + ": " + escapeHtml(image.name) + " <small>" +
-                std::string(format != nullptr ? format->name : "") + ", " +
-                std::to_string(image.extent.width) + " \u00d7 " + std::to_string(image.extent.height) +
-                "</small></h2>";
+                std::string(format != nullptr ? format->name : "") + ", " + std::to_string(image.extent.width) +
+                " \u00d7 " + std::to_string(image.extent.height) + "</small></h2>";
         Stretch stretch;
         for (const auto& [name, rendering] : scene.renderings) {
             if (rendering.failure.empty()) stretch = stretchFor(rendering.images[output]);
@@ -50,8 +49,7 @@ std::string outputViewers(const Report& report, const ReportScene& scene) {
         any = false;
         for (const ReportComparison& each : scene.comparisons) {
             if (each.output != output) continue;
-            differences.add(heatMap(each.diff),
-                            titleOf(report, each.ours) + " \u2212 " + titleOf(report, each.other));
+            differences.add(heatMap(each.diff), titleOf(report, each.ours) + " \u2212 " + titleOf(report, each.other));
             any = true;
         }
         if (any) html += differences.html();
@@ -69,8 +67,8 @@ std::string componentRow(const SceneFormat& format, const std::string& title, co
     const auto texel = std::span(image.texels).subspan(pixel * format.texelBytes, format.texelBytes);
     for (size_t i = 0; i < format.componentCount; ++i) {
         const uint32_t code = componentCode(format.components[i], texel);
-        html += "<td>" + precise(decodeComponent(format.components[i], code)) + "</td><td>" +
-                std::to_string(code) + "</td>";
+        html += "<td>" + precise(decodeComponent(format.components[i], code)) + "</td><td>" + std::to_string(code) +
+                "</td>";
     }
     return html + "</tr>";
 }
@@ -95,8 +93,7 @@ std::string valueTable(const Report& report, const ReportScene& scene, const Rep
         const OraclePixel& judge = scene.oracle[comparison.output].pixels[pixel];
         const auto row = [&](const char* title, const std::array<double, 4>& values) {
             html += std::string("<tr><td>") + title + "</td>";
-            for (size_t i = 0; i < format.componentCount; ++i)
-                html += "<td>" + precise(values[i]) + "</td><td></td>";
+            for (size_t i = 0; i < format.componentCount; ++i) html += "<td>" + precise(values[i]) + "</td><td></td>";
             html += "</tr>";
         };
         row("oracle", judge.value);
@@ -110,8 +107,7 @@ std::string valueTable(const Report& report, const ReportScene& scene, const Rep
     return html + "</tr></table>";
 }
 
-std::string comparisonSection(const Report& report, const ReportScene& scene,
-                              const ReportComparison& comparison) {
+std::string comparisonSection(const Report& report, const ReportScene& scene, const ReportComparison& comparison) {
     const ImageDiff& diff = comparison.diff;
     const SceneImage& image = scene.scene.images[scene.scene.outputs[comparison.output]];
     std::string html = "<h2>" + escapeHtml(titleOf(report, comparison.ours)) + " \u2013 " +
@@ -119,8 +115,7 @@ std::string comparisonSection(const Report& report, const ReportScene& scene,
                        "</small></h2>" + classBar(diff.counts, isOurs(report, comparison.ours));
     if (!diff.hasOracle)
         html += "<p class=\"counts\"><span>No oracle: anything beyond one code is unexplained.</span></p>";
-    if (diff.nanPixels != 0)
-        html += "<p>" + grouped(diff.nanPixels) + " pixels where only one side is NaN.</p>";
+    if (diff.nanPixels != 0) html += "<p>" + grouped(diff.nanPixels) + " pixels where only one side is NaN.</p>";
     if (diff.unknownPixels != 0)
         html += "<p>" + grouped(diff.unknownPixels) + " pixels the oracle could not decide.</p>";
     if (diff.worstClass == PixelClass::equal) return html;
@@ -129,13 +124,12 @@ std::string comparisonSection(const Report& report, const ReportScene& scene,
     const Stretch stretch = stretchFor(ours);
     const auto crop = [&](const Picture& picture, const std::string& title) {
         html += "<figure>" +
-                imageTag(magnified(picture, diff.worstX, diff.worstY, kSize, kScale), title,
-                         "class=\"pixelated\"") +
+                imageTag(magnified(picture, diff.worstX, diff.worstY, kSize, kScale), title, "class=\"pixelated\"") +
                 "<figcaption><b>" + escapeHtml(title) + "</b></figcaption></figure>";
     };
-    html += "<p>Worst pixel: <b>(" + std::to_string(diff.worstX) + ", " + std::to_string(diff.worstY) +
-            ")</b>, " + std::string(pixelClassName(diff.worstClass)) + ": " +
-            escapeHtml(pixelClassText(diff.worstClass)) + ".</p><div class=\"row\">";
+    html += "<p>Worst pixel: <b>(" + std::to_string(diff.worstX) + ", " + std::to_string(diff.worstY) + ")</b>, " +
+            std::string(pixelClassName(diff.worstClass)) + ": " + escapeHtml(pixelClassText(diff.worstClass)) +
+            ".</p><div class=\"row\">";
     crop(pictureOf(ours, stretch), titleOf(report, comparison.ours));
     if (comparison.other != "oracle") {
         crop(pictureOf(scene.renderings.at(comparison.other).images[comparison.output], stretch),
@@ -164,9 +158,9 @@ std::string times(const Report& report, const ReportScene& scene) {
         }
         const Timing& timing = found->second.timing;
         html += "<td>" + duration(timing.startUp) + "</td><td>" + duration(timing.pipelines) + "</td><td>" +
-                duration(timing.firstImage) + "</td><td>" + ratio(timing.firstImage, base.firstImage) +
-                "</td><td>" + duration(timing.frame) + "</td><td>" + ratio(timing.frame, base.frame) +
-                "</td><td>" + std::to_string(timing.frames) + "</td></tr>";
+                duration(timing.firstImage) + "</td><td>" + ratio(timing.firstImage, base.firstImage) + "</td><td>" +
+                duration(timing.frame) + "</td><td>" + ratio(timing.frame, base.frame) + "</td><td>" +
+                std::to_string(timing.frames) + "</td></tr>";
     }
     return html + "</table>";
 }
@@ -176,8 +170,8 @@ std::string shaders(const Scene& scene) {
     for (size_t i = 0; i < scene.shaders.size(); ++i) {
         const SceneShader& shader = scene.shaders[i];
         const bool vertex = shader.stage == VK_SHADER_STAGE_VERTEX_BIT;
-        html += "<details" + std::string(vertex ? "" : " open") + "><summary>shader " + std::to_string(i) +
-                ", " + (vertex ? "vertex" : "fragment") + ", " + std::to_string(shader.spirv.size()) +
+        html += "<details" + std::string(vertex ? "" : " open") + "><summary>shader " + std::to_string(i) + ", " +
+                (vertex ? "vertex" : "fragment") + ", " + std::to_string(shader.spirv.size()) +
                 " words of SPIR-V</summary><pre>" + escapeHtml(shader.glsl) + "</pre></details>";
     }
     return html;
@@ -186,13 +180,11 @@ std::string shaders(const Scene& scene) {
 }  // namespace
 
 std::string scenePage(const Report& report, const ReportScene& scene) {
-    std::string html =
-        "<main><header class=\"top\"><p><a href=\"index.html\">Vernier conformance</a></p><h1>" +
-        scene.scene.name + "<small>" + verdictPill(scene) + "</small></h1><p>" +
-        escapeHtml(scene.scene.description) + "</p></header>";
+    std::string html = "<main><header class=\"top\"><p><a href=\"index.html\">Vernier conformance</a></p><h1>" +
+                       scene.scene.name + "<small>" + verdictPill(scene) + "</small></h1><p>" +
+                       escapeHtml(scene.scene.description) + "</p></header>";
     html += outputViewers(report, scene);
-    for (const ReportComparison& comparison : scene.comparisons)
-        html += comparisonSection(report, scene, comparison);
+    for (const ReportComparison& comparison : scene.comparisons) html += comparisonSection(report, scene, comparison);
     html += times(report, scene);
     if (scene.oracle.empty()) html += "<p>Oracle: " + escapeHtml(scene.oracleAbsence) + ".</p>";
     html += "<h2>How to read it</h2>" + legend() + shaders(scene.scene);

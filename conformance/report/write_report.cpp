@@ -23,16 +23,15 @@ nlohmann::json comparisonJson(const ReportComparison& comparison) {
         counts[std::string(pixelClassName(static_cast<PixelClass>(i)))] = comparison.diff.counts[i];
     }
     const ImageDiff& diff = comparison.diff;
-    return {
-        {"ours", comparison.ours},
-        {"other", comparison.other},
-        {"output", comparison.output},
-        {"oracle", diff.hasOracle},
-        {"counts", counts},
-        {"nanPixels", diff.nanPixels},
-        {"unknownPixels", diff.unknownPixels},
-        {"worstErrorCodes", diff.worstError},
-        {"worstPixel", {{"x", diff.worstX}, {"y", diff.worstY}, {"class", pixelClassName(diff.worstClass)}}}};
+    return {{"ours", comparison.ours},
+            {"other", comparison.other},
+            {"output", comparison.output},
+            {"oracle", diff.hasOracle},
+            {"counts", counts},
+            {"nanPixels", diff.nanPixels},
+            {"unknownPixels", diff.unknownPixels},
+            {"worstErrorCodes", diff.worstError},
+            {"worstPixel", {{"x", diff.worstX}, {"y", diff.worstY}, {"class", pixelClassName(diff.worstClass)}}}};
 }
 
 }  // namespace
@@ -56,14 +55,12 @@ std::string reportJson(const Report& report) {
                                 {"oracleSeconds", scene.oracleSeconds}};
         for (const auto& [name, rendering] : scene.renderings) {
             const Timing& timing = rendering.timing;
-            entry["renderings"][name] = {
-                {"failure", rendering.failure},    {"startUpMs", timing.startUp},
-                {"pipelinesMs", timing.pipelines}, {"firstImageMs", timing.firstImage},
-                {"frameMs", timing.frame},         {"frames", timing.frames}};
+            entry["renderings"][name] = {{"failure", rendering.failure},    {"startUpMs", timing.startUp},
+                                         {"pipelinesMs", timing.pipelines}, {"firstImageMs", timing.firstImage},
+                                         {"frameMs", timing.frame},         {"frames", timing.frames}};
         }
         entry["comparisons"] = nlohmann::json::array();
-        for (const ReportComparison& each : scene.comparisons)
-            entry["comparisons"].push_back(comparisonJson(each));
+        for (const ReportComparison& each : scene.comparisons) entry["comparisons"].push_back(comparisonJson(each));
         document["scenes"].push_back(std::move(entry));
     }
     document["passed"] = report.judgement.passed();

@@ -38,8 +38,7 @@ PipelineRecorder rgbaPipeline(SceneRecorder& record, uint32_t vertexShader, uint
         .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(RgbaVertex, color));
 }
 
-void addQuad(std::vector<RgbaVertex>& list, glm::vec2 low, glm::vec2 high,
-             const std::array<glm::vec4, 4>& corners) {
+void addQuad(std::vector<RgbaVertex>& list, glm::vec2 low, glm::vec2 high, const std::array<glm::vec4, 4>& corners) {
     const RgbaVertex a{low, corners[0]}, b{{high.x, low.y}, corners[1]};
     const RgbaVertex c{{low.x, high.y}, corners[2]}, d{high, corners[3]};
     list.insert(list.end(), {a, b, c, c, b, d});
@@ -48,10 +47,9 @@ void addQuad(std::vector<RgbaVertex>& list, glm::vec2 low, glm::vec2 high,
 }  // namespace
 
 Result<Scene> blend_modes() {
-    SceneRecorder record(
-        "blend_modes",
-        "Twenty-five cells, each a gradient blended over the same background with other factors, "
-        "operations or write masks.");
+    SceneRecorder record("blend_modes",
+                         "Twenty-five cells, each a gradient blended over the same background with other factors, "
+                         "operations or write masks.");
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
     struct Mode {
         VkBlendFactor source, destination;
@@ -76,10 +74,10 @@ Result<Scene> blend_modes() {
         {kOne, VK_BLEND_FACTOR_ONE_MINUS_SRC_COLOR, VK_BLEND_OP_ADD, kOne, kZero, VK_BLEND_OP_ADD},
         {VK_BLEND_FACTOR_DST_ALPHA, VK_BLEND_FACTOR_ONE_MINUS_DST_ALPHA, VK_BLEND_OP_ADD, kOne, kOne,
          VK_BLEND_OP_SUBTRACT},
-        {VK_BLEND_FACTOR_ONE_MINUS_DST_ALPHA, VK_BLEND_FACTOR_DST_ALPHA, VK_BLEND_OP_ADD,
-         VK_BLEND_FACTOR_DST_ALPHA, kZero, VK_BLEND_OP_ADD},
-        {VK_BLEND_FACTOR_CONSTANT_COLOR, VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_COLOR, VK_BLEND_OP_ADD, kOne,
+        {VK_BLEND_FACTOR_ONE_MINUS_DST_ALPHA, VK_BLEND_FACTOR_DST_ALPHA, VK_BLEND_OP_ADD, VK_BLEND_FACTOR_DST_ALPHA,
          kZero, VK_BLEND_OP_ADD},
+        {VK_BLEND_FACTOR_CONSTANT_COLOR, VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_COLOR, VK_BLEND_OP_ADD, kOne, kZero,
+         VK_BLEND_OP_ADD},
         {VK_BLEND_FACTOR_CONSTANT_ALPHA, VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_ALPHA, VK_BLEND_OP_ADD,
          VK_BLEND_FACTOR_CONSTANT_ALPHA, VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_ALPHA, VK_BLEND_OP_ADD},
         {VK_BLEND_FACTOR_SRC_ALPHA_SATURATE, kOne, VK_BLEND_OP_ADD, VK_BLEND_FACTOR_SRC_ALPHA_SATURATE, kOne,
@@ -88,29 +86,24 @@ Result<Scene> blend_modes() {
          VK_BLEND_FACTOR_DST_COLOR, VK_BLEND_OP_ADD},
         {VK_BLEND_FACTOR_SRC_ALPHA, VK_BLEND_FACTOR_DST_ALPHA, VK_BLEND_OP_REVERSE_SUBTRACT, kOne, kZero,
          VK_BLEND_OP_ADD},
-        {VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA, VK_BLEND_FACTOR_SRC_ALPHA, VK_BLEND_OP_ADD, kZero, kOne,
-         VK_BLEND_OP_ADD},
+        {VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA, VK_BLEND_FACTOR_SRC_ALPHA, VK_BLEND_OP_ADD, kZero, kOne, VK_BLEND_OP_ADD},
         {VK_BLEND_FACTOR_DST_COLOR, VK_BLEND_FACTOR_SRC_COLOR, VK_BLEND_OP_ADD, kOne, kZero, VK_BLEND_OP_ADD},
         {kOne, kZero, VK_BLEND_OP_ADD, kOne, kZero, VK_BLEND_OP_ADD, VK_COLOR_COMPONENT_R_BIT},
-        {VK_BLEND_FACTOR_SRC_ALPHA, VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA, VK_BLEND_OP_ADD, kOne, kZero,
-         VK_BLEND_OP_ADD, VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT},
+        {VK_BLEND_FACTOR_SRC_ALPHA, VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA, VK_BLEND_OP_ADD, kOne, kZero, VK_BLEND_OP_ADD,
+         VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT},
         {VK_BLEND_FACTOR_CONSTANT_COLOR, kOne, VK_BLEND_OP_SUBTRACT, kOne, kZero, VK_BLEND_OP_ADD},
-        {VK_BLEND_FACTOR_ONE_MINUS_DST_COLOR, VK_BLEND_FACTOR_ONE_MINUS_SRC_COLOR, VK_BLEND_OP_ADD, kZero,
-         kZero, VK_BLEND_OP_ADD},
-        {kZero, VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA, VK_BLEND_OP_ADD, kZero,
-         VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA, VK_BLEND_OP_ADD},
+        {VK_BLEND_FACTOR_ONE_MINUS_DST_COLOR, VK_BLEND_FACTOR_ONE_MINUS_SRC_COLOR, VK_BLEND_OP_ADD, kZero, kZero,
+         VK_BLEND_OP_ADD},
+        {kZero, VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA, VK_BLEND_OP_ADD, kZero, VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA,
+         VK_BLEND_OP_ADD},
     }};
     std::vector<RgbaVertex> vertices;
-    addQuad(vertices, {-1, -1}, {1, 1},
-            {{{0.1f, 0.25f, 0.45f, 0.9f},
-              {0.2f, 0.6f, 0.55f, 0.2f},
-              {0.85f, 0.4f, 0.3f, 0.6f},
-              {0.95f, 0.85f, 0.5f, 1}}});
-    addQuad(vertices, {-0.84f, -0.84f}, {0.84f, 0.84f},
-            {{{0.95f, 0.3f, 0.2f, 0.05f},
-              {0.2f, 0.85f, 0.3f, 0.95f},
-              {0.2f, 0.4f, 0.9f, 0.5f},
-              {0.9f, 0.8f, 0.2f, 0.7f}}});
+    addQuad(
+        vertices, {-1, -1}, {1, 1},
+        {{{0.1f, 0.25f, 0.45f, 0.9f}, {0.2f, 0.6f, 0.55f, 0.2f}, {0.85f, 0.4f, 0.3f, 0.6f}, {0.95f, 0.85f, 0.5f, 1}}});
+    addQuad(
+        vertices, {-0.84f, -0.84f}, {0.84f, 0.84f},
+        {{{0.95f, 0.3f, 0.2f, 0.05f}, {0.2f, 0.85f, 0.3f, 0.95f}, {0.2f, 0.4f, 0.9f, 0.5f}, {0.9f, 0.8f, 0.2f, 0.7f}}});
     const uint32_t vertexShader = record.vertex(kRgbaVertexGlsl);
     const uint32_t fragmentShader = record.fragment(kRgbaFragmentGlsl);
     const uint32_t background = rgbaPipeline(record, vertexShader, fragmentShader);
@@ -206,10 +199,8 @@ Result<Scene> multiple_targets() {
     constexpr VkImageUsageFlags kSampled = VK_IMAGE_USAGE_SAMPLED_BIT;
     constexpr VkSampleCountFlagBits kOnce = VK_SAMPLE_COUNT_1_BIT;
     const uint32_t albedo = record.colorTarget("albedo", kRgba8, kSceneExtent, kOnce, kSampled);
-    const uint32_t normal =
-        record.colorTarget("normal", VK_FORMAT_R16G16B16A16_SFLOAT, kSceneExtent, kOnce, kSampled);
-    const uint32_t distance =
-        record.colorTarget("distance", VK_FORMAT_R32_SFLOAT, kSceneExtent, kOnce, kSampled);
+    const uint32_t normal = record.colorTarget("normal", VK_FORMAT_R16G16B16A16_SFLOAT, kSceneExtent, kOnce, kSampled);
+    const uint32_t distance = record.colorTarget("distance", VK_FORMAT_R32_SFLOAT, kSceneExtent, kOnce, kSampled);
     const uint32_t depth = record.depthTarget("depth", VK_FORMAT_D32_SFLOAT, kSceneExtent);
     const uint32_t lit = record.colorTarget("lit", kRgba8, kSceneExtent);
     const Mesh ball = sphereMesh(36, 18);
@@ -280,12 +271,11 @@ void main() {
         .color(normal, {0, 0, 0, 0})
         .color(distance, {1000, 0, 0, 0})
         .depthStencil(depth);
-    const std::array<std::pair<glm::vec4, glm::vec4>, 5> balls{
-        {{{-1.05f, -0.1f, 0.5f, 0.75f}, {0.9f, 0.42f, 0.25f, 1}},
-         {{0.35f, -0.3f, 0.9f, 0.55f}, {0.95f, 0.8f, 0.35f, 1}},
-         {{0.9f, 0.25f, -0.9f, 1.0f}, {0.3f, 0.55f, 0.75f, 1}},
-         {{-0.5f, 0.6f, -2.2f, 0.9f}, {0.4f, 0.7f, 0.45f, 1}},
-         {{1.5f, -0.5f, 0.4f, 0.35f}, {0.7f, 0.35f, 0.6f, 1}}}};
+    const std::array<std::pair<glm::vec4, glm::vec4>, 5> balls{{{{-1.05f, -0.1f, 0.5f, 0.75f}, {0.9f, 0.42f, 0.25f, 1}},
+                                                                {{0.35f, -0.3f, 0.9f, 0.55f}, {0.95f, 0.8f, 0.35f, 1}},
+                                                                {{0.9f, 0.25f, -0.9f, 1.0f}, {0.3f, 0.55f, 0.75f, 1}},
+                                                                {{-0.5f, 0.6f, -2.2f, 0.9f}, {0.4f, 0.7f, 0.45f, 1}},
+                                                                {{1.5f, -0.5f, 0.4f, 0.35f}, {0.7f, 0.35f, 0.6f, 1}}}};
     for (const auto& [placement, color] : balls) {
         record.draw(fill, static_cast<uint32_t>(ball.indices.size()))
             .vertices(vertexBuffer)
@@ -293,10 +283,7 @@ void main() {
             .push(Placement{camera, placement, color});
     }
     record.pass(kSceneExtent).color(lit, {0, 0, 0, 1});
-    record.draw(light, 3)
-        .texture(0, albedo, nearest)
-        .texture(1, normal, nearest)
-        .texture(2, distance, nearest);
+    record.draw(light, 3).texture(0, albedo, nearest).texture(1, normal, nearest).texture(2, distance, nearest);
     record.output(lit);
     record.output(albedo);
     record.output(normal);

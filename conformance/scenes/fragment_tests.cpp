@@ -82,9 +82,7 @@ Result<Scene> scissor_viewport() {
     view(less).viewport(168, 85, 83, 85).scissor(209, 120, 1, 50);
     view(less).viewport(168, 85, 83, 85).scissor(180, 127, 60, 1);
     view(less).viewport(168, 85, 83, 85).scissor(200, 100, 0, 0);
-    view(less)
-        .viewport(0, 170, 40, 85)
-        .scissor(0, 170, 83, 85);  // cut at the view volume, not by the scissor
+    view(less).viewport(0, 170, 40, 85).scissor(0, 170, 83, 85);       // cut at the view volume, not by the scissor
     view(less).viewport(-40, 200, 250, 250).scissor(84, 170, 83, 85);  // partly off the target
     view(less).viewport(168, 170, 83, 42.5f).scissor(168, 170, 83, 42);
     view(less).viewport(168, 255, 83, -42.5f).scissor(168, 213, 83, 42);
@@ -94,10 +92,9 @@ Result<Scene> scissor_viewport() {
 }
 
 Result<Scene> depth_intersect() {
-    SceneRecorder record(
-        "depth_intersect",
-        "Three leaning sheets cut through one another; the depth test decides every pixel, then a "
-        "GREATER pass without depth writes tints what lies behind a fourth.");
+    SceneRecorder record("depth_intersect",
+                         "Three leaning sheets cut through one another; the depth test decides every pixel, then a "
+                         "GREATER pass without depth writes tints what lies behind a fourth.");
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
     const uint32_t depth = record.depthTarget("depth", VK_FORMAT_D32_SFLOAT, kSceneExtent);
     std::vector<Vertex> vertices;
@@ -111,9 +108,8 @@ Result<Scene> depth_intersect() {
         vertices.insert(vertices.end(), {a, b, c, c, b, d});
     }
     const glm::vec3 tint(0.85f, 0.95f, 0.9f);
-    vertices.insert(
-        vertices.end(),
-        {{{-0.6f, -0.6f, 0.35f}, tint}, {{0.9f, 0.0f, 0.6f}, tint}, {{-0.4f, 0.8f, 0.45f}, tint}});
+    vertices.insert(vertices.end(),
+                    {{{-0.6f, -0.6f, 0.35f}, tint}, {{0.9f, 0.0f, 0.6f}, tint}, {{-0.4f, 0.8f, 0.45f}, tint}});
     const uint32_t less = pipeline(record).depth(VK_COMPARE_OP_LESS);
     VkPipelineColorBlendAttachmentState half{};
     half.blendEnable = VK_TRUE;
@@ -121,10 +117,8 @@ Result<Scene> depth_intersect() {
     half.dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_COLOR;
     half.srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
     half.colorWriteMask = 0xf;
-    const uint32_t greater = pipeline(record)
-                                 .depth(VK_COMPARE_OP_GREATER, false)
-                                 .blend(half)
-                                 .blendConstants({0.5f, 0.5f, 0.5f, 0.5f});
+    const uint32_t greater =
+        pipeline(record).depth(VK_COMPARE_OP_GREATER, false).blend(half).blendConstants({0.5f, 0.5f, 0.5f, 0.5f});
     const uint32_t buffer = record.vertexBuffer("sheets", vertices);
     record.pass(kSceneExtent).color(target, {0.08f, 0.09f, 0.13f, 1}).depthStencil(depth);
     record.draw(less, 18).vertices(buffer);
@@ -162,21 +156,18 @@ Result<Scene> stencil_winding() {
     const std::array<glm::vec3, 4> palette{
         {{0.95f, 0.75f, 0.25f}, {0.93f, 0.45f, 0.3f}, {0.72f, 0.2f, 0.4f}, {0.25f, 0.65f, 0.7f}}};
     for (const glm::vec3 color : palette) {
-        cover.insert(cover.end(),
-                     {{{-1, -1, 0}, color}, {{3, -1, 0}, color * 0.6f}, {{-1, 3, 0}, color * 0.8f}});
+        cover.insert(cover.end(), {{{-1, -1, 0}, color}, {{3, -1, 0}, color * 0.6f}, {{-1, 3, 0}, color * 0.8f}});
     }
     constexpr uint32_t kCountBits = 0x0f, kMarkBit = 0x80;
-    const uint32_t count =
-        pipeline(record)
-            .stencil(op(VK_COMPARE_OP_ALWAYS, VK_STENCIL_OP_INCREMENT_AND_WRAP, 0, 0xff, kCountBits),
-                     op(VK_COMPARE_OP_ALWAYS, VK_STENCIL_OP_DECREMENT_AND_WRAP, 0, 0xff, kCountBits))
-            .writeMask(0);
+    const uint32_t count = pipeline(record)
+                               .stencil(op(VK_COMPARE_OP_ALWAYS, VK_STENCIL_OP_INCREMENT_AND_WRAP, 0, 0xff, kCountBits),
+                                        op(VK_COMPARE_OP_ALWAYS, VK_STENCIL_OP_DECREMENT_AND_WRAP, 0, 0xff, kCountBits))
+                               .writeMask(0);
     const uint32_t starBuffer = record.vertexBuffer("star", star);
     const uint32_t coverBuffer = record.vertexBuffer("cover", cover);
     std::vector<uint32_t> paints;
     for (const uint32_t winding : {1u, 2u, 3u}) {
-        const VkStencilOpState equal =
-            op(VK_COMPARE_OP_EQUAL, VK_STENCIL_OP_INVERT, winding, kCountBits, kMarkBit);
+        const VkStencilOpState equal = op(VK_COMPARE_OP_EQUAL, VK_STENCIL_OP_INVERT, winding, kCountBits, kMarkBit);
         paints.push_back(pipeline(record).stencil(equal, equal));
     }
     // Whatever was not marked by the passes before, in a lower half only.
@@ -191,10 +182,9 @@ Result<Scene> stencil_winding() {
 }
 
 Result<Scene> alpha_test() {
-    SceneRecorder record(
-        "alpha_test",
-        "Three tilted sheets of leaves in front of one another: discard cuts them out, and what is "
-        "discarded writes no depth.");
+    SceneRecorder record("alpha_test",
+                         "Three tilted sheets of leaves in front of one another: discard cuts them out, and what is "
+                         "discarded writes no depth.");
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
     const uint32_t depth = record.depthTarget("depth", VK_FORMAT_D16_UNORM, kSceneExtent);
     struct LeafVertex {
@@ -203,8 +193,7 @@ Result<Scene> alpha_test() {
         glm::vec3 color;
     };
     std::vector<LeafVertex> vertices;
-    const std::array<glm::vec3, 3> colors{
-        {{0.86f, 0.42f, 0.2f}, {0.45f, 0.65f, 0.28f}, {0.16f, 0.4f, 0.36f}}};
+    const std::array<glm::vec3, 3> colors{{{0.86f, 0.42f, 0.2f}, {0.45f, 0.65f, 0.28f}, {0.16f, 0.4f, 0.36f}}};
     for (int sheet = 0; sheet < 3; ++sheet) {  // front to back
         const auto i = static_cast<float>(sheet);
         const glm::vec2 shift(0.13f * i - 0.1f, 0.1f - 0.09f * i);
@@ -267,8 +256,7 @@ Result<Scene> msaa_resolve() {
     constexpr int kSpokes = 23;
     for (int spoke = 0; spoke < kSpokes; ++spoke) {
         const double turns = (spoke + 0.37) / kSpokes;
-        const glm::vec3 color =
-            spoke % 2 == 0 ? glm::vec3(0.96f, 0.66f, 0.24f) : glm::vec3(0.3f, 0.7f, 0.83f);
+        const glm::vec3 color = spoke % 2 == 0 ? glm::vec3(0.96f, 0.66f, 0.24f) : glm::vec3(0.3f, 0.7f, 0.83f);
         vertices.push_back({{0.013f, -0.021f, 0.3f}, color});
         vertices.push_back({{onCircle(turns - 0.004, 0.96), 0.5f}, color});
         vertices.push_back({{onCircle(turns + 0.004, 0.96), 0.5f}, color});

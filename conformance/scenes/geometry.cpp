@@ -26,8 +26,7 @@ glm::vec2 onCircle(double turns, double radius) {
 }  // namespace
 
 Result<Scene> solid() {
-    SceneRecorder record("solid",
-                         "One triangle of one colour over a cleared target: coverage and nothing else.");
+    SceneRecorder record("solid", "One triangle of one colour over a cleared target: coverage and nothing else.");
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
     const uint32_t pipeline = record
                                   .pipeline(record.vertex(R"(#version 450
@@ -40,8 +39,8 @@ void main() { color = vec4(0.957, 0.545, 0.196, 1.0); }
 )"))
                                   .binding(sizeof(glm::vec2))
                                   .attribute(VK_FORMAT_R32G32_SFLOAT, 0);
-    const uint32_t vertices = record.vertexBuffer(
-        "triangle", std::vector<glm::vec2>{{-0.62f, -0.71f}, {0.77f, -0.23f}, {-0.27f, 0.81f}});
+    const uint32_t vertices =
+        record.vertexBuffer("triangle", std::vector<glm::vec2>{{-0.62f, -0.71f}, {0.77f, -0.23f}, {-0.27f, 0.81f}});
     record.pass(kSceneExtent).color(target, {0.09f, 0.11f, 0.2f, 1});
     record.draw(pipeline, 3).vertices(vertices);
     record.output(target);
@@ -50,8 +49,7 @@ void main() { color = vec4(0.957, 0.545, 0.196, 1.0); }
 
 Result<Scene> gouraud() {
     constexpr VkExtent2D kExtent{253, 241};
-    SceneRecorder record("gouraud",
-                         "Red, green and blue corners interpolated over a triangle; 253 x 241 pixels.");
+    SceneRecorder record("gouraud", "Red, green and blue corners interpolated over a triangle; 253 x 241 pixels.");
     const uint32_t target = record.colorTarget("color", kRgba8, kExtent);
     const uint32_t pipeline = colorPipeline(record);
     const uint32_t vertices =
@@ -65,9 +63,8 @@ Result<Scene> gouraud() {
 }
 
 Result<Scene> interpolation_modes() {
-    SceneRecorder record(
-        "interpolation_modes",
-        "The same tilted quad with smooth, noperspective and flat colours, from left to right.");
+    SceneRecorder record("interpolation_modes",
+                         "The same tilted quad with smooth, noperspective and flat colours, from left to right.");
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
     const uint32_t vertexShader = record.vertex(R"(#version 450
 layout(location = 0) in vec4 position;
@@ -88,8 +85,7 @@ void main() {
         glm::vec3 color;
     };
     // The far edge is at w = 4: a quad leaning back, two triangles of different provoking colours.
-    const Vertex a{{-0.85f, 0.9f, 0.1f, 1}, {0.98f, 0.85f, 0.24f}},
-        b{{0.85f, 0.9f, 0.1f, 1}, {0.9f, 0.2f, 0.35f}};
+    const Vertex a{{-0.85f, 0.9f, 0.1f, 1}, {0.98f, 0.85f, 0.24f}}, b{{0.85f, 0.9f, 0.1f, 1}, {0.9f, 0.2f, 0.35f}};
     const Vertex c{{-2.2f, -3.5f, 2, 4}, {0.15f, 0.3f, 0.7f}}, d{{2.2f, -3.5f, 2, 4}, {0.1f, 0.75f, 0.6f}};
     const uint32_t vertices = record.vertexBuffer("quad", std::vector<Vertex>{a, b, c, d, c, b});
     std::vector<uint32_t> pipelines;
@@ -142,12 +138,10 @@ Result<Scene> indexed_strip() {
     const auto hexagonBase = static_cast<int32_t>(vertices.size());
     vertices.push_back({{0, 0}, {1, 0.98f, 0.9f}});
     for (int corner = 0; corner < 6; ++corner) {
-        vertices.push_back(
-            {onCircle(corner / 6.0, 0.31), {0.86f, 0.24f, 0.3f + 0.1f * static_cast<float>(corner)}});
+        vertices.push_back({onCircle(corner / 6.0, 0.31), {0.86f, 0.24f, 0.3f + 0.1f * static_cast<float>(corner)}});
     }
     std::vector<uint32_t> list{99999, 99999};  // skipped by the first index
-    for (uint32_t corner = 0; corner < 6; ++corner)
-        list.insert(list.end(), {0, corner + 1, (corner + 1) % 6 + 1});
+    for (uint32_t corner = 0; corner < 6; ++corner) list.insert(list.end(), {0, corner + 1, (corner + 1) % 6 + 1});
 
     const uint32_t stripPipeline = colorPipeline(record).topology(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP, true);
     const uint32_t listPipeline = colorPipeline(record);
@@ -207,8 +201,7 @@ void main() {
                                   .attribute(VK_FORMAT_R32G32_SFLOAT, offsetof(Instance, turn))
                                   .attribute(VK_FORMAT_R8G8B8A8_UNORM, offsetof(Instance, color));
     const uint32_t dart = record.vertexBuffer(
-        "dart", std::vector<glm::vec2>{
-                    {0.9f, 0}, {-0.7f, 0.62f}, {-0.3f, 0}, {0.9f, 0}, {-0.3f, 0}, {-0.7f, -0.62f}});
+        "dart", std::vector<glm::vec2>{{0.9f, 0}, {-0.7f, 0.62f}, {-0.3f, 0}, {0.9f, 0}, {-0.3f, 0}, {-0.7f, -0.62f}});
     const uint32_t instanceBuffer = record.vertexBuffer("instances", instances);
     record.pass(kSceneExtent).color(target, {0.95f, 0.94f, 0.91f, 1});
     record.draw(pipeline, 6).vertices(dart, 0).vertices(instanceBuffer, 1).instances(kRows * kRows, kSkipped);
@@ -300,9 +293,7 @@ Result<Scene> shared_edges() {
     }
     for (int ring = 0; ring < kRings; ++ring) {
         for (int spoke = 0; spoke < kSpokes; ++spoke) {
-            const auto at = [&](int r, int s) {
-                return points[static_cast<size_t>(r * kSpokes + s % kSpokes)];
-            };
+            const auto at = [&](int r, int s) { return points[static_cast<size_t>(r * kSpokes + s % kSpokes)]; };
             // Multiples of 1/255 add up without rounding: red counts, green and blue are the cell's colour.
             const glm::vec3 color(1.0f / 255, static_cast<float>(60 + random.next() % 120) / 255,
                                   static_cast<float>(90 + ring * 20) / 255);
@@ -339,8 +330,7 @@ void main() { color = vec4(vColor, 0.0); }
                                        .attribute(VK_FORMAT_R32G32_SFLOAT, offsetof(ColorVertex, position))
                                        .attribute(VK_FORMAT_R32G32B32_SFLOAT, offsetof(ColorVertex, color))
                                        .blend(add);
-    const uint32_t showPipeline =
-        record.pipeline(record.vertex(kCoverVertexGlsl), record.fragment(R"(#version 450
+    const uint32_t showPipeline = record.pipeline(record.vertex(kCoverVertexGlsl), record.fragment(R"(#version 450
 layout(binding = 0) uniform sampler2D counts;
 layout(location = 0) out vec4 color;
 void main() {

@@ -22,8 +22,7 @@ PipelineRecorder& solidVertices(PipelineRecorder& pipeline) {
 
 Result<Scene> render_to_texture() {
     constexpr VkExtent2D kInner{64, 64};
-    SceneRecorder record("render_to_texture",
-                         "A small picture is drawn first, then sampled on the faces of a cube.");
+    SceneRecorder record("render_to_texture", "A small picture is drawn first, then sampled on the faces of a cube.");
     const uint32_t inner =
         record.colorTarget("inner", kRgba8, kInner, VK_SAMPLE_COUNT_1_BIT, VK_IMAGE_USAGE_SAMPLED_BIT);
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
@@ -36,14 +35,12 @@ Result<Scene> render_to_texture() {
         };
         const auto share = static_cast<float>(ray) / 9;
         const glm::vec3 color(0.98f - 0.2f * share, 0.5f + 0.4f * share, 0.25f);
-        rays.insert(rays.end(),
-                    {{{0, 0}, color * 0.6f}, {at(ray), color}, {at(ray + 0.55), {0.75f, 0.2f, 0.35f}}});
+        rays.insert(rays.end(), {{{0, 0}, color * 0.6f}, {at(ray), color}, {at(ray + 0.55), {0.75f, 0.2f, 0.35f}}});
     }
-    const uint32_t drawRays =
-        record.pipeline(record.vertex(kColorVertexGlsl), record.fragment(kColorFragmentGlsl))
-            .binding(sizeof(ColorVertex))
-            .attribute(VK_FORMAT_R32G32_SFLOAT, offsetof(ColorVertex, position))
-            .attribute(VK_FORMAT_R32G32B32_SFLOAT, offsetof(ColorVertex, color));
+    const uint32_t drawRays = record.pipeline(record.vertex(kColorVertexGlsl), record.fragment(kColorFragmentGlsl))
+                                  .binding(sizeof(ColorVertex))
+                                  .attribute(VK_FORMAT_R32G32_SFLOAT, offsetof(ColorVertex, position))
+                                  .attribute(VK_FORMAT_R32G32B32_SFLOAT, offsetof(ColorVertex, color));
     const Mesh cube = cubeMesh();
     PipelineRecorder drawCube = record.pipeline(record.vertex(R"(#version 450
 layout(push_constant) uniform Constants { mat4 camera; } push;
@@ -91,8 +88,8 @@ Result<Scene> shadow_map() {
         "shadow_map",
         "A depth-only pass with a slope-scaled depth bias from the light; the second compares against it "
         "through a comparison sampler.");
-    const uint32_t map = record.depthTarget("map", VK_FORMAT_D32_SFLOAT, kMap, VK_SAMPLE_COUNT_1_BIT,
-                                            VK_IMAGE_USAGE_SAMPLED_BIT);
+    const uint32_t map =
+        record.depthTarget("map", VK_FORMAT_D32_SFLOAT, kMap, VK_SAMPLE_COUNT_1_BIT, VK_IMAGE_USAGE_SAMPLED_BIT);
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
     const uint32_t depth = record.depthTarget("depth", VK_FORMAT_D32_SFLOAT, kSceneExtent);
     Mesh mesh = cubeMesh();
@@ -101,8 +98,7 @@ Result<Scene> shadow_map() {
     for (const glm::vec2 corner : {glm::vec2(-6, 6), glm::vec2(6, 6), glm::vec2(6, -6), glm::vec2(-6, -6)}) {
         mesh.vertices.push_back({{corner.x, 0, corner.y}, {0, 1, 0}, corner});
     }
-    for (const int corner : {0, 1, 2, 0, 2, 3})
-        mesh.indices.push_back(static_cast<uint16_t>(floorBase + corner));
+    for (const int corner : {0, 1, 2, 0, 2, 3}) mesh.indices.push_back(static_cast<uint16_t>(floorBase + corner));
     struct Constants {
         glm::vec4 placement;  // centre and half size
         glm::vec4 color;      // alpha: how far the object is turned, as the sine of the angle
@@ -169,10 +165,9 @@ void main() {
     compare.compareOp = VK_COMPARE_OP_LESS_OR_EQUAL;
     const uint32_t sampler = record.sampler(compare);
     const glm::dvec3 light(3.2, 5.1, 2.3);
-    const uint32_t frame =
-        record.uniformBuffer("frame", Frame{cameraMatrix({1.2, 3.4, 6.2}, {0, 0.5, 0}, 42, 1, 1, 20),
-                                            orthographicMatrix(light, {0, 0, 0}, 4.2, 0.5, 14),
-                                            glm::vec4(glm::vec3(glm::normalize(light)), 0)});
+    const uint32_t frame = record.uniformBuffer("frame", Frame{cameraMatrix({1.2, 3.4, 6.2}, {0, 0.5, 0}, 42, 1, 1, 20),
+                                                               orthographicMatrix(light, {0, 0, 0}, 4.2, 0.5, 14),
+                                                               glm::vec4(glm::vec3(glm::normalize(light)), 0)});
     const uint32_t vertices = record.vertexBuffer("cube and floor", mesh.vertices);
     const uint32_t indices = record.indexBuffer("indices", mesh.indices);
     const std::array<Constants, 4> cubes{{{{-1.1f, 0.7f, 0.3f, 0.7f}, {0.9f, 0.45f, 0.27f, 0.31f}},

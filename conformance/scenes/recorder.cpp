@@ -166,8 +166,7 @@ DrawRecorder& DrawRecorder::texture(uint32_t binding, uint32_t image, uint32_t s
     return *this;
 }
 
-DrawRecorder& DrawRecorder::viewport(float x, float y, float width, float height, float minDepth,
-                                     float maxDepth) {
+DrawRecorder& DrawRecorder::viewport(float x, float y, float width, float height, float minDepth, float maxDepth) {
     draw_->viewport = {x, y, width, height, minDepth, maxDepth};
     return *this;
 }
@@ -212,8 +211,7 @@ uint32_t SceneRecorder::depthTarget(std::string_view name, VkFormat format, VkEx
     return addImage(std::move(image));
 }
 
-uint32_t SceneRecorder::texture(std::string_view name, VkFormat format, VkExtent2D extent,
-                                std::vector<Bytes> levels) {
+uint32_t SceneRecorder::texture(std::string_view name, VkFormat format, VkExtent2D extent, std::vector<Bytes> levels) {
     SceneImage image;
     image.name = name;
     image.format = format;
@@ -224,8 +222,7 @@ uint32_t SceneRecorder::texture(std::string_view name, VkFormat format, VkExtent
     return addImage(std::move(image));
 }
 
-uint32_t SceneRecorder::mipmappedTexture(std::string_view name, VkFormat format, VkExtent2D extent,
-                                         Bytes level0) {
+uint32_t SceneRecorder::mipmappedTexture(std::string_view name, VkFormat format, VkExtent2D extent, Bytes level0) {
     SceneImage image;
     image.name = name;
     image.format = format;
@@ -277,8 +274,7 @@ uint32_t SceneRecorder::shader(VkShaderStageFlagBits stage, std::string_view gls
 void SceneRecorder::specialize(uint32_t shader, uint32_t id, uint32_t value) {
     SceneShader& target = scene_.shaders[shader];
     const auto bytes = bytesOf(std::span<const uint32_t>(&value, 1));
-    target.specialization.push_back(
-        {id, static_cast<uint32_t>(target.specializationData.size()), bytes.size()});
+    target.specialization.push_back({id, static_cast<uint32_t>(target.specializationData.size()), bytes.size()});
     target.specializationData.insert(target.specializationData.end(), bytes.begin(), bytes.end());
 }
 
@@ -302,8 +298,7 @@ DrawRecorder SceneRecorder::draw(uint32_t pipeline, uint32_t count) {
     SceneDraw draw;
     draw.pipeline = pipeline;
     draw.count = count;
-    draw.viewport = {0, 0, static_cast<float>(pass.extent.width), static_cast<float>(pass.extent.height),
-                     0, 1};
+    draw.viewport = {0, 0, static_cast<float>(pass.extent.width), static_cast<float>(pass.extent.height), 0, 1};
     draw.scissor = {{0, 0}, pass.extent};
     pass.draws.push_back(std::move(draw));
     return DrawRecorder(pass.draws.back());

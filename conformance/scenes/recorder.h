@@ -86,8 +86,7 @@ class DrawRecorder {
     DrawRecorder& instances(uint32_t count, uint32_t firstInstance = 0);
     DrawRecorder& uniform(uint32_t binding, uint32_t buffer);
     DrawRecorder& texture(uint32_t binding, uint32_t image, uint32_t sampler);
-    DrawRecorder& viewport(float x, float y, float width, float height, float minDepth = 0,
-                           float maxDepth = 1);
+    DrawRecorder& viewport(float x, float y, float width, float height, float minDepth = 0, float maxDepth = 1);
     DrawRecorder& scissor(int32_t x, int32_t y, uint32_t width, uint32_t height);
 
     template <class T>
@@ -122,11 +121,9 @@ class SceneRecorder {
     }
 
     uint32_t colorTarget(std::string_view name, VkFormat format, VkExtent2D extent,
-                         VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT,
-                         VkImageUsageFlags moreUsage = 0);
+                         VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT, VkImageUsageFlags moreUsage = 0);
     uint32_t depthTarget(std::string_view name, VkFormat format, VkExtent2D extent,
-                         VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT,
-                         VkImageUsageFlags moreUsage = 0);
+                         VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT, VkImageUsageFlags moreUsage = 0);
     /// A sampled image; levels[0] has `extent`, each next one half of it.
     uint32_t texture(std::string_view name, VkFormat format, VkExtent2D extent, std::vector<Bytes> levels);
     /// A sampled image with room for all mip levels, whose levels above 0 are generated now.

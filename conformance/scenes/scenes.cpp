@@ -19,8 +19,8 @@ std::span<const SceneEntry> allScenes() {
 }
 
 const SceneEntry* findScene(std::string_view name) {
-    const auto found = std::find_if(kScenes.begin(), kScenes.end(),
-                                    [name](const SceneEntry& entry) { return entry.name == name; });
+    const auto found =
+        std::find_if(kScenes.begin(), kScenes.end(), [name](const SceneEntry& entry) { return entry.name == name; });
     return found == kScenes.end() ? nullptr : &*found;
 }
 

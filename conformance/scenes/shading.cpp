@@ -15,8 +15,7 @@ constexpr VkFormat kRgba8 = VK_FORMAT_R8G8B8A8_UNORM;
 
 Result<Mesh> loadObj(const std::string& text) {
     tinyobj::ObjReader reader;
-    if (!reader.ParseFromString(text, ""))
-        return invalidArgument("the OBJ text does not load: " + reader.Error());
+    if (!reader.ParseFromString(text, "")) return invalidArgument("the OBJ text does not load: " + reader.Error());
     const tinyobj::attrib_t& attributes = reader.GetAttrib();
     Mesh mesh;
     std::map<std::tuple<int, int, int>, uint16_t> known;
@@ -29,9 +28,8 @@ Result<Mesh> loadObj(const std::string& text) {
                 const float* position = &attributes.vertices[3 * static_cast<size_t>(index.vertex_index)];
                 const float* normal = &attributes.normals[3 * static_cast<size_t>(index.normal_index)];
                 const float* uv = &attributes.texcoords[2 * static_cast<size_t>(index.texcoord_index)];
-                mesh.vertices.push_back({{position[0], position[1], position[2]},
-                                         {normal[0], normal[1], normal[2]},
-                                         {uv[0], uv[1]}});
+                mesh.vertices.push_back(
+                    {{position[0], position[1], position[2]}, {normal[0], normal[1], normal[2]}, {uv[0], uv[1]}});
             }
             mesh.indices.push_back(entry->second);
         }
@@ -42,9 +40,8 @@ Result<Mesh> loadObj(const std::string& text) {
 }  // namespace
 
 Result<Scene> lit_model() {
-    SceneRecorder record(
-        "lit_model",
-        "A torus knot read from OBJ text, lit by two half-Lambert lights from a uniform buffer.");
+    SceneRecorder record("lit_model",
+                         "A torus knot read from OBJ text, lit by two half-Lambert lights from a uniform buffer.");
     Result<Mesh> loaded = loadObj(torusKnotObj(160, 14));
     if (!loaded) return loaded.error();
     const Mesh& mesh = loaded.value();
@@ -128,9 +125,8 @@ Result<Scene> derivatives() {
     };
     const std::vector<TexturedVertex> floor{at(-9, 2.9f), at(9, 2.9f), at(-9, -22),
                                             at(-9, -22),  at(9, 2.9f), at(9, -22)};
-    const uint32_t pipeline =
-        record
-            .pipeline(record.vertex(kTexturedVertexGlsl), record.fragment(R"(#version 450
+    const uint32_t pipeline = record
+                                  .pipeline(record.vertex(kTexturedVertexGlsl), record.fragment(R"(#version 450
 layout(location = 0) in vec2 vUv;
 layout(location = 0) out vec4 color;
 void main() {
@@ -143,9 +139,9 @@ void main() {
     color = vec4(mix(ground, vec3(0.85, 0.3, 0.25), ink), 1.0);
 }
 )"))
-            .binding(sizeof(TexturedVertex))
-            .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(TexturedVertex, position))
-            .attribute(VK_FORMAT_R32G32_SFLOAT, offsetof(TexturedVertex, uv));
+                                  .binding(sizeof(TexturedVertex))
+                                  .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(TexturedVertex, position))
+                                  .attribute(VK_FORMAT_R32G32_SFLOAT, offsetof(TexturedVertex, uv));
     const uint32_t buffer = record.vertexBuffer("floor", floor);
     record.pass(kSceneExtent).color(target, {0.11f, 0.16f, 0.23f, 1});
     record.draw(pipeline, 6).vertices(buffer);

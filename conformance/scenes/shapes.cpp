@@ -58,8 +58,7 @@ Mesh cubeMesh() {
                 const glm::vec3 position = normal + u * (2 * uv.x - 1) + v * (2 * uv.y - 1);
                 mesh.vertices.push_back({position, normal, uv});
             }
-            for (const int corner : {0, 1, 2, 0, 2, 3})
-                mesh.indices.push_back(static_cast<uint16_t>(base + corner));
+            for (const int corner : {0, 1, 2, 0, 2, 3}) mesh.indices.push_back(static_cast<uint16_t>(base + corner));
         }
     }
     return mesh;
@@ -71,16 +70,14 @@ Mesh sphereMesh(uint32_t slices, uint32_t stacks) {
         const double polar = kTau / 2 * stack / stacks;
         for (uint32_t slice = 0; slice <= slices; ++slice) {
             const double azimuth = kTau * slice / slices;
-            const glm::vec3 normal(glm::dvec3(std::sin(polar) * std::cos(azimuth), std::cos(polar),
-                                              std::sin(polar) * std::sin(azimuth)));
+            const glm::vec3 normal(
+                glm::dvec3(std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth)));
             const glm::vec2 uv(static_cast<float>(slice) / static_cast<float>(slices),
                                static_cast<float>(stack) / static_cast<float>(stacks));
             mesh.vertices.push_back({normal, normal, uv});
         }
     }
-    const auto at = [&](uint32_t stack, uint32_t slice) {
-        return static_cast<uint16_t>(stack * (slices + 1) + slice);
-    };
+    const auto at = [&](uint32_t stack, uint32_t slice) { return static_cast<uint16_t>(stack * (slices + 1) + slice); };
     for (uint32_t stack = 0; stack < stacks; ++stack) {
         for (uint32_t slice = 0; slice < slices; ++slice) {
             const uint16_t a = at(stack, slice), b = at(stack, slice + 1);

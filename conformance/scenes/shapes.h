@@ -37,8 +37,7 @@ struct Mesh {
 
 /// World to Vulkan clip space (y down, depth 0..1); the field of view is vertical, in degrees. Computed in
 /// double.
-glm::mat4 cameraMatrix(glm::dvec3 eye, glm::dvec3 target, double fieldOfView, double aspect, double nearZ,
-                       double farZ);
+glm::mat4 cameraMatrix(glm::dvec3 eye, glm::dvec3 target, double fieldOfView, double aspect, double nearZ, double farZ);
 glm::mat4 orthographicMatrix(glm::dvec3 eye, glm::dvec3 target, double halfSize, double nearZ, double farZ);
 
 /// A pseudo-random sequence, the same everywhere (PCG-XSH-RR; O'Neill, "PCG", 2014).

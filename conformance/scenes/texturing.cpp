@@ -12,8 +12,7 @@ namespace {
 constexpr VkFormat kRgba8 = VK_FORMAT_R8G8B8A8_UNORM;
 
 constexpr std::array kAddressModes{VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT,
-                                   VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                   VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER};
+                                   VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER};
 
 PipelineRecorder texturedPipeline(SceneRecorder& record, const char* fragmentGlsl = kTexturedFragmentGlsl) {
     return record.pipeline(record.vertex(kTexturedVertexGlsl), record.fragment(fragmentGlsl))
@@ -54,8 +53,8 @@ Result<Scene> addressModes(SceneRecorder record, uint32_t texture, VkFilter filt
 
 constexpr VkImageSubresourceLayers kColorLayer{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
 
-SceneBlitImage spriteBlit(uint32_t sprite, uint32_t target, VkOffset2D from0, VkOffset2D from1,
-                          VkOffset2D to0, VkOffset2D to1, VkFilter filter) {
+SceneBlitImage spriteBlit(uint32_t sprite, uint32_t target, VkOffset2D from0, VkOffset2D from1, VkOffset2D to0,
+                          VkOffset2D to1, VkFilter filter) {
     VkImageBlit region{kColorLayer,
                        {{from0.x, from0.y, 0}, {from1.x, from1.y, 1}},
                        kColorLayer,
@@ -73,9 +72,8 @@ Result<Scene> texture_nearest() {
 }
 
 Result<Scene> texture_bilinear() {
-    SceneRecorder record(
-        "texture_bilinear",
-        "Random texels, 5 x 7, magnified with a linear filter under the four address modes.");
+    SceneRecorder record("texture_bilinear",
+                         "Random texels, 5 x 7, magnified with a linear filter under the four address modes.");
     const uint32_t texture = record.texture("noise", kRgba8, {5, 7}, {noisePicture({5, 7}, 11)});
     return addressModes(std::move(record), texture, VK_FILTER_LINEAR, VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE);
 }
@@ -108,9 +106,9 @@ void main() {
     color = textureLod(picture, vUv, lod);
 }
 )");
-    const uint32_t vertices = record.vertexBuffer(
-        "quad", quad({{-1, -1, 0, 1}, {0.013f, 0.017f}}, {{1, -1, 0, 1}, {8.013f, 0.017f}},
-                     {{-1, 1, 0, 1}, {0.013f, 2.517f}}, {{1, 1, 0, 1}, {8.013f, 2.517f}}));
+    const uint32_t vertices =
+        record.vertexBuffer("quad", quad({{-1, -1, 0, 1}, {0.013f, 0.017f}}, {{1, -1, 0, 1}, {8.013f, 0.017f}},
+                                         {{-1, 1, 0, 1}, {0.013f, 2.517f}}, {{1, 1, 0, 1}, {8.013f, 2.517f}}));
     SceneSampler state;
     state.magFilter = state.minFilter = VK_FILTER_NEAREST;
     std::array<SceneSampler, 3> samplers{state, state, state};
@@ -136,9 +134,8 @@ Result<Scene> texture_trilinear() {
         "texture_trilinear",
         "A checkered floor to the horizon through generated mip levels with a trilinear filter, and a wall "
         "that picks the nearest level.");
-    const uint32_t texture =
-        record.mipmappedTexture("checker", kRgba8, {128, 128},
-                                checkerPicture({128, 128}, 16, {236, 226, 208, 255}, {62, 76, 110, 255}));
+    const uint32_t texture = record.mipmappedTexture(
+        "checker", kRgba8, {128, 128}, checkerPicture({128, 128}, 16, {236, 226, 208, 255}, {62, 76, 110, 255}));
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
     SceneSampler state;
     state.magFilter = state.minFilter = VK_FILTER_LINEAR;
@@ -174,8 +171,7 @@ Result<Scene> copy_and_blit() {
     const uint32_t result = record.colorTarget("result", kRgba8, kSceneExtent);
     record.pass(kSceneExtent).color(target, {0.17f, 0.24f, 0.31f, 1});
     record.pass(kSceneExtent).color(result, {0.86f, 0.92f, 0.94f, 1});
-    const auto copy = [&](uint32_t from, uint32_t to, VkOffset3D at, VkOffset3D destination,
-                          VkExtent3D extent) {
+    const auto copy = [&](uint32_t from, uint32_t to, VkOffset3D at, VkOffset3D destination, VkExtent3D extent) {
         record.copy({from, to, {kColorLayer, at, kColorLayer, destination, extent}});
     };
     record.blit(spriteBlit(sprite, target, {0, 0}, {12, 12}, {8, 8}, {116, 116}, VK_FILTER_NEAREST));

@@ -47,8 +47,7 @@ ChildResult runChild(const std::vector<std::string>& arguments, const std::files
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
-                                     0644);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
     posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
     pid_t child = -1;
     const int error = posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
@@ -63,8 +62,7 @@ ChildResult runChild(const std::vector<std::string>& arguments, const std::files
         if (ended < 0 || watch.milliseconds() > timeoutSeconds * 1000) {
             kill(child, SIGKILL);
             waitpid(child, &status, 0);
-            return {false, "no end after " + std::to_string(static_cast<int>(timeoutSeconds)) + " s" +
-                               lastWords(log)};
+            return {false, "no end after " + std::to_string(static_cast<int>(timeoutSeconds)) + " s" + lastWords(log)};
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }

@@ -35,12 +35,11 @@ std::vector<DriverChoice> driverChoices(const DriverPaths& paths) {
 namespace {
 
 Result<std::unique_ptr<Driver>> createApiDriver(const std::string& profile) {
-    constexpr std::array<std::pair<std::string_view, VnProfile>, 5> kProfiles{
-        {{"draft", VN_PROFILE_DRAFT},
-         {"fast", VN_PROFILE_FAST},
-         {"standard", VN_PROFILE_STANDARD},
-         {"fine", VN_PROFILE_FINE},
-         {"reference", VN_PROFILE_REFERENCE}}};
+    constexpr std::array<std::pair<std::string_view, VnProfile>, 5> kProfiles{{{"draft", VN_PROFILE_DRAFT},
+                                                                               {"fast", VN_PROFILE_FAST},
+                                                                               {"standard", VN_PROFILE_STANDARD},
+                                                                               {"fine", VN_PROFILE_FINE},
+                                                                               {"reference", VN_PROFILE_REFERENCE}}};
     for (const auto& [name, value] : kProfiles) {
         if (name != profile) continue;
         Result<std::unique_ptr<ApiDriver>> driver = ApiDriver::create({value, 0});
@@ -53,8 +52,7 @@ Result<std::unique_ptr<Driver>> createApiDriver(const std::string& profile) {
 }  // namespace
 #endif
 
-Result<std::unique_ptr<Driver>> createDriver(const DriverChoice& choice, const DriverPaths& paths,
-                                             bool validate) {
+Result<std::unique_ptr<Driver>> createDriver(const DriverChoice& choice, const DriverPaths& paths, bool validate) {
     if (!choice.present()) return unsupported("driver '" + choice.name + "': " + choice.absence);
 #if VERNIER_HAS_API
     if (choice.manifest.empty()) return createApiDriver(paths.profile);

@@ -39,8 +39,7 @@ std::vector<DriverChoice> driverChoices(const DriverPaths& paths);
 
 /// Creates the driver in this process. For Vulkan drivers it sets the loader's environment variables first,
 /// so that a process can use one only.
-Result<std::unique_ptr<Driver>> createDriver(const DriverChoice& choice, const DriverPaths& paths,
-                                             bool validate);
+Result<std::unique_ptr<Driver>> createDriver(const DriverChoice& choice, const DriverPaths& paths, bool validate);
 
 /// The oracle's images of a scene; `unsupported` in a build without the oracle.
 Result<std::vector<OracleImage>> judgeScene(const Scene& scene);

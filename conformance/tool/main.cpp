@@ -47,8 +47,8 @@ Status writePictures(const Rendering& rendering, const std::filesystem::path& di
         const RenderedImage& image = rendering.images[i];
         const Result<std::string> png = encodePng(pictureOf(image, stretchFor(image)));
         if (!png) return png.error();
-        Status status = writeFile(directory / (rendering.scene + "." + std::to_string(i) + ".png"),
-                                  png.value().data(), png.value().size());
+        Status status = writeFile(directory / (rendering.scene + "." + std::to_string(i) + ".png"), png.value().data(),
+                                  png.value().size());
         if (!status) return status;
     }
     return {};
@@ -57,8 +57,7 @@ Status writePictures(const Rendering& rendering, const std::filesystem::path& di
 int render(const std::vector<DriverChoice>& choices, const DriverPaths& paths, const RenderOptions& options) {
     const auto choice = std::find_if(choices.begin(), choices.end(),
                                      [&](const DriverChoice& each) { return each.name == options.driver; });
-    if (choice == choices.end())
-        return fail(invalidArgument("--driver: no driver is called '" + options.driver + "'"));
+    if (choice == choices.end()) return fail(invalidArgument("--driver: no driver is called '" + options.driver + "'"));
     const SceneEntry* entry = findScene(options.scene);
     if (entry == nullptr) return fail(invalidArgument("--scene: no scene is called '" + options.scene + "'"));
     const Result<Scene> scene = entry->build();
@@ -100,29 +99,23 @@ int run(int argc, char** argv) {
     app.add_option("--swiftshader", paths.swiftShader, "Manifest of SwiftShader")->capture_default_str();
 
     RenderOptions renderOptions;
-    app.add_option("--profile", paths.profile,
-                   "Accuracy of the api driver: draft, fast, standard, fine or reference");
+    app.add_option("--profile", paths.profile, "Accuracy of the api driver: draft, fast, standard, fine or reference");
 
     CLI::App* listCommand = app.add_subcommand("list", "Name the drivers and the scenes");
     CLI::App* renderCommand = app.add_subcommand("render", "Draw one scene with one driver");
-    renderCommand->add_option("--driver", renderOptions.driver, "api, icd, lavapipe or swiftshader")
-        ->required();
+    renderCommand->add_option("--driver", renderOptions.driver, "api, icd, lavapipe or swiftshader")->required();
     renderCommand->add_option("--scene", renderOptions.scene, "Name of the scene")->required();
-    renderCommand->add_option("--out", renderOptions.out, "Folder for the raw images and the timings")
-        ->required();
-    renderCommand->add_flag("--validate", renderOptions.validate,
-                            "Fail on any error of VK_LAYER_KHRONOS_validation");
+    renderCommand->add_option("--out", renderOptions.out, "Folder for the raw images and the timings")->required();
+    renderCommand->add_flag("--validate", renderOptions.validate, "Fail on any error of VK_LAYER_KHRONOS_validation");
     renderCommand->add_flag("--png", renderOptions.png, "Write a PNG file beside each raw image");
 
-    CLI::App* oracleCommand =
-        app.add_subcommand("oracle", "Compute what the specification permits in one scene");
+    CLI::App* oracleCommand = app.add_subcommand("oracle", "Compute what the specification permits in one scene");
     std::string oracleScene;
     std::filesystem::path oracleOut;
     oracleCommand->add_option("--scene", oracleScene, "Name of the scene")->required();
     oracleCommand->add_option("--out", oracleOut, "File for the result")->required();
 
-    CLI::App* runCommand =
-        app.add_subcommand("run", "Draw all scenes with all drivers, compare, and write the report");
+    CLI::App* runCommand = app.add_subcommand("run", "Draw all scenes with all drivers, compare, and write the report");
     RunOptions runOptions;
     bool withoutOracle = false;
     runCommand->add_option("--out", runOptions.out, "Folder for the report")->capture_default_str();
@@ -142,9 +135,8 @@ int run(int argc, char** argv) {
     if (*renderCommand) return render(choices, paths, renderOptions);
     if (*oracleCommand) return judge(oracleScene, oracleOut);
     runOptions.oracle = !withoutOracle;
-    runOptions.commonArguments = {
-        "--icd",         paths.icd.string(),         "--lavapipe", paths.lavapipe.string(),
-        "--swiftshader", paths.swiftShader.string(), "--profile",  paths.profile};
+    runOptions.commonArguments = {"--icd",         paths.icd.string(),         "--lavapipe", paths.lavapipe.string(),
+                                  "--swiftshader", paths.swiftShader.string(), "--profile",  paths.profile};
     const Result<bool> passed = runComparison(choices, runOptions);
     if (!passed) return fail(passed.error());
     return passed.value() ? 0 : 1;

@@ -22,8 +22,7 @@ Status saveOracle(const std::vector<OracleImage>& images, const std::filesystem:
         const ImageHeader header{static_cast<uint32_t>(image.format), image.extent.width, image.extent.height,
                                  sizeof(OraclePixel)};
         data.append(reinterpret_cast<const char*>(&header), sizeof header);
-        data.append(reinterpret_cast<const char*>(image.pixels.data()),
-                    image.pixels.size() * sizeof(OraclePixel));
+        data.append(reinterpret_cast<const char*>(image.pixels.data()), image.pixels.size() * sizeof(OraclePixel));
     }
     return writeFile(path, data.data(), data.size());
 }

@@ -10,8 +10,7 @@
 namespace vernier::conformance {
 namespace {
 
-std::filesystem::path rawPath(const std::filesystem::path& directory, const std::string& scene,
-                              size_t index) {
+std::filesystem::path rawPath(const std::filesystem::path& directory, const std::string& scene, size_t index) {
     return directory / (scene + "." + std::to_string(index) + ".raw");
 }
 
@@ -40,10 +39,8 @@ Status saveRendering(const Rendering& rendering, const std::filesystem::path& di
     nlohmann::json images = nlohmann::json::array();
     for (size_t i = 0; i < rendering.images.size(); ++i) {
         const RenderedImage& image = rendering.images[i];
-        images.push_back(
-            {{"format", image.format}, {"width", image.extent.width}, {"height", image.extent.height}});
-        Status status =
-            writeFile(rawPath(directory, rendering.scene, i), image.texels.data(), image.texels.size());
+        images.push_back({{"format", image.format}, {"width", image.extent.width}, {"height", image.extent.height}});
+        Status status = writeFile(rawPath(directory, rendering.scene, i), image.texels.data(), image.texels.size());
         if (!status) return status;
     }
     const Timing& timing = rendering.timing;
@@ -74,8 +71,8 @@ Result<Rendering> loadRendering(const std::filesystem::path& directory, const st
         rendering.version = document.at("version").get<std::string>();
         rendering.limits = document.at("limits").get<std::string>();
         const nlohmann::json& times = document.at("milliseconds");
-        rendering.timing = {times.at("startUp"), times.at("pipelines"), times.at("firstImage"),
-                            times.at("frame"), document.at("frames")};
+        rendering.timing = {times.at("startUp"), times.at("pipelines"), times.at("firstImage"), times.at("frame"),
+                            document.at("frames")};
         for (const nlohmann::json& entry : document.at("images")) {
             RenderedImage image;
             image.format = static_cast<VkFormat>(entry.at("format").get<int>());

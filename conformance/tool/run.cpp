@@ -71,8 +71,7 @@ std::vector<std::pair<std::string, std::string>> facts(const RunOptions& options
         {"Oracle", "exact arithmetic; for every driver, snapping to 8 sub-pixel bits is what is legal"},
         {"Start-up", "instance and device creation"},
         {"First image", "from before start-up until the pixels are in host memory"},
-        {"Frame",
-         "median of 5 to 60 runs of the recorded commands, each waited for; copies to the host not included"},
+        {"Frame", "median of 5 to 60 runs of the recorded commands, each waited for; copies to the host not included"},
         {"Validation", options.validate ? "VK_LAYER_KHRONOS_validation on: its times count" : "off"}};
 }
 
@@ -85,8 +84,7 @@ ReportRendering renderInChild(const DriverChoice& choice, const std::string& sce
     std::filesystem::remove(folder / (scene + ".json"),
                             ignored);  // an old one must not stand in for a failure
     std::vector<std::string> arguments = options.commonArguments;
-    arguments.insert(arguments.end(),
-                     {"render", "--driver", choice.name, "--scene", scene, "--out", folder.string()});
+    arguments.insert(arguments.end(), {"render", "--driver", choice.name, "--scene", scene, "--out", folder.string()});
     if (options.validate) arguments.push_back("--validate");
     const ChildResult child = runChild(arguments, folder / (scene + ".log"), options.timeoutSeconds);
     ReportRendering rendering;
@@ -155,15 +153,13 @@ bool wanted(const RunOptions& options, const std::string& driver) {
 
 void printVerdict(const Report& report, const std::filesystem::path& out) {
     for (const ReportDriver& driver : report.drivers) {
-        if (!driver.absence.empty())
-            std::printf("skipped %s: %s\n", driver.name.c_str(), driver.absence.c_str());
+        if (!driver.absence.empty()) std::printf("skipped %s: %s\n", driver.name.c_str(), driver.absence.c_str());
     }
     for (const std::string& line : report.judgement.covered) std::printf("known gap: %s\n", line.c_str());
     for (const std::string& line : report.judgement.stale) std::printf("stale gap: %s\n", line.c_str());
-    for (const std::string& line : report.judgement.violations)
-        std::printf("UNEXPLAINED: %s\n", line.c_str());
-    std::printf("%s: %zu scenes, report in %s\n", report.judgement.passed() ? "passed" : "FAILED",
-                report.scenes.size(), (out / "index.html").c_str());
+    for (const std::string& line : report.judgement.violations) std::printf("UNEXPLAINED: %s\n", line.c_str());
+    std::printf("%s: %zu scenes, report in %s\n", report.judgement.passed() ? "passed" : "FAILED", report.scenes.size(),
+                (out / "index.html").c_str());
 }
 
 }  // namespace
@@ -193,8 +189,7 @@ Result<bool> runComparison(const std::vector<DriverChoice>& choices, const RunOp
         for (size_t i = 0; i < choices.size(); ++i) {
             if (!report.drivers[i].absence.empty()) continue;
             progress.step(choices[i].name + " " + scene.scene.name);
-            scene.renderings[choices[i].name] =
-                renderInChild(choices[i], scene.scene.name, options, report.drivers[i]);
+            scene.renderings[choices[i].name] = renderInChild(choices[i], scene.scene.name, options, report.drivers[i]);
         }
         scene.oracleAbsence = "not asked for";
         if (options.oracle) {
@@ -204,18 +199,16 @@ Result<bool> runComparison(const std::vector<DriverChoice>& choices, const RunOp
         if (!scene.oracle.empty()) extent.drivers.push_back("oracle");
         VERNIER_TRY(compareScene(scene, report.drivers));
         const std::vector<Finding> found = findingsOf(scene, report.drivers);
-        scene.judged =
-            std::any_of(report.drivers.begin(), report.drivers.end(),
-                        [](const ReportDriver& driver) { return driver.ours && driver.absence.empty(); });
+        scene.judged = std::any_of(report.drivers.begin(), report.drivers.end(),
+                                   [](const ReportDriver& driver) { return driver.ours && driver.absence.empty(); });
         scene.failed = !judgeFindings(found, gaps.value(), {}).violations.empty();
         findings.insert(findings.end(), found.begin(), found.end());
         report.scenes.push_back(std::move(scene));
     }
     report.judgement = judgeFindings(findings, gaps.value(), extent);
-    const bool judged = std::any_of(report.scenes.begin(), report.scenes.end(),
-                                    [](const ReportScene& scene) { return scene.judged; });
-    if (!judged)
-        report.judgement.violations.push_back("no driver of Vernier's took part: nothing was judged");
+    const bool judged =
+        std::any_of(report.scenes.begin(), report.scenes.end(), [](const ReportScene& scene) { return scene.judged; });
+    if (!judged) report.judgement.violations.push_back("no driver of Vernier's took part: nothing was judged");
     VERNIER_TRY(writeReport(report, options.out));
     printVerdict(report, options.out);
     return report.judgement.passed();

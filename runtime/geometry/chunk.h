@@ -11,7 +11,7 @@
 
 namespace vernier {
 
-/// Pixels on a side. Measured between 32 and 128: 64 is best or within 2% on the benchmark scenes.
+/// Pixels on a side. 64 rows of 64 RGBA8 and D32 texels fill a 32 KiB first-level cache.
 inline constexpr int32_t kTileSize = 64;
 inline constexpr int32_t kBlockSize = 8;
 inline constexpr uint32_t kChunkPrimitives = 1024;

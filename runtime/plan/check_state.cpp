@@ -27,11 +27,9 @@ Status checkVertexInput(const GraphicsState& state) {
         const FormatInfo* info = findFormat(attribute.format);
         if (info == nullptr || (info->bufferFeatures & VK_FORMAT_FEATURE_VERTEX_BUFFER_BIT) == 0)
             return unsupported(name + ": " + formatName(attribute.format) + " is not a vertex format");
-        const bool found =
-            std::any_of(state.vertexBindings.begin(), state.vertexBindings.end(),
-                        [&](const auto& binding) { return binding.binding == attribute.binding; });
-        if (!found)
-            return invalidArgument(name + ": binding " + number(attribute.binding) + " is not described");
+        const bool found = std::any_of(state.vertexBindings.begin(), state.vertexBindings.end(),
+                                       [&](const auto& binding) { return binding.binding == attribute.binding; });
+        if (!found) return invalidArgument(name + ": binding " + number(attribute.binding) + " is not described");
     }
     return {};
 }
@@ -80,8 +78,7 @@ Status checkAttachments(const GraphicsState& state) {
     }
     if (state.depthStencilFormat == VK_FORMAT_UNDEFINED) return {};
     const FormatInfo* info = findFormat(state.depthStencilFormat);
-    if (info == nullptr ||
-        (info->optimalTilingFeatures & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT) == 0)
+    if (info == nullptr || (info->optimalTilingFeatures & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT) == 0)
         return unsupported("GraphicsState::depthStencilFormat: " + formatName(state.depthStencilFormat) +
                            " cannot be a depth/stencil attachment");
     return {};
@@ -89,17 +86,14 @@ Status checkAttachments(const GraphicsState& state) {
 
 Status refuseBuiltins(const ir::Program& program) {
     for (const ir::InterfaceSlot& slot : program.outputs) {
-        if (slot.builtin == ir::Builtin::layer)
-            return unsupported("vertex shader: writing gl_Layer is not supported");
+        if (slot.builtin == ir::Builtin::layer) return unsupported("vertex shader: writing gl_Layer is not supported");
         if (slot.builtin == ir::Builtin::viewportIndex)
             return unsupported("vertex shader: writing gl_ViewportIndex is not supported");
         if (slot.builtin == ir::Builtin::fragStencilRef)
             return unsupported("fragment shader: writing gl_FragStencilRefARB is not supported");
-        const bool distance =
-            slot.builtin == ir::Builtin::clipDistance || slot.builtin == ir::Builtin::cullDistance;
+        const bool distance = slot.builtin == ir::Builtin::clipDistance || slot.builtin == ir::Builtin::cullDistance;
         if (distance && slot.component >= kMaxClipDistances)
-            return unsupported("vertex shader: more than " + number(kMaxClipDistances) +
-                               " clip or cull distances");
+            return unsupported("vertex shader: more than " + number(kMaxClipDistances) + " clip or cull distances");
     }
     for (const ir::InterfaceSlot& slot : program.inputs)
         if (slot.builtin == ir::Builtin::clipDistance || slot.builtin == ir::Builtin::cullDistance ||
@@ -125,9 +119,8 @@ Status checkInterfaces(const GraphicsState& state, const ir::Program& vertex, co
     if (Status status = refuseBuiltins(vertex); !status) return status;
     for (const ir::InterfaceSlot& slot : vertex.inputs) {
         if (slot.builtin != ir::Builtin::user) continue;
-        const bool found =
-            std::any_of(state.vertexAttributes.begin(), state.vertexAttributes.end(),
-                        [&](const auto& attribute) { return attribute.location == slot.location; });
+        const bool found = std::any_of(state.vertexAttributes.begin(), state.vertexAttributes.end(),
+                                       [&](const auto& attribute) { return attribute.location == slot.location; });
         if (!found)
             return invalidArgument("vertex shader: input location " + number(slot.location) +
                                    " has no entry in GraphicsState::vertexAttributes");

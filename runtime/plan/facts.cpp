@@ -8,12 +8,8 @@ namespace {
 class FactWriter {
   public:
     explicit FactWriter(Plan& plan) : plan_(plan) {}
-    void runs(std::string what, std::string why) {
-        add(PlanFact::Kind::runs, std::move(what), std::move(why));
-    }
-    void leftOut(std::string what, std::string why) {
-        add(PlanFact::Kind::leftOut, std::move(what), std::move(why));
-    }
+    void runs(std::string what, std::string why) { add(PlanFact::Kind::runs, std::move(what), std::move(why)); }
+    void leftOut(std::string what, std::string why) { add(PlanFact::Kind::leftOut, std::move(what), std::move(why)); }
 
   private:
     void add(PlanFact::Kind kind, std::string what, std::string why) {
@@ -39,18 +35,16 @@ const char* tierName(MathTier tier) {
     }
 }
 
-void geometryFacts(const GraphicsState& state, const Plan& plan, const Accuracy& accuracy,
-                   FactWriter& facts) {
-    facts.runs(
-        "vertex program, once per vertex and chunk",
-        count(plan.attributes.size(), "attribute") + " fetched; " + tierName(accuracy.math) + " maths");
+void geometryFacts(const GraphicsState& state, const Plan& plan, const Accuracy& accuracy, FactWriter& facts) {
+    facts.runs("vertex program, once per vertex and chunk",
+               count(plan.attributes.size(), "attribute") + " fetched; " + tierName(accuracy.math) + " maths");
     if (state.rasterizerDiscard) {
         facts.leftOut("everything after the vertex program", "rasterizer discard is on");
         return;
     }
-    facts.runs("coverage, exact on a grid of 1/" + std::to_string(1u << accuracy.subPixelBits) + " pixel",
-               std::to_string(accuracy.subPixelBits) + " sub-pixel bits; " + count(plan.samples, "sample") +
-                   " per pixel");
+    facts.runs(
+        "coverage, exact on a grid of 1/" + std::to_string(1u << accuracy.subPixelBits) + " pixel",
+        std::to_string(accuracy.subPixelBits) + " sub-pixel bits; " + count(plan.samples, "sample") + " per pixel");
     if (plan.clipDistanceSlots.empty()) facts.leftOut("user clip planes", "no clip distance is written");
     if (!state.depthClipEnable) facts.leftOut("clipping to near and far", "depth clipping is off");
     if (state.cullMode == VK_CULL_MODE_NONE) facts.leftOut("culling", "cull mode is none");
@@ -62,8 +56,8 @@ void depthFacts(const GraphicsState& state, const Plan& plan, FactWriter& facts)
     if (!depth.any()) {
         facts.leftOut("depth and stencil tests",
                       state.depthStencilFormat == VK_FORMAT_UNDEFINED ? "there is no depth/stencil attachment"
-                      : state.depthTest || state.stencilTest ? "the tests pass always and write nothing"
-                                                             : "both tests are off");
+                      : state.depthTest || state.stencilTest          ? "the tests pass always and write nothing"
+                                                                      : "both tests are off");
         return;
     }
     std::string tests;
@@ -83,8 +77,7 @@ void depthFacts(const GraphicsState& state, const Plan& plan, FactWriter& facts)
 
 void fragmentFacts(const ir::Program* fragment, const Plan& plan, FactWriter& facts) {
     if (!plan.runsFragments) {
-        facts.leftOut("fragment program",
-                      fragment == nullptr ? "there is none" : "it writes nothing that is kept");
+        facts.leftOut("fragment program", fragment == nullptr ? "there is none" : "it writes nothing that is kept");
         return;
     }
     facts.runs(std::string("fragment program, once per ") + (plan.perSample ? "sample" : "pixel"),
@@ -98,8 +91,7 @@ void fragmentFacts(const ir::Program* fragment, const Plan& plan, FactWriter& fa
     if (plan.smoothCount > 0)
         facts.runs("perspective interpolation of " + count(plan.smoothCount, "scalar") + ", in " + arithmetic,
                    "one division per pixel, none where the vertices have equal w");
-    if (plan.smoothCount == 0)
-        facts.leftOut("perspective division", "no input is interpolated with perspective");
+    if (plan.smoothCount == 0) facts.leftOut("perspective division", "no input is interpolated with perspective");
     if (plan.linearCount > 0)
         facts.runs("linear interpolation of " + count(plan.linearCount, "scalar") + ", in " + arithmetic,
                    "noperspective");
@@ -118,8 +110,7 @@ void colorFacts(const GraphicsState& state, const Plan& plan, FactWriter& facts)
         const ColorPlan& color = plan.colors[next++];
         if (color.path == ColorPath::blend)
             facts.runs("blending into " + name + ", in float, rounded once", "blending is on");
-        if (color.path == ColorPath::logic)
-            facts.runs("logic operation on " + name, "logic operations are on");
+        if (color.path == ColorPath::logic) facts.runs("logic operation on " + name, "logic operations are on");
         if (!color.readsDestination)
             facts.leftOut("reading " + name, "no blending, no logic operation, all components written");
         if (color.readsDestination && color.path == ColorPath::store)

@@ -29,8 +29,7 @@ std::string GraphicsPipeline::explain(const DynamicState& dynamic) const {
     for (const PlanFact& fact : plan_->facts)
         line(fact.kind == PlanFact::Kind::runs ? "runs      " : "left out  ", fact.what, fact.why);
     const auto& viewport = dynamic.viewports[0];
-    if (viewport.width == 0 || viewport.height == 0)
-        line("left out  ", "rasterisation", "the viewport is empty");
+    if (viewport.width == 0 || viewport.height == 0) line("left out  ", "rasterisation", "the viewport is empty");
     const auto& scissor = dynamic.scissors[0];
     if (scissor.extent.width == 0 || scissor.extent.height == 0)
         line("left out  ", "rasterisation", "the scissor is empty");

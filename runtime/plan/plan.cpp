@@ -30,8 +30,7 @@ void planAttributes(const GraphicsState& state, const ir::Program& vertex, Isa i
         bool used = false;
         for (uint32_t slot = 0; slot < vertex.inputs.size(); ++slot) {
             const ir::InterfaceSlot& input = vertex.inputs[slot];
-            if (input.builtin != ir::Builtin::user || input.location != description.location ||
-                input.component > 3)
+            if (input.builtin != ir::Builtin::user || input.location != description.location || input.component > 3)
                 continue;
             fetch.slots[input.component] = slot;
             used = true;
@@ -112,22 +111,6 @@ void planVaryings(const ir::Program& vertex, const ir::Program& fragment, Plan& 
     }
 }
 
-DepthStorage storageOf(VkFormat format) {
-    switch (format) {
-        case VK_FORMAT_D16_UNORM:
-            return DepthStorage::d16;
-        case VK_FORMAT_X8_D24_UNORM_PACK32:
-        case VK_FORMAT_D24_UNORM_S8_UINT:
-            return DepthStorage::d24;
-        case VK_FORMAT_D32_SFLOAT:
-            return DepthStorage::d32f;
-        case VK_FORMAT_D32_SFLOAT_S8_UINT:
-            return DepthStorage::d32fs8;
-        default:
-            return DepthStorage::none;
-    }
-}
-
 bool changesStencil(const VkStencilOpState& face) {
     return face.failOp != VK_STENCIL_OP_KEEP || face.passOp != VK_STENCIL_OP_KEEP ||
            face.depthFailOp != VK_STENCIL_OP_KEEP;
@@ -136,7 +119,7 @@ bool changesStencil(const VkStencilOpState& face) {
 void planDepth(const GraphicsState& state, const ir::Program* fragment, Plan& plan) {
     DepthPlan& depth = plan.depth;
     const FormatInfo* info = findFormat(state.depthStencilFormat);
-    depth.storage = storageOf(state.depthStencilFormat);
+    depth.storage = depthStorage(state.depthStencilFormat);
     depth.hasStencil = info != nullptr && (info->aspects & VK_IMAGE_ASPECT_STENCIL_BIT) != 0;
     depth.clampToViewport = state.depthClampEnable;
     const bool hasDepth = depth.storage != DepthStorage::none;
@@ -150,8 +133,7 @@ void planDepth(const GraphicsState& state, const ir::Program* fragment, Plan& pl
     // Testing early must not be visible: not through writes for fragments that the program then drops, nor
     // through side effects of fragments that should have run.
     const bool writes =
-        depth.write ||
-        (depth.stencil && (changesStencil(state.stencilFront) || changesStencil(state.stencilBack)));
+        depth.write || (depth.stencil && (changesStencil(state.stencilFront) || changesStencil(state.stencilBack)));
     const bool dropsFragments = fragment->canDiscard || fragment->writesSampleMask || state.alphaToCoverage;
     depth.early = !fragment->writesDepth && !fragment->hasSideEffects && !(writes && dropsFragments);
 }
@@ -159,14 +141,11 @@ void planDepth(const GraphicsState& state, const ir::Program* fragment, Plan& pl
 /// src * 1 + dst * 0: the source itself.
 bool isReplace(const VkPipelineColorBlendAttachmentState& blend) {
     return blend.colorBlendOp == VK_BLEND_OP_ADD && blend.alphaBlendOp == VK_BLEND_OP_ADD &&
-           blend.srcColorBlendFactor == VK_BLEND_FACTOR_ONE &&
-           blend.dstColorBlendFactor == VK_BLEND_FACTOR_ZERO &&
-           blend.srcAlphaBlendFactor == VK_BLEND_FACTOR_ONE &&
-           blend.dstAlphaBlendFactor == VK_BLEND_FACTOR_ZERO;
+           blend.srcColorBlendFactor == VK_BLEND_FACTOR_ONE && blend.dstColorBlendFactor == VK_BLEND_FACTOR_ZERO &&
+           blend.srcAlphaBlendFactor == VK_BLEND_FACTOR_ONE && blend.dstAlphaBlendFactor == VK_BLEND_FACTOR_ZERO;
 }
 
-void planColor(const GraphicsState& state, const ir::Program& fragment, uint32_t attachment, Isa isa,
-               Plan& plan) {
+void planColor(const GraphicsState& state, const ir::Program& fragment, uint32_t attachment, Isa isa, Plan& plan) {
     const VkFormat format = state.colorFormats[attachment];
     const VkPipelineColorBlendAttachmentState& blend = state.blend[attachment];
     if (format == VK_FORMAT_UNDEFINED || blend.colorWriteMask == 0) return;
@@ -189,9 +168,8 @@ void planColor(const GraphicsState& state, const ir::Program& fragment, uint32_t
     color.texelBytes = info.bytesPerTexel;
     color.blend = blend;
     const bool isSrgb = info.color.rgba[0].kind == ComponentKind::srgb;
-    if (state.logicOpEnable &&
-        (!isFloat(info) || (!isSrgb && info.color.rgba[0].kind == ComponentKind::unorm) ||
-         info.color.rgba[0].kind == ComponentKind::snorm)) {
+    if (state.logicOpEnable && (!isFloat(info) || (!isSrgb && info.color.rgba[0].kind == ComponentKind::unorm) ||
+                                info.color.rgba[0].kind == ComponentKind::snorm)) {
         if (state.logicOp == VK_LOGIC_OP_NO_OP) return;
         color.logicOp = state.logicOp;
         if (state.logicOp != VK_LOGIC_OP_COPY) color.path = ColorPath::logic;
@@ -199,8 +177,7 @@ void planColor(const GraphicsState& state, const ir::Program& fragment, uint32_t
         color.path = ColorPath::blend;
     }
     const ComponentKind kind = info.color.rgba[0].kind;
-    color.clampInputs =
-        kind == ComponentKind::unorm || kind == ComponentKind::srgb || kind == ComponentKind::snorm;
+    color.clampInputs = kind == ComponentKind::unorm || kind == ComponentKind::srgb || kind == ComponentKind::snorm;
     color.clampLow = kind == ComponentKind::snorm ? -1.0f : 0.0f;
     std::array<std::byte, 16> all{};
     componentBits(info, blend.colorWriteMask, color.writeBits.data());
@@ -214,16 +191,14 @@ void planFragments(const GraphicsState& state, const ir::Program& fragment, Isa 
     for (uint32_t n = 0; n < state.colorCount; ++n) planColor(state, fragment, n, isa, plan);
     for (uint32_t slot = 0; slot < fragment.outputs.size(); ++slot) {
         if (fragment.outputs[slot].builtin == ir::Builtin::fragDepth) plan.fragDepthSlot = slot;
-        if (fragment.outputs[slot].builtin == ir::Builtin::sampleMask &&
-            fragment.outputs[slot].component == 0)
+        if (fragment.outputs[slot].builtin == ir::Builtin::sampleMask && fragment.outputs[slot].component == 0)
             plan.sampleMaskSlot = slot;
         if (fragment.outputs[slot].builtin == ir::Builtin::user && fragment.outputs[slot].location == 0 &&
             fragment.outputs[slot].component == 3 && fragment.outputs[slot].index == 0)
             plan.alphaSlot = slot;
     }
     const bool decidesTests = (plan.depth.any() || plan.depth.write) && !plan.depth.early;
-    plan.runsFragments =
-        !plan.colors.empty() || fragment.hasSideEffects || decidesTests || fragment.canDiscard;
+    plan.runsFragments = !plan.colors.empty() || fragment.hasSideEffects || decidesTests || fragment.canDiscard;
     plan.usesQuads = fragment.usesQuads;
     plan.keepsCoverage =
         !fragment.canDiscard && plan.sampleMaskSlot == kNoSlot && !plan.alphaToCoverage && !decidesTests;
@@ -233,11 +208,27 @@ void planFragments(const GraphicsState& state, const ir::Program& fragment, Isa 
         readsCoverage |= builtin.builtin == ir::Builtin::sampleMaskIn;
     }
     plan.coverageIsFull = plan.samples == 1 && plan.keepsCoverage && !plan.usesQuads && !readsCoverage;
-    plan.ordered = decidesTests || std::any_of(plan.colors.begin(), plan.colors.end(),
-                                               [](const ColorPlan& c) { return c.readsDestination; });
+    plan.ordered = std::any_of(plan.colors.begin(), plan.colors.end(),
+                               [](const ColorPlan& color) { return color.readsDestination; });
 }
 
 }  // namespace
+
+DepthStorage depthStorage(VkFormat format) {
+    switch (format) {
+        case VK_FORMAT_D16_UNORM:
+            return DepthStorage::d16;
+        case VK_FORMAT_X8_D24_UNORM_PACK32:
+        case VK_FORMAT_D24_UNORM_S8_UINT:
+            return DepthStorage::d24;
+        case VK_FORMAT_D32_SFLOAT:
+            return DepthStorage::d32f;
+        case VK_FORMAT_D32_SFLOAT_S8_UINT:
+            return DepthStorage::d32fs8;
+        default:
+            return DepthStorage::none;
+    }
+}
 
 Plan makePlan(const GraphicsState& state, const ShaderProgram& program) {
     const ir::Program& vertex = program.vertexIr();
@@ -250,10 +241,9 @@ Plan makePlan(const GraphicsState& state, const ShaderProgram& program) {
     plan.alphaToCoverage = state.alphaToCoverage && fragment != nullptr;
     plan.alphaToOne = state.alphaToOne;
     plan.preciseInterpolation = accuracy.interpolation == InterpolationArithmetic::doubleFloat;
-    plan.perSample =
-        state.samples > 1 && fragment != nullptr &&
-        (fragment->perSample ||
-         (state.sampleShading && state.minSampleShading * static_cast<float>(state.samples) > 1));
+    plan.perSample = state.samples > 1 && fragment != nullptr &&
+                     (fragment->perSample ||
+                      (state.sampleShading && state.minSampleShading * static_cast<float>(state.samples) > 1));
     planAttributes(state, vertex, program.isa(), plan);
     planVertexOutputs(vertex, plan);
     if (!state.rasterizerDiscard) {

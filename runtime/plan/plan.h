@@ -56,6 +56,9 @@ struct Varying {
 
 enum class DepthStorage : uint8_t { none, d16, d24, d32f, d32fs8 };
 
+/// none for a format without depth.
+DepthStorage depthStorage(VkFormat format);
+
 struct DepthPlan {
     DepthStorage storage = DepthStorage::none;
     bool hasStencil = false;  // the attachment has a stencil aspect
@@ -63,8 +66,7 @@ struct DepthPlan {
     bool bounds = false, stencil = false;
     bool early = true;             // before the fragment program
     bool clampToViewport = false;  // depth clamping
-    uint8_t compare =
-        7;  // bit 0: passes when less, bit 1: equal, bit 2: greater (as VkCompareOp is numbered)
+    uint8_t compare = 7;           // bit 0: passes when less, bit 1: equal, bit 2: greater (as VkCompareOp is numbered)
     bool any() const { return test || bounds || stencil; }
 };
 
@@ -85,8 +87,8 @@ struct ColorPlan {
     bool partialMask = false;  // some stored components keep their bits
     bool clampInputs = false;  // fixed-point: sources and factors are clamped before blending
     float clampLow = 0;
-    std::array<std::byte, 16> writeBits{};  // of a texel: the bits that may change
-    std::array<uint32_t, 4> slots{kNoSlot, kNoSlot, kNoSlot, kNoSlot};  // of the fragment program's outputs
+    std::array<std::byte, 16> writeBits{};                                  // of a texel: the bits that may change
+    std::array<uint32_t, 4> slots{kNoSlot, kNoSlot, kNoSlot, kNoSlot};      // of the fragment program's outputs
     std::array<uint32_t, 4> dualSlots{kNoSlot, kNoSlot, kNoSlot, kNoSlot};  // second source
     VkPipelineColorBlendAttachmentState blend{};
     VkLogicOp logicOp = VK_LOGIC_OP_COPY;
@@ -108,7 +110,7 @@ struct Plan {
     bool perSample = false;      // one run per sample
     bool needsBarycentrics = false;
     bool needsCentroid = false;         // some input is evaluated inside the covered part of the pixel
-    bool ordered = false;               // a batch holds each pixel once: blending or a late depth test
+    bool ordered = false;               // a batch holds each pixel once: colours are read back
     bool preciseInterpolation = false;  // double
     bool keepsCoverage = true;          // nothing after the early tests drops a sample
     bool coverageIsFull = false;        // every lane of a batch is one covered sample, and stays so

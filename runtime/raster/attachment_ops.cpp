@@ -12,8 +12,7 @@ namespace {
 
 constexpr uint32_t kRow = static_cast<uint32_t>(kTileSize);
 
-std::byte* pixel(const RenderTarget& target, int32_t x, int32_t y, uint32_t sample, uint32_t layer,
-                 uint32_t bytes) {
+std::byte* pixel(const RenderTarget& target, int32_t x, int32_t y, uint32_t sample, uint32_t layer, uint32_t bytes) {
     return target.data + layer * target.layerPitch + sample * target.samplePitch +
            static_cast<size_t>(y) * target.rowPitch + static_cast<size_t>(x) * bytes;
 }
@@ -55,8 +54,8 @@ void clearPixels(const RenderTarget& target, VkImageAspectFlags aspects, const V
     }
 }
 
-void resolvePixels(const RenderTarget& source, const RenderTarget& destination, const PixelRect& rect,
-                   uint32_t layers, Isa isa) {
+void resolvePixels(const RenderTarget& source, const RenderTarget& destination, const PixelRect& rect, uint32_t layers,
+                   Isa isa) {
     const FormatInfo* info = findFormat(source.format);
     if (info == nullptr || source.data == nullptr || destination.data == nullptr) return;
     const uint32_t bytes = info->bytesPerTexel;

@@ -13,7 +13,7 @@ void clearPixels(const RenderTarget& target, VkImageAspectFlags aspects, const V
                  const PixelRect& rect, uint32_t firstLayer, uint32_t layers);
 
 /// Average of the samples; sample 0 for integer formats. sRGB is averaged linearly.
-void resolvePixels(const RenderTarget& source, const RenderTarget& destination, const PixelRect& rect,
-                   uint32_t layers, Isa isa);
+void resolvePixels(const RenderTarget& source, const RenderTarget& destination, const PixelRect& rect, uint32_t layers,
+                   Isa isa);
 
 }  // namespace vernier

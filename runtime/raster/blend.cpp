@@ -68,8 +68,7 @@ VF factorOf(VkBlendFactor factor, const Pixels& p, int c) {
     }
 }
 
-VF combine(VkBlendOp op, VkBlendFactor sourceFactor, VkBlendFactor destinationFactor, const Pixels& p,
-           int c) {
+VF combine(VkBlendOp op, VkBlendFactor sourceFactor, VkBlendFactor destinationFactor, const Pixels& p, int c) {
     const VF s = p.source[c], d = p.destination[c];
     switch (op) {
         case VK_BLEND_OP_MIN:
@@ -105,13 +104,11 @@ void blend(const BlendInput& in) {
         for (int c = 0; c < 4; ++c) {
             p.source[c] = limit(hn::LoadU(f, in.source[c] + n));
             p.destination[c] = hn::LoadU(f, in.destination[c] + n);
-            p.second[c] =
-                in.secondSource[c] != nullptr ? limit(hn::LoadU(f, in.secondSource[c] + n)) : hn::Zero(f);
+            p.second[c] = in.secondSource[c] != nullptr ? limit(hn::LoadU(f, in.secondSource[c] + n)) : hn::Zero(f);
         }
         for (int c = 0; c < 3; ++c)
-            hn::StoreU(
-                combine(state.colorBlendOp, state.srcColorBlendFactor, state.dstColorBlendFactor, p, c), f,
-                in.result[c] + n);
+            hn::StoreU(combine(state.colorBlendOp, state.srcColorBlendFactor, state.dstColorBlendFactor, p, c), f,
+                       in.result[c] + n);
         hn::StoreU(combine(state.alphaBlendOp, state.srcAlphaBlendFactor, state.dstAlphaBlendFactor, p, 3), f,
                    in.result[3] + n);
     }

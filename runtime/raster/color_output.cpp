@@ -74,8 +74,7 @@ uint8_t logicOp(VkLogicOp op, uint8_t s, uint8_t d) {
 
 void applyLogicOp(VkLogicOp op, const std::byte* before, std::byte* after, uint32_t bytes) {
     for (uint32_t n = 0; n < bytes; ++n)
-        after[n] = static_cast<std::byte>(
-            logicOp(op, static_cast<uint8_t>(after[n]), static_cast<uint8_t>(before[n])));
+        after[n] = static_cast<std::byte>(logicOp(op, static_cast<uint8_t>(after[n]), static_cast<uint8_t>(before[n])));
 }
 
 /// Bits outside the write mask keep what they had.

@@ -31,8 +31,7 @@ bool selectEdges(const TileEdges& in, Edges<T>& out) {
             low = std::min(low, in.c[e][s]);
             high = std::max(high, in.c[e][s]);
         }
-        const int64_t ax0 = in.a[e] * in.x0, ax1 = in.a[e] * in.x1, by0 = in.b[e] * in.y0,
-                      by1 = in.b[e] * in.y1;
+        const int64_t ax0 = in.a[e] * in.x0, ax1 = in.a[e] * in.x1, by0 = in.b[e] * in.y0, by1 = in.b[e] * in.y1;
         if (high + std::max(ax0, ax1) + std::max(by0, by1) < 0) return false;
         const bool inside = low + std::min(ax0, ax1) + std::min(by0, by1) >= 0;
         out.a[e] = inside ? T{0} : static_cast<T>(in.a[e]);

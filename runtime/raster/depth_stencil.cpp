@@ -127,9 +127,7 @@ bool testSample(const DepthStencilState& state, std::byte* texel, float z, bool 
     const uint32_t mask = face.values.compareMask & 0xFF;
     const bool stencilPass = passes<uint32_t>(face.ops.compareOp, reference & mask, stored & mask);
     const bool depthPass = stencilPass && depthTest();
-    const VkStencilOp op = !stencilPass ? face.ops.failOp
-                           : depthPass  ? face.ops.passOp
-                                        : face.ops.depthFailOp;
+    const VkStencilOp op = !stencilPass ? face.ops.failOp : depthPass ? face.ops.passOp : face.ops.depthFailOp;
     const uint32_t writeMask = face.values.writeMask & 0xFF;
     const uint8_t value = applyStencilOp(op, stored, reference);
     *byte = static_cast<std::byte>((stored & ~writeMask) | (value & writeMask));

@@ -17,8 +17,7 @@ struct DepthTarget {
     uint32_t texelBytes = 0;
 
     std::byte* texel(int32_t x, int32_t y, uint32_t sample) const {
-        return data + static_cast<size_t>(y) * rowPitch + static_cast<size_t>(x) * texelBytes +
-               sample * samplePitch;
+        return data + static_cast<size_t>(y) * rowPitch + static_cast<size_t>(x) * texelBytes + sample * samplePitch;
     }
 };
 

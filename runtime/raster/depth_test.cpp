@@ -118,22 +118,19 @@ uint32_t testBlocks(const DepthTestInput& in, BlockCoverage* blocks, uint32_t co
             const VF ox = hn::Set(f, positions[s].x() - planes.fractionX);
             const VF oy = hn::Set(f, positions[s].y() - planes.fractionY);
             const int32_t firstRow = static_cast<int32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(covered)) >> 3;
-            const int32_t lastRow =
-                static_cast<int32_t>(63 - hwy::Num0BitsAboveMS1Bit_Nonzero64(covered)) >> 3;
+            const int32_t lastRow = static_cast<int32_t>(63 - hwy::Num0BitsAboveMS1Bit_Nonzero64(covered)) >> 3;
             for (int32_t row = firstRow; row <= lastRow; ++row) {
                 std::byte* texels = in.target.texel(blockX, blockY + row, s);
                 const VF y = hn::Set(f, static_cast<float>(blockY + row - planes.anchorY));
                 for (uint32_t x = 0; x < 8; x += kLanes) {
                     const uint8_t bits = static_cast<uint8_t>((covered >> (8 * row) & 0xFF) >> x);
                     const uint8_t maskBytes[8] = {bits};
-                    const VF column =
-                        hn::ConvertTo(f, hn::Iota(i, blockX + static_cast<int32_t>(x) - planes.anchorX));
+                    const VF column = hn::ConvertTo(f, hn::Iota(i, blockX + static_cast<int32_t>(x) - planes.anchorX));
                     const Value z = Format::encode(depthOf(f, planes, column, y, ox, oy));
                     std::byte* place = texels + x * Format::kTexelBytes;
                     const Value stored = Format::load(place);
-                    auto pass = hn::Or(
-                        hn::Or(hn::And(hn::Lt(z, stored), ifLess), hn::And(hn::Eq(z, stored), ifEqual)),
-                        hn::And(hn::Gt(z, stored), ifGreater));
+                    auto pass = hn::Or(hn::Or(hn::And(hn::Lt(z, stored), ifLess), hn::And(hn::Eq(z, stored), ifEqual)),
+                                       hn::And(hn::Gt(z, stored), ifGreater));
                     pass = hn::And(pass, hn::LoadMaskBits(dv, maskBytes));
                     uint8_t passBits[8] = {};
                     hn::StoreMaskBits(dv, pass, passBits);

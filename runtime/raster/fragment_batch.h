@@ -30,7 +30,7 @@ struct FragmentBatch {
     alignas(64) std::array<uint32_t, kLaneRoom> execute;  // ~0: the lane runs, as a helper perhaps
     alignas(64) std::array<uint32_t, kLaneRoom> store;    // ~0: its effects count
     alignas(64) std::array<float, kLaneRoom> offsetX,
-        offsetY;  // place inside the pixel, when it is not the centre
+        offsetY;                                           // place inside the pixel, when it is not the centre
     alignas(64) std::array<uint32_t, kLaneRoom> coverage;  // samples the lane stands for
     alignas(64) std::array<uint32_t, kLaneRoom> sample;    // when run per sample
     uint32_t spanCount = 0;

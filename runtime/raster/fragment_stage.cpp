@@ -83,15 +83,14 @@ void FragmentStage::bind(const PreparedDraw& draw, uint64_t token) {
     context_ = &entry.context;
     capacity_ = std::min(program->lanes(), kMaxFragmentLanes);
     varyingPlanes_.clear();
-    for (const Varying& varying : plan_->varyings)
-        varyingPlanes_.push_back(context_->input(varying.fragmentSlot));
+    for (const Varying& varying : plan_->varyings) varyingPlanes_.push_back(context_->input(varying.fragmentSlot));
 }
 
 TrianglePlanes& FragmentStage::startPrimitive() {
     // A slot stays as long as a segment refers to it; the last one may be taken again when none does.
     const bool lastUnused =
-        batch_.planesCount > 0 && (batch_.segmentCount == 0 ||
-                                   batch_.segments[batch_.segmentCount - 1].planes + 1 != batch_.planesCount);
+        batch_.planesCount > 0 &&
+        (batch_.segmentCount == 0 || batch_.segments[batch_.segmentCount - 1].planes + 1 != batch_.planesCount);
     if (!lastUnused) ++batch_.planesCount;
     return batch_.planes[batch_.planesCount - 1];
 }
@@ -119,8 +118,7 @@ uint32_t FragmentStage::appendSpan(int32_t x, int32_t y, uint32_t lanes) {
 void FragmentStage::add(const BlockCoverage& block) {
     uint64_t any = 0;
     for (uint32_t s = 0; s < samples_; ++s) any |= block.masks[s];
-    const auto index =
-        static_cast<size_t>(block.y / kBlockSize * (kTileSize / kBlockSize) + block.x / kBlockSize);
+    const auto index = static_cast<size_t>(block.y / kBlockSize * (kTileSize / kBlockSize) + block.x / kBlockSize);
     if (plan_->ordered && (inBatch_[index] & any) != 0) flush();
     if (plan_->perSample) {
         for (uint32_t s = 0; s < samples_; ++s) {
@@ -150,8 +148,7 @@ void FragmentStage::addPixels(const BlockCoverage& block, uint64_t any) {
                                           tileY_ + block.y + static_cast<int32_t>(bit >> 3), lanes);
         any &= ~(((uint64_t{1} << lanes) - 1) << bit);
         if (samples_ == 1) continue;
-        for (uint32_t n = 0; n < lanes; ++n)
-            batch_.coverage[first + n] = coverageOf(block, bit + n, samples_);
+        for (uint32_t n = 0; n < lanes; ++n) batch_.coverage[first + n] = coverageOf(block, bit + n, samples_);
     }
 }
 
@@ -222,7 +219,7 @@ void FragmentStage::run() {
         const uint32_t* live = context_->liveMask();
         for (uint32_t lane = 0; lane < count; ++lane) batch_.coverage[lane] &= live[lane];
         reduceCoverage();
-        if (!plan_->depth.early && plan_->depth.any()) testLate();
+        if (!plan_->depth.early && testsDepth()) testLate();
     }
     if (plan_->coverageIsFull) statistics_.samplesPassed += count;
     for (uint32_t s = 0; s < samples_ && !plan_->coverageIsFull; ++s) {
@@ -248,8 +245,7 @@ void FragmentStage::fillInputs() {
             centroidOffsets();
             input.offsetX = centroidX_.data();
             input.offsetY = centroidY_.data();
-            statistics_.perspectiveDivides +=
-                interpolation_.weights(input, centroidWeights_, {nullptr, nullptr});
+            statistics_.perspectiveDivides += interpolation_.weights(input, centroidWeights_, {nullptr, nullptr});
         }
     }
     fillBuiltins();
@@ -292,8 +288,7 @@ void FragmentStage::evaluateVarying(uint32_t index, const LaneWeights& weights, 
         return;
     }
     interpolation_.attribute({&batch_, linear ? weights.linear1.data() : weights.perspective1.data(),
-                              linear ? weights.linear2.data() : weights.perspective2.data(), index, capacity_,
-                              plane});
+                              linear ? weights.linear2.data() : weights.perspective2.data(), index, capacity_, plane});
 }
 
 void FragmentStage::fillBuiltins() {
@@ -356,9 +351,8 @@ void FragmentStage::fillBuiltin(const BuiltinSlot& builtin, float* plane) {
                 const FragmentSegment& part = batch_.segments[s];
                 const Primitive& p = *batch_.planes[part.planes].primitive;
                 for (uint32_t n = part.first; n < part.first + part.count; ++n) {
-                    const float at =
-                        c == 0 ? static_cast<float>(batch_.x[n]) + (perSample ? batch_.offsetX[n] : 0.5f)
-                               : static_cast<float>(batch_.y[n]) + (perSample ? batch_.offsetY[n] : 0.5f);
+                    const float at = c == 0 ? static_cast<float>(batch_.x[n]) + (perSample ? batch_.offsetX[n] : 0.5f)
+                                            : static_cast<float>(batch_.y[n]) + (perSample ? batch_.offsetY[n] : 0.5f);
                     plane[n] = p.isPoint ? 0.5f + (at - p.point[c == 0 ? 0 : 1]) * p.point[2] : 0.0f;
                 }
             }
@@ -387,8 +381,7 @@ void FragmentStage::reduceCoverage() {
 }
 
 void FragmentStage::testLate() {
-    const float* fragDepth =
-        plan_->fragDepthSlot != kNoSlot ? context_->output(plan_->fragDepthSlot) : nullptr;
+    const float* fragDepth = plan_->fragDepthSlot != kNoSlot ? context_->output(plan_->fragDepthSlot) : nullptr;
     const SamplePosition* positions = samplePositions(samples_);
     for (uint32_t s = 0; s < batch_.segmentCount; ++s) {
         const FragmentSegment& part = batch_.segments[s];
@@ -398,11 +391,10 @@ void FragmentStage::testLate() {
             uint32_t passed = 0;
             for (uint32_t rest = covered; rest != 0; rest &= rest - 1) {
                 const auto sample = static_cast<uint32_t>(std::countr_zero(rest));
-                const float z = fragDepth != nullptr
-                                    ? (fragDepth[lane] > planes.zLow ? std::min(fragDepth[lane], planes.zHigh)
-                                                                     : planes.zLow)
-                                    : depthAt(planes, batch_.x[lane], batch_.y[lane], positions[sample].x(),
-                                              positions[sample].y());
+                const float z =
+                    fragDepth != nullptr
+                        ? (fragDepth[lane] > planes.zLow ? std::min(fragDepth[lane], planes.zHigh) : planes.zLow)
+                        : depthAt(planes, batch_.x[lane], batch_.y[lane], positions[sample].x(), positions[sample].y());
                 std::byte* texel = depthState_.target.texel(batch_.x[lane], batch_.y[lane], sample);
                 ++statistics_.depthReads;
                 if (testSample(depthState_, texel, z, planes.primitive->front)) passed |= 1u << sample;
@@ -420,6 +412,7 @@ const float* FragmentStage::outputPlane(uint32_t slot, uint32_t component) const
 
 void FragmentStage::writeColors() {
     for (const ColorPlan& plan : plan_->colors) {
+        if (targets_->colors[plan.attachment].data == nullptr) continue;  // VK_ATTACHMENT_UNUSED
         ColorOutputInput input{};
         input.plan = &plan;
         input.target = &targets_->colors[plan.attachment];
@@ -454,8 +447,8 @@ void FragmentStage::interpolateAt(void* self, uint32_t slot, uint32_t where, uin
     auto& stage = *static_cast<FragmentStage*>(self);
     const FragmentBatch& batch = stage.batch_;
     const std::vector<Varying>& varyings = stage.plan_->varyings;
-    const auto found = std::find_if(varyings.begin(), varyings.end(),
-                                    [&](const Varying& v) { return v.fragmentSlot == slot; });
+    const auto found =
+        std::find_if(varyings.begin(), varyings.end(), [&](const Varying& v) { return v.fragmentSlot == slot; });
     std::fill_n(result, lanes, 0.0f);
     if (found == varyings.end()) return;
     const auto k = static_cast<size_t>(found - varyings.begin());
@@ -483,8 +476,7 @@ void FragmentStage::interpolateAt(void* self, uint32_t slot, uint32_t where, uin
             const bool linear = found->interpolation == ir::Interpolation::noPerspective;
             const double a0 = double{planes.attributes[0][k]};
             const double d1 = double{planes.attributes[1][k]} - a0, d2 = double{planes.attributes[2][k]} - a0;
-            result[n] =
-                static_cast<float>(a0 + ((linear ? at.l1 : at.b1) * d1 + (linear ? at.l2 : at.b2) * d2));
+            result[n] = static_cast<float>(a0 + ((linear ? at.l1 : at.b1) * d1 + (linear ? at.l2 : at.b2) * d2));
         }
     }
 }

@@ -32,6 +32,8 @@ class FragmentStage {
     void unbind() { draw_ = nullptr; }
 
     const DepthStencilState& depthState() const { return depthState_; }
+    /// There are tests, and an attachment to test against.
+    bool testsDepth() const { return plan_->depth.any() && depthState_.target.data != nullptr; }
     PassStatistics& statistics() { return statistics_; }
     bool outOfBudget() const { return outOfBudget_; }
     ContextCache& contexts() { return contexts_; }
@@ -54,8 +56,8 @@ class FragmentStage {
     void testLate();
     void writeColors();
     const float* outputPlane(uint32_t slot, uint32_t component) const;
-    static void interpolateAt(void* self, uint32_t slot, uint32_t where, uint32_t lanes, const float* a,
-                              const float* b, float* result);
+    static void interpolateAt(void* self, uint32_t slot, uint32_t where, uint32_t lanes, const float* a, const float* b,
+                              float* result);
 
     const PassTargets* targets_ = nullptr;
     int32_t tileX_ = 0, tileY_ = 0;
@@ -77,8 +79,7 @@ class FragmentStage {
     alignas(64) std::array<float, kLaneRoom> centroidX_, centroidY_;
     alignas(64) std::array<uint32_t, kLaneRoom> mask_;
     alignas(64) std::array<float, kLaneRoom> zeros_, ones_;
-    std::array<uint64_t, kBlocksPerTile>
-        inBatch_{};  // pixels of the tile that the batch holds, when order matters
+    std::array<uint64_t, kBlocksPerTile> inBatch_{};  // pixels of the tile that the batch holds, when order matters
     bool outOfBudget_ = false;
     PassStatistics statistics_;
     ContextCache contexts_;

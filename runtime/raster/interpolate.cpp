@@ -134,8 +134,8 @@ Interpolation interpolationFunctions(Isa isa) {
     return {weightsFunction(isa), attributeFunction(isa)};
 }
 
-void interpolatePrecise(const FragmentBatch& batch, const double* weight1, const double* weight2,
-                        uint32_t attribute, float* result) {
+void interpolatePrecise(const FragmentBatch& batch, const double* weight1, const double* weight2, uint32_t attribute,
+                        float* result) {
     for (uint32_t s = 0; s < batch.segmentCount; ++s) {
         const FragmentSegment& segment = batch.segments[s];
         const TrianglePlanes& p = batch.planes[segment.planes];
@@ -151,8 +151,7 @@ void copyFlat(const FragmentBatch& batch, uint32_t attribute, float* result) {
         const FragmentSegment& segment = batch.segments[s];
         uint32_t bits;  // a float move could quieten a NaN that is really an integer
         std::memcpy(&bits, batch.planes[segment.planes].flat + attribute, 4);
-        for (uint32_t n = segment.first; n < segment.first + segment.count; ++n)
-            std::memcpy(result + n, &bits, 4);
+        for (uint32_t n = segment.first; n < segment.first + segment.count; ++n) std::memcpy(result + n, &bits, 4);
     }
 }
 

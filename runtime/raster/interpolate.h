@@ -48,8 +48,8 @@ struct Interpolation {
 Interpolation interpolationFunctions(Isa isa);
 
 /// The attribute in double, rounded once.
-void interpolatePrecise(const FragmentBatch& batch, const double* weight1, const double* weight2,
-                        uint32_t attribute, float* result);
+void interpolatePrecise(const FragmentBatch& batch, const double* weight1, const double* weight2, uint32_t attribute,
+                        float* result);
 /// Copies the bits of the provoking vertex.
 void copyFlat(const FragmentBatch& batch, uint32_t attribute, float* result);
 

@@ -24,13 +24,13 @@ HWY_INLINE V planeInDouble(DF f, V x, V y, V ox, V oy, double constant, double g
     const auto evaluate = [&](auto px, auto py, auto fx, auto fy) HWY_ATTR {
         const auto dx = hn::Add(hn::PromoteTo(d, px), hn::PromoteTo(d, fx));
         const auto dy = hn::Add(hn::PromoteTo(d, py), hn::PromoteTo(d, fy));
-        return hn::DemoteTo(half, hn::Add(hn::Set(d, constant),
-                                          hn::Add(hn::Mul(hn::Set(d, gx), dx), hn::Mul(hn::Set(d, gy), dy))));
+        return hn::DemoteTo(
+            half, hn::Add(hn::Set(d, constant), hn::Add(hn::Mul(hn::Set(d, gx), dx), hn::Mul(hn::Set(d, gy), dy))));
     };
-    const auto low = evaluate(hn::LowerHalf(half, x), hn::LowerHalf(half, y), hn::LowerHalf(half, ox),
-                              hn::LowerHalf(half, oy));
-    const auto high = evaluate(hn::UpperHalf(half, x), hn::UpperHalf(half, y), hn::UpperHalf(half, ox),
-                               hn::UpperHalf(half, oy));
+    const auto low =
+        evaluate(hn::LowerHalf(half, x), hn::LowerHalf(half, y), hn::LowerHalf(half, ox), hn::LowerHalf(half, oy));
+    const auto high =
+        evaluate(hn::UpperHalf(half, x), hn::UpperHalf(half, y), hn::UpperHalf(half, ox), hn::UpperHalf(half, oy));
     return hn::Combine(f, high, low);
 }
 

@@ -133,8 +133,8 @@ void RenderPass::Impl::cutIntoSteps(uint64_t& primitive, size_t& command) {
                               steps[stepCount - 1].primitives < kChunkPrimitives;
             if (!open && stepCount == kChunksPerWave) return;
             Step& step = open ? steps[stepCount - 1] : newStep();
-            const auto count = static_cast<uint32_t>(
-                std::min<uint64_t>(kChunkPrimitives - step.primitives, total - primitive));
+            const auto count =
+                static_cast<uint32_t>(std::min<uint64_t>(kChunkPrimitives - step.primitives, total - primitive));
             step.ranges.push_back({index, primitive, count});
             step.primitives += count;
             primitive += count;
@@ -181,8 +181,7 @@ void RenderPass::Impl::collectTileWork() {
 void RenderPass::Impl::loadTile(const PixelRect& rect) const {
     for (uint32_t c = 0; c < targets.colorCount; ++c)
         if (targets.colors[c].loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR)
-            clearPixels(targets.colors[c], VK_IMAGE_ASPECT_COLOR_BIT, targets.colors[c].clear, rect, 0,
-                        targets.layers);
+            clearPixels(targets.colors[c], VK_IMAGE_ASPECT_COLOR_BIT, targets.colors[c].clear, rect, 0, targets.layers);
     const RenderTarget& depth = targets.depthStencil;
     VkImageAspectFlags aspects = 0;
     if (depth.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR) aspects |= VK_IMAGE_ASPECT_DEPTH_BIT;
@@ -197,11 +196,12 @@ void RenderPass::Impl::runTiles() {
         const CycleCount cycles(self.rasterCycles);
         const uint32_t tile = activeTiles[index];
         const PixelRect rect = tileRect(tile);
+        const bool cleared = !loaded && targets.depthStencil.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR;
         if (!loaded) loadTile(rect);
         if (tileWork[tile].empty()) return;
         self.renderer.render(rect, grid.x0 + static_cast<int32_t>(tile % grid.columns) * kTileSize,
-                             grid.y0 + static_cast<int32_t>(tile / grid.columns) * kTileSize, draws,
-                             nextToken, tileWork[tile]);
+                             grid.y0 + static_cast<int32_t>(tile / grid.columns) * kTileSize, cleared, draws, nextToken,
+                             tileWork[tile]);
     });
     loaded = true;
     for (const auto& worker : workers) worker->renderer.fragments().unbind();
@@ -295,18 +295,15 @@ void RenderPass::draw(const DrawCall& call) {
     self.recordedPrimitives += draw.primitives();
     self.draws.push_back(std::move(draw));
     self.commands.emplace_back(index);
-    if (self.recordedPrimitives >= kPrimitivesPerFlush || self.draws.size() >= kDrawsPerFlush)
-        self.renderRecorded();
+    if (self.recordedPrimitives >= kPrimitivesPerFlush || self.draws.size() >= kDrawsPerFlush) self.renderRecorded();
 }
 
-void RenderPass::clear(VkImageAspectFlags aspect, uint32_t color, const VkClearValue& value,
-                       const VkClearRect& rect) {
+void RenderPass::clear(VkImageAspectFlags aspect, uint32_t color, const VkClearValue& value, const VkClearRect& rect) {
     Impl& self = *impl_;
     const auto end = [](int32_t offset, uint32_t extent) {
         return static_cast<int32_t>(std::min<int64_t>(int64_t{offset} + extent, kGuardBandMax));
     };
-    const PixelRect pixels{rect.rect.offset.x, rect.rect.offset.y,
-                           end(rect.rect.offset.x, rect.rect.extent.width),
+    const PixelRect pixels{rect.rect.offset.x, rect.rect.offset.y, end(rect.rect.offset.x, rect.rect.extent.width),
                            end(rect.rect.offset.y, rect.rect.extent.height)};
     self.clears.push_back({aspect, color, value, pixels, rect.baseArrayLayer, rect.layerCount});
     self.commands.emplace_back(&self.clears.back());

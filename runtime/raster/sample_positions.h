@@ -18,9 +18,7 @@ inline constexpr std::array<SamplePosition, 2> kSamplePositions2{{{12, 12}, {4, 
 inline constexpr std::array<SamplePosition, 4> kSamplePositions4{{{6, 2}, {14, 6}, {2, 10}, {10, 14}}};
 
 inline const SamplePosition* samplePositions(uint32_t samples) {
-    return samples == 4   ? kSamplePositions4.data()
-           : samples == 2 ? kSamplePositions2.data()
-                          : kSamplePositions1.data();
+    return samples == 4 ? kSamplePositions4.data() : samples == 2 ? kSamplePositions2.data() : kSamplePositions1.data();
 }
 
 }  // namespace vernier

@@ -12,8 +12,8 @@ namespace vernier {
 namespace {
 
 /// Early tests one sample at a time, where stencil or depth bounds take part.
-uint32_t testSamples(const DepthStencilState& state, const TrianglePlanes& planes, int32_t tileX,
-                     int32_t tileY, uint32_t samples, BlockCoverage* blocks, uint32_t count) {
+uint32_t testSamples(const DepthStencilState& state, const TrianglePlanes& planes, int32_t tileX, int32_t tileY,
+                     uint32_t samples, BlockCoverage* blocks, uint32_t count) {
     const SamplePosition* positions = samplePositions(samples);
     uint32_t kept = 0;
     for (uint32_t b = 0; b < count; ++b) {
@@ -65,8 +65,8 @@ void applyClear(const PassTargets& targets, const ClearCommand& clear, const Pix
     if (rect.empty()) return;
     if ((clear.aspects & VK_IMAGE_ASPECT_COLOR_BIT) != 0) {
         if (clear.color < targets.colorCount)
-            clearPixels(targets.colors[clear.color], VK_IMAGE_ASPECT_COLOR_BIT, clear.value, rect,
-                        clear.firstLayer, clear.layers);
+            clearPixels(targets.colors[clear.color], VK_IMAGE_ASPECT_COLOR_BIT, clear.value, rect, clear.firstLayer,
+                        clear.layers);
     } else {
         clearPixels(targets.depthStencil, clear.aspects, clear.value, rect, clear.firstLayer, clear.layers);
     }
@@ -81,15 +81,25 @@ uint32_t TileRenderer::testEarly(const PreparedDraw& draw, const TrianglePlanes&
     const Plan& plan = *draw.plan;
     const DepthStencilState& state = fragments_.depthState();
     PassStatistics& statistics = fragments_.statistics();
+    // Stencil operations happen for hidden samples, too.
+    const bool coarse = plan.depth.test && !plan.depth.stencil;
+    if (coarse) {
+        const uint32_t left = coarse_.reject(plan.depth, planes, tileX_, tileY_, blocks_.data(), count);
+        statistics.coarseDepthRejects += count - left;
+        count = left;
+    }
     statistics.depthReads += countSamples(blocks_.data(), count, plan.samples);
-    if (plan.depth.stencil || plan.depth.bounds)
-        return testSamples(state, planes, tileX_, tileY_, plan.samples, blocks_.data(), count);
-    const DepthTestInput input{&plan.depth, state.target, &planes, tileX_, tileY_, plan.samples};
-    return depthTestFunction(draw.call.pipeline->isa())(input, blocks_.data(), count);
+    if (plan.depth.stencil || plan.depth.bounds) {
+        count = testSamples(state, planes, tileX_, tileY_, plan.samples, blocks_.data(), count);
+    } else {
+        const DepthTestInput input{&plan.depth, state.target, &planes, tileX_, tileY_, plan.samples};
+        count = depthTestFunction(draw.call.pipeline->isa())(input, blocks_.data(), count);
+    }
+    if (plan.depth.write) coarse_.update(plan.depth, planes, tileX_, tileY_, plan.samples, blocks_.data(), count);
+    return count;
 }
 
-void TileRenderer::draw(const Primitive& primitive, const Chunk& chunk, const PreparedDraw& draw,
-                        bool coversTile) {
+void TileRenderer::draw(const Primitive& primitive, const Chunk& chunk, const PreparedDraw& draw, bool coversTile) {
     const Plan& plan = *draw.plan;
     uint32_t count = 0;
     if (coversTile) {
@@ -104,9 +114,10 @@ void TileRenderer::draw(const Primitive& primitive, const Chunk& chunk, const Pr
     if (count == 0) return;
 
     TrianglePlanes& planes = fragments_.startPrimitive();
-    makePlanes(primitive, chunk.attributes.data(), draw.subPixelBits, plan.preciseInterpolation,
-               draw.depthLow, draw.depthHigh, planes);
-    if (plan.depth.any() && plan.depth.early) count = testEarly(draw, planes, count);
+    makePlanes(primitive, chunk.attributes.data(), draw.subPixelBits, plan.preciseInterpolation, draw.depthLow,
+               draw.depthHigh, planes);
+    if (fragments_.testsDepth() && plan.depth.early) count = testEarly(draw, planes, count);
+    if (plan.depth.write && !plan.depth.early) coarse_.forget();
     if (!plan.runsFragments) {
         fragments_.statistics().samplesPassed += countSamples(blocks_.data(), count, plan.samples);
         return;
@@ -114,9 +125,14 @@ void TileRenderer::draw(const Primitive& primitive, const Chunk& chunk, const Pr
     for (uint32_t b = 0; b < count; ++b) fragments_.add(blocks_[b]);
 }
 
-void TileRenderer::render(const PixelRect& rect, int32_t tileX, int32_t tileY,
-                          std::span<const PreparedDraw> draws, uint64_t token,
-                          std::span<const TileWork> work) {
+void TileRenderer::render(const PixelRect& rect, int32_t tileX, int32_t tileY, bool cleared,
+                          std::span<const PreparedDraw> draws, uint64_t token, std::span<const TileWork> work) {
+    if (cleared) {
+        coarse_.setCleared(depthStorage(targets_->depthStencil.format),
+                           targets_->depthStencil.clear.depthStencil.depth);
+    } else {
+        coarse_.forget();
+    }
     tileX_ = tileX;
     tileY_ = tileY;
     fragments_.startTile(tileX, tileY);
@@ -124,6 +140,7 @@ void TileRenderer::render(const PixelRect& rect, int32_t tileX, int32_t tileY,
         if (item.clear != nullptr) {
             fragments_.flush();
             applyClear(*targets_, *item.clear, rect);
+            coarse_.forget();
             continue;
         }
         for (uint32_t n = item.first; n < item.first + item.count; ++n) {

@@ -7,6 +7,7 @@
 
 #include "runtime/geometry/chunk.h"
 #include "runtime/geometry/primitive_setup.h"
+#include "runtime/raster/coarse_depth.h"
 #include "runtime/raster/fragment_stage.h"
 
 namespace vernier {
@@ -31,8 +32,9 @@ class TileRenderer {
   public:
     FragmentStage& fragments() { return fragments_; }
     void startPass(const PassTargets& targets);
-    /// `rect`: the pixels of the tile inside the render area. `token`: see Assembler::run.
-    void render(const PixelRect& rect, int32_t tileX, int32_t tileY, std::span<const PreparedDraw> draws,
+    /// `rect`: the pixels of the tile inside the render area. `cleared`: all depth in it was just cleared by the load
+    /// operation. `token`: see Assembler::run.
+    void render(const PixelRect& rect, int32_t tileX, int32_t tileY, bool cleared, std::span<const PreparedDraw> draws,
                 uint64_t token, std::span<const TileWork> work);
 
   private:
@@ -42,6 +44,7 @@ class TileRenderer {
     const PassTargets* targets_ = nullptr;
     int32_t tileX_ = 0, tileY_ = 0;
     FragmentStage fragments_;
+    CoarseDepth coarse_;
     std::array<BlockCoverage, kBlocksPerTile> blocks_;
 };
 

@@ -20,8 +20,7 @@ constexpr double kThin = 16;
 
 }  // namespace
 
-TileEdges tileEdges(const Primitive& p, int32_t tileX, int32_t tileY, uint32_t subPixelBits,
-                    uint32_t samples) {
+TileEdges tileEdges(const Primitive& p, int32_t tileX, int32_t tileY, uint32_t subPixelBits, uint32_t samples) {
     TileEdges edges;
     edges.samples = samples;
     edges.smallEdges = p.smallEdges;
@@ -37,11 +36,9 @@ TileEdges tileEdges(const Primitive& p, int32_t tileX, int32_t tileY, uint32_t s
         const int64_t dx = int64_t{p.x[next]} - p.x[e], dy = int64_t{p.y[next]} - p.y[e];
         edges.a[e] = -dy;
         edges.b[e] = dx;
-        const int64_t corner =
-            dx * (originY - p.y[e]) - dy * (originX - p.x[e]) - (isTopLeft(dx, dy) ? 0 : 1);
+        const int64_t corner = dx * (originY - p.y[e]) - dy * (originX - p.x[e]) - (isTopLeft(dx, dy) ? 0 : 1);
         for (uint32_t s = 0; s < samples; ++s) {
-            const int64_t sx = int64_t{positions[s].x16} << sixteenth,
-                          sy = int64_t{positions[s].y16} << sixteenth;
+            const int64_t sx = int64_t{positions[s].x16} << sixteenth, sy = int64_t{positions[s].y16} << sixteenth;
             edges.c[e][s] = (corner + dx * sy - dy * sx) >> subPixelBits;
         }
     }
@@ -50,10 +47,8 @@ TileEdges tileEdges(const Primitive& p, int32_t tileX, int32_t tileY, uint32_t s
 
 void makePlanes(const Primitive& p, const float* attributes, uint32_t subPixelBits, bool precise, float zLow,
                 float zHigh, TrianglePlanes& planes) {
-    const auto x1 = static_cast<double>(int64_t{p.x[1]} - p.x[0]),
-               y1 = static_cast<double>(int64_t{p.y[1]} - p.y[0]);
-    const auto x2 = static_cast<double>(int64_t{p.x[2]} - p.x[0]),
-               y2 = static_cast<double>(int64_t{p.y[2]} - p.y[0]);
+    const auto x1 = static_cast<double>(int64_t{p.x[1]} - p.x[0]), y1 = static_cast<double>(int64_t{p.y[1]} - p.y[0]);
+    const auto x2 = static_cast<double>(int64_t{p.x[2]} - p.x[0]), y2 = static_cast<double>(int64_t{p.y[2]} - p.y[0]);
     const double area = x1 * y2 - y1 * x2;
     const auto subUnits = static_cast<double>(1u << subPixelBits);
     const double perPixel = subUnits / area;
@@ -91,8 +86,7 @@ void makePlanes(const Primitive& p, const float* attributes, uint32_t subPixelBi
     const double extent = (std::max({std::fabs(x1), std::fabs(x2), std::fabs(x1 - x2)}) +
                            std::max({std::fabs(y1), std::fabs(y2), std::fabs(y1 - y2)})) /
                           subUnits;
-    const double steepest =
-        std::max({std::fabs(d.l1x), std::fabs(d.l1y), std::fabs(d.l2x), std::fabs(d.l2y)});
+    const double steepest = std::max({std::fabs(d.l1x), std::fabs(d.l1y), std::fabs(d.l2x), std::fabs(d.l2y)});
     planes.precise = precise || steepest * extent > kThin;
     for (int n = 0; n < 3; ++n) planes.attributes[n] = attributes + p.attributes[n];
     planes.flat = attributes + p.flat;
@@ -113,8 +107,7 @@ float depthAt(const TrianglePlanes& planes, int32_t x, int32_t y, float offsetX,
     return std::max(std::min(z, planes.zHigh), planes.zLow);
 }
 
-Barycentrics barycentricsAt(const TrianglePlanes& planes, int32_t x, int32_t y, float offsetX,
-                            float offsetY) {
+Barycentrics barycentricsAt(const TrianglePlanes& planes, int32_t x, int32_t y, float offsetX, float offsetY) {
     const double dx = static_cast<double>(x - planes.anchorX) + double{offsetX - planes.fractionX};
     const double dy = static_cast<double>(y - planes.anchorY) + double{offsetY - planes.fractionY};
     Barycentrics result;

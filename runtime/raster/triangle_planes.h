@@ -21,8 +21,7 @@ struct TileEdges {
     bool smallEdges;  // a and b below 2^kSmallEdgeBits
 };
 
-TileEdges tileEdges(const Primitive& primitive, int32_t tileX, int32_t tileY, uint32_t subPixelBits,
-                    uint32_t samples);
+TileEdges tileEdges(const Primitive& primitive, int32_t tileX, int32_t tileY, uint32_t subPixelBits, uint32_t samples);
 
 /// Barycentric coordinates and depth as functions of the position. All of them are taken relative to the
 /// primitive's own first vertex (its anchor), so that the error does not grow with the distance from the
@@ -49,8 +48,8 @@ struct TrianglePlanes {
 
 /// `precise` forces double. Triangles so thin that float planes would lose bits to cancellation get it
 /// anyway.
-void makePlanes(const Primitive& primitive, const float* attributes, uint32_t subPixelBits, bool precise,
-                float zLow, float zHigh, TrianglePlanes& planes);
+void makePlanes(const Primitive& primitive, const float* attributes, uint32_t subPixelBits, bool precise, float zLow,
+                float zHigh, TrianglePlanes& planes);
 
 /// The depth at a place in a pixel: the definition of what the SIMD depth test and gl_FragCoord.z compute.
 float depthAt(const TrianglePlanes& planes, int32_t x, int32_t y, float offsetX, float offsetY);

@@ -140,8 +140,7 @@ class Allocator {
         // again.
         if (find(from) != from || facts_[from].writes != 1 || facts_[from].masked) return false;
         const MachineLoop* loop = loopOfPhi(to, position);
-        if (loop == nullptr || loop->backEdges != 1 || code_.registers[from].loop != loop->header)
-            return false;
+        if (loop == nullptr || loop->backEdges != 1 || code_.registers[from].loop != loop->header) return false;
         return facts_[to].lastRead <= facts_[from].lastWrite && facts_[from].lastWrite >= loop->begin;
     }
 

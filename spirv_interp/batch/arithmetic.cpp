@@ -41,19 +41,16 @@ VERNIER_ELEMENT(fdiv, float, float, (V a, V b), return hn::Div(a, b);)
 VERNIER_ELEMENT(frem, float, float, (V a, V b), return hn::Sub(a, hn::Mul(b, hn::Trunc(hn::Div(a, b))));)
 VERNIER_ELEMENT(fmod, float, float, (V a, V b), return hn::Sub(a, hn::Mul(b, hn::Floor(hn::Div(a, b))));)
 VERNIER_ELEMENT(fneg, float, float, (V a), return hn::Xor(a, number(-0.0f));)
-VERNIER_ELEMENT(ffma, float, float, (V a, V b, V c),
-                return ::vernier::HWY_NAMESPACE::fusedMulAdd(kF32, a, b, c);)
+VERNIER_ELEMENT(ffma, float, float, (V a, V b, V c), return ::vernier::HWY_NAMESPACE::fusedMulAdd(kF32, a, b, c);)
 VERNIER_ELEMENT(fabs, float, float, (V a), return hn::Abs(a);)
-VERNIER_ELEMENT(fsign, float, float, (V a),
-                const V below = hn::IfThenElseZero(hn::Lt(a, number(0.0f)), number(-1.0f));
+VERNIER_ELEMENT(fsign, float, float, (V a), const V below = hn::IfThenElseZero(hn::Lt(a, number(0.0f)), number(-1.0f));
                 return hn::IfThenElse(hn::Gt(a, number(0.0f)), number(1.0f), below);)
 VERNIER_ELEMENT(ffloor, float, float, (V a), return hn::Floor(a);)
 VERNIER_ELEMENT(fceil, float, float, (V a), return hn::Ceil(a);)
 VERNIER_ELEMENT(ftrunc, float, float, (V a), return hn::Trunc(a);)
 VERNIER_ELEMENT(froundEven, float, float, (V a), return hn::Round(a);)
 // x - floor(x) rounds up to 1 just below an integer; the largest float below 1 keeps the result in [0, 1).
-VERNIER_ELEMENT(ffract, float, float, (V a),
-                return hn::Min(number(0x1.fffffep-1f), hn::Sub(a, hn::Floor(a)));)
+VERNIER_ELEMENT(ffract, float, float, (V a), return hn::Min(number(0x1.fffffep-1f), hn::Sub(a, hn::Floor(a)));)
 VERNIER_ELEMENT(fmin, float, float, (V a, V b), return smaller(a, b);)
 VERNIER_ELEMENT(fmax, float, float, (V a, V b), return larger(a, b);)
 VERNIER_ELEMENT(fclamp, float, float, (V x, V low, V high), return clamped(x, low, high);)
@@ -61,8 +58,7 @@ VERNIER_ELEMENT(fmix, float, float, (V x, V y, V a),
                 return hn::Add(hn::Mul(x, hn::Sub(number(1.0f), a)), hn::Mul(y, a));)
 VERNIER_ELEMENT(fstep, float, float, (V edge, V x), return hn::IfThenZeroElse(hn::Lt(x, edge), number(1.0f));)
 VERNIER_ELEMENT(fsmoothstep, float, float, (V edge0, V edge1, V x),
-                const V t = clamped(hn::Div(hn::Sub(x, edge0), hn::Sub(edge1, edge0)), number(0.0f),
-                                    number(1.0f));
+                const V t = clamped(hn::Div(hn::Sub(x, edge0), hn::Sub(edge1, edge0)), number(0.0f), number(1.0f));
                 return hn::Mul(hn::Mul(t, t), hn::Sub(number(3.0f), hn::Mul(number(2.0f), t)));)
 VERNIER_ELEMENT(fsqrt, float, float, (V a), return hn::Sqrt(a);)
 VERNIER_ELEMENT(finverseSqrt, float, float, (V a), return hn::Div(number(1.0f), hn::Sqrt(a));)
@@ -93,8 +89,7 @@ VERNIER_ELEMENT(foeq, float, uint32_t, (V a, V b), return boolRow(hn::Eq(a, b));
 VERNIER_ELEMENT(fone, float, uint32_t, (V a, V b), return boolRow(hn::Or(hn::Lt(a, b), hn::Gt(a, b)));)
 VERNIER_ELEMENT(folt, float, uint32_t, (V a, V b), return boolRow(hn::Lt(a, b));)
 VERNIER_ELEMENT(fole, float, uint32_t, (V a, V b), return boolRow(hn::Le(a, b));)
-VERNIER_ELEMENT(fueq, float, uint32_t, (V a, V b),
-                return boolRow(hn::Not(hn::Or(hn::Lt(a, b), hn::Gt(a, b))));)
+VERNIER_ELEMENT(fueq, float, uint32_t, (V a, V b), return boolRow(hn::Not(hn::Or(hn::Lt(a, b), hn::Gt(a, b))));)
 VERNIER_ELEMENT(fune, float, uint32_t, (V a, V b), return hn::Not(boolRow(hn::Eq(a, b)));)
 VERNIER_ELEMENT(fult, float, uint32_t, (V a, V b), return hn::Not(boolRow(hn::Ge(a, b)));)
 VERNIER_ELEMENT(fule, float, uint32_t, (V a, V b), return hn::Not(boolRow(hn::Gt(a, b)));)
@@ -107,8 +102,7 @@ VERNIER_ELEMENT(slt, int32_t, uint32_t, (V a, V b), return boolRow(hn::Lt(a, b))
 VERNIER_ELEMENT(sle, int32_t, uint32_t, (V a, V b), return hn::Not(boolRow(hn::Gt(a, b)));)
 VERNIER_ELEMENT(ult, uint32_t, uint32_t, (V a, V b), return boolRow(hn::Lt(a, b));)
 VERNIER_ELEMENT(ule, uint32_t, uint32_t, (V a, V b), return hn::Not(boolRow(hn::Gt(a, b)));)
-VERNIER_ELEMENT(select, uint32_t, uint32_t, (V condition, V yes, V no),
-                return hn::IfVecThenElse(condition, yes, no);)
+VERNIER_ELEMENT(select, uint32_t, uint32_t, (V condition, V yes, V no), return hn::IfVecThenElse(condition, yes, no);)
 
 /// Truncates values in [-2^31, 2^31). The hardware's answer for any other is INT_MIN, which is also right
 /// below.
@@ -121,13 +115,11 @@ VERNIER_ELEMENT(ftos, float, int32_t, (V a), const V known = hn::IfThenZeroElse(
                 const auto tooLarge = hn::RebindMask(kI32, hn::Ge(known, number(0x1p31f)));
                 return hn::IfThenElse(tooLarge, number(INT32_MAX), truncated(inside));)
 // Above 2^31 the value less 2^31 is exact and fits a signed integer; the top bit is put back afterwards.
-VERNIER_ELEMENT(ftou, float, uint32_t, (V a),
-                const V positive = hn::IfThenElseZero(hn::Gt(a, number(0.0f)), a);
+VERNIER_ELEMENT(ftou, float, uint32_t, (V a), const V positive = hn::IfThenElseZero(hn::Gt(a, number(0.0f)), a);
                 const V inside = hn::Min(positive, number(0x1.fffffep31f));
                 const auto upper = hn::Ge(inside, number(0x1p31f));
                 const VI low = truncated(hn::Sub(inside, hn::IfThenElseZero(upper, number(0x1p31f))));
-                const VU value = hn::Xor(hn::BitCast(kU32, low),
-                                         hn::And(boolRow(upper), hn::Set(kU32, 0x80000000u)));
+                const VU value = hn::Xor(hn::BitCast(kU32, low), hn::And(boolRow(upper), hn::Set(kU32, 0x80000000u)));
                 return hn::Or(value, boolRow(hn::Ge(positive, number(0x1p32f))));)
 VERNIER_ELEMENT(stof, int32_t, float, (V a), return hn::ConvertTo(kF32, a);)
 // Both halves are exact as floats, so their sum is rounded once.
@@ -145,8 +137,7 @@ const Inst* runDot(Frame& frame, const Inst* inst) {
     const auto row = [&](size_t k) HWY_ATTR { return Source<float, false>(frame, (*inst)[1 + 2 * k]); };
     const auto factor = [&](size_t k) HWY_ATTR { return Source<float, kScalar>(frame, (*inst)[2 + 2 * k]); };
     const auto a0 = row(0), a1 = row(1), a2 = row(kTerms > 2 ? 2 : 0), a3 = row(kTerms > 3 ? 3 : 0);
-    const auto b0 = factor(0), b1 = factor(1), b2 = factor(kTerms > 2 ? 2 : 0),
-               b3 = factor(kTerms > 3 ? 3 : 0);
+    const auto b0 = factor(0), b1 = factor(1), b2 = factor(kTerms > 2 ? 2 : 0), b3 = factor(kTerms > 3 ? 3 : 0);
     fillRow(frame, inst->operand[0], [&](size_t lane) HWY_ATTR {
         VF sum = hn::Add(hn::Mul(a0.at(lane), b0.at(lane)), hn::Mul(a1.at(lane), b1.at(lane)));
         if constexpr (kTerms > 2) sum = hn::Add(sum, hn::Mul(a2.at(lane), b2.at(lane)));

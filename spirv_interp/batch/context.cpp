@@ -12,8 +12,7 @@ namespace {
 class Rows {
   public:
     explicit Rows(size_t words)
-        : data_(static_cast<uint32_t*>(
-              ::operator new[](std::max<size_t>(words, 1) * sizeof(uint32_t), kAlign))) {
+        : data_(static_cast<uint32_t*>(::operator new[](std::max<size_t>(words, 1) * sizeof(uint32_t), kAlign))) {
         std::fill_n(data_.get(), words, 0u);
     }
     uint32_t* get() const { return data_.get(); }
@@ -93,8 +92,7 @@ float* BatchContext::input(uint32_t slot) {
 const float* BatchContext::output(uint32_t slot) const {
     const auto& outputs = impl_->compiled.batch().outputs;
     if (slot >= outputs.size() || outputs[slot] == batch::kNone) return nullptr;
-    return reinterpret_cast<const float*>(reinterpret_cast<const std::byte*>(impl_->batchRows.get()) +
-                                          outputs[slot]);
+    return reinterpret_cast<const float*>(reinterpret_cast<const std::byte*>(impl_->batchRows.get()) + outputs[slot]);
 }
 
 bool BatchContext::run(uint32_t lanes, const uint32_t* execMask, const uint32_t* storeMask) {

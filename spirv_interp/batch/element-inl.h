@@ -53,9 +53,7 @@ template <class T>
 class Source<T, false> {
   public:
     HWY_INLINE Source(const Frame& frame, uint32_t offset) : row_(frame.row<T>(offset)) {}
-    HWY_INLINE hn::Vec<hn::ScalableTag<T>> at(size_t lane) const {
-        return hn::Load(hn::ScalableTag<T>(), row_ + lane);
-    }
+    HWY_INLINE hn::Vec<hn::ScalableTag<T>> at(size_t lane) const { return hn::Load(hn::ScalableTag<T>(), row_ + lane); }
 
   private:
     const T* row_;
@@ -164,8 +162,7 @@ struct LaneRunner<kFunction> {
     template <size_t... kIndex>
     static HWY_INLINE void call(Frame& frame, const Inst* inst, std::index_sequence<kIndex...>) {
         for (uint32_t lane = 0; lane < frame.lanes; ++lane) {
-            writeLane<R>(frame, (*inst)[0], lane,
-                         kFunction(readLane<A>(frame, (*inst)[kIndex + 1], lane)...));
+            writeLane<R>(frame, (*inst)[0], lane, kFunction(readLane<A>(frame, (*inst)[kIndex + 1], lane)...));
         }
     }
 };

@@ -58,9 +58,8 @@ const Inst* copyMasked(Frame& frame, const Inst* inst) {
     if (mask.contains(frame.exec)) return copy<kScalar>(frame, inst);
     const Source<uint32_t, kScalar> a(frame, inst->operand[1]);
     const Source<uint32_t, false> old(frame, inst->operand[0]);
-    fillRow(frame, inst->operand[0], [&](size_t lane) HWY_ATTR {
-        return hn::IfThenElse(vectorMask(mask, lane), a.at(lane), old.at(lane));
-    });
+    fillRow(frame, inst->operand[0],
+            [&](size_t lane) HWY_ATTR { return hn::IfThenElse(vectorMask(mask, lane), a.at(lane), old.at(lane)); });
     return inst + 1;
 }
 
@@ -165,8 +164,7 @@ VERNIER_ELEMENT(ddyCoarse, float, float, (V a), return hn::Sub(hn::Broadcast<2>(
 LaneMask packWords(const uint32_t* words, uint32_t lanes) {
     LaneMask mask;
     for (size_t lane = 0; lane < lanes; lane += hn::Lanes(kU32)) {
-        addLanes(mask, lane,
-                 hn::MaskFromVec(hn::BroadcastSignBit(hn::BitCast(kI32, hn::LoadU(kU32, words + lane)))));
+        addLanes(mask, lane, hn::MaskFromVec(hn::BroadcastSignBit(hn::BitCast(kI32, hn::LoadU(kU32, words + lane)))));
     }
     return mask;
 }
@@ -184,9 +182,7 @@ MaskFunctions maskFunctions() {
 }
 
 void addFlow(HandlerTable& table) {
-    const auto add = [&](Op op, Handler handler, size_t form = 0) {
-        table[static_cast<size_t>(op)][form] = handler;
-    };
+    const auto add = [&](Op op, Handler handler, size_t form = 0) { table[static_cast<size_t>(op)][form] = handler; };
     add(Op::broadcast, copy<true>);
     add(Op::copy, copy<false>);
     add(Op::copyMasked, copyMasked<false>);
@@ -217,8 +213,7 @@ HWY_AFTER_NAMESPACE();
 namespace vernier::batch {
 namespace {
 using GetMaskFunctions = MaskFunctions (*)();
-GetMaskFunctions selectMaskFunctions(Isa isa){VERNIER_SELECT_ISA(isa, maskFunctions)} AddHandlers
-    selectFlow(Isa isa) {
+GetMaskFunctions selectMaskFunctions(Isa isa){VERNIER_SELECT_ISA(isa, maskFunctions)} AddHandlers selectFlow(Isa isa) {
     VERNIER_SELECT_ISA(isa, addFlow)
 }
 }  // namespace

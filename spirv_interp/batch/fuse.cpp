@@ -17,8 +17,7 @@ struct Matcher {
     /// The inner product or sum that defines a value.
     const ir::Inst* inner(ir::ValueId value, ir::Op op) const {
         const ir::Inst* inst = definition[value];
-        return inst != nullptr && inst->op == op && inst->type == ir::Type::f32 && isInner(value) ? inst
-                                                                                                  : nullptr;
+        return inst != nullptr && inst->op == op && inst->type == ir::Type::f32 && isInner(value) ? inst : nullptr;
     }
 
     /// The terms of ((p0 + p1) + p2) + p3, all inner products; empty when the sum is not of this form or
@@ -59,8 +58,7 @@ struct Matcher {
     }
 
     std::optional<Fusion> match(const ir::Inst& inst) const {
-        if (inst.type != ir::Type::f32 || (inst.op != ir::Op::fadd && inst.op != ir::Op::fsub))
-            return std::nullopt;
+        if (inst.type != ir::Type::f32 || (inst.op != ir::Op::fadd && inst.op != ir::Op::fsub)) return std::nullopt;
         if (inst.op == ir::Op::fadd) {
             if (auto fusion = dot(inst)) return fusion;
         }
@@ -68,13 +66,11 @@ struct Matcher {
         const bool adds = inst.op == ir::Op::fadd;
         if (const ir::Inst* left = inner(operands[0], ir::Op::fmul)) {
             const auto factors = program.operandsOf(*left);
-            return Fusion{adds ? Op::multiplyAdd : Op::multiplySubtract,
-                          {factors[0], factors[1], operands[1]}};
+            return Fusion{adds ? Op::multiplyAdd : Op::multiplySubtract, {factors[0], factors[1], operands[1]}};
         }
         if (const ir::Inst* right = inner(operands[1], ir::Op::fmul)) {
             const auto factors = program.operandsOf(*right);
-            return Fusion{adds ? Op::multiplyAdd : Op::subtractMultiply,
-                          {factors[0], factors[1], operands[0]}};
+            return Fusion{adds ? Op::multiplyAdd : Op::subtractMultiply, {factors[0], factors[1], operands[0]}};
         }
         return std::nullopt;
     }
@@ -104,8 +100,7 @@ std::vector<bool> fusedValues(const ir::Program& program, const Definitions& def
                 const ir::Inst* at = open.back();
                 open.pop_back();
                 for (const ir::ValueId value : program.operandsOf(*at)) {
-                    if (std::find(fusion->operands.begin(), fusion->operands.end(), value) !=
-                        fusion->operands.end()) {
+                    if (std::find(fusion->operands.begin(), fusion->operands.end(), value) != fusion->operands.end()) {
                         continue;
                     }
                     fused[value] = true;

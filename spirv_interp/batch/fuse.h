@@ -22,7 +22,6 @@ std::vector<bool> fusedValues(const ir::Program& program, const std::vector<cons
 
 /// The superinstruction that ends in `inst`, made of values that are `fused` (empty: none are).
 std::optional<Fusion> findFusion(const ir::Program& program, const std::vector<const ir::Inst*>& definition,
-                                 const std::vector<bool>& fused, const std::vector<bool>& scalar,
-                                 const ir::Inst& inst);
+                                 const std::vector<bool>& fused, const std::vector<bool>& scalar, const ir::Inst& inst);
 
 }  // namespace vernier::batch

@@ -13,7 +13,7 @@ void addLaneOps(Isa isa, HandlerTable& table);              // lane_ops.cpp: LAN
 void addWide(Isa isa, HandlerTable& table);                 // wide.cpp: 64-bit values
 void addMath(Isa isa, MathTier tier, HandlerTable& table);  // math.cpp: transcendental functions
 void addFlow(Isa isa, HandlerTable& table);                 // flow.cpp: masks, jumps, moves, derivatives
-void addMemory(Isa isa, HandlerTable& table);  // memory.cpp: buffers, local memory, indexed inputs
-void addImages(HandlerTable& table);           // images.cpp: image instructions, interpolation
+void addMemory(Isa isa, HandlerTable& table);               // memory.cpp: buffers, local memory, indexed inputs
+void addImages(HandlerTable& table);                        // images.cpp: image instructions, interpolation
 
 }  // namespace vernier::batch

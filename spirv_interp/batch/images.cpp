@@ -9,8 +9,7 @@ namespace {
 
 /// The image of a descriptor index, joined with the sampler of another descriptor where the instruction names
 /// one. Without a call when there is no such descriptor.
-ImageBinding bindingOf(const Frame& frame, const ir::ImageOp& op, uint32_t imageIndex,
-                       uint32_t samplerIndex) {
+ImageBinding bindingOf(const Frame& frame, const ir::ImageOp& op, uint32_t imageIndex, uint32_t samplerIndex) {
     const ResourceBindings& bindings = *frame.bindings;
     if (bindings.images == nullptr || imageIndex >= bindings.count[op.imageResource]) return {};
     const ImageBinding& image = bindings.images[bindings.base[op.imageResource] + imageIndex];
@@ -124,8 +123,7 @@ const Inst* interpolate(Frame& frame, const Inst* inst) {
     if (frame.interpolator.at == nullptr) {
         std::fill_n(result, frame.lanes, 0.0f);
     } else {
-        frame.interpolator.at(frame.interpolator.self, in[3], in[4], frame.lanes, rowAt(in[1]), rowAt(in[2]),
-                              result);
+        frame.interpolator.at(frame.interpolator.self, in[3], in[4], frame.lanes, rowAt(in[1]), rowAt(in[2]), result);
     }
     return inst + instsFor(5);
 }

@@ -35,8 +35,7 @@ uint32_t ScalarFile::reserve(bool wide) {
 std::vector<bool> scalarValues(const ir::Program& program) {
     const std::vector<ir::Rate> rates = ir::computeRates(program);
     std::vector<bool> scalar(rates.size());
-    std::transform(rates.begin(), rates.end(), scalar.begin(),
-                   [](ir::Rate r) { return r != ir::Rate::invocation; });
+    std::transform(rates.begin(), rates.end(), scalar.begin(), [](ir::Rate r) { return r != ir::Rate::invocation; });
     return scalar;
 }
 
@@ -44,8 +43,7 @@ uint32_t Lowerer::scalarOf(ir::ValueId value) {
     uint32_t& index = scalarIndex_[value];
     if (index != kNone) return index;
     const ir::Inst* inst = facts_.definition[value];
-    if (inst != nullptr && inst->op == ir::Op::constant)
-        return index = scalars_.constant(inst->imm, isWide(value));
+    if (inst != nullptr && inst->op == ir::Op::constant) return index = scalars_.constant(inst->imm, isWide(value));
     if (inst == nullptr || inst->op == ir::Op::undef) return index = scalars_.constant(0, isWide(value));
     return index = scalars_.reserve(isWide(value));
 }
@@ -112,8 +110,7 @@ void Lowerer::lowerDraw(const std::vector<bool>& wanted) {
             lowerInst(inst);
             if (!wanted[inst.result] || isScalar(inst.result)) continue;
             for (uint8_t word = 0; word <= (isWide(inst.result) ? 1 : 0); ++word) {
-                emit(Op::keepScalar,
-                     {Operand::number(scalarIndex_[inst.result] + word), wordOf(inst.result, word)});
+                emit(Op::keepScalar, {Operand::number(scalarIndex_[inst.result] + word), wordOf(inst.result, word)});
             }
         }
     }

@@ -21,8 +21,7 @@ void Lowerer::planBlocks() {
     headLabels_.resize(count);
     for (ir::BlockId b = 0; b < count; ++b) {
         const ir::Block& block = program_.blocks[b];
-        fallsIn_[b] = b > 0 && !block.loopHeader && block.predecessors.size() == 1 &&
-                      block.predecessors[0] == b - 1 &&
+        fallsIn_[b] = b > 0 && !block.loopHeader && block.predecessors.size() == 1 && block.predecessors[0] == b - 1 &&
                       program_.blocks[b - 1].insts.back().op == ir::Op::jump &&
                       facts_.cfg.loop[b] == facts_.cfg.loop[b - 1];
         full_[b] = b == 0 || (fallsIn_[b] && full_[b - 1]);
@@ -60,8 +59,7 @@ void Lowerer::planOutputs() {
         code_.outputs[k] = newRegister(false);
         // Lanes that do not come past a store: zero, so that nothing depends on what was in the row before.
         if (zeroFirst[k] && !outputPlans_[k].alias) {
-            emit(Op::broadcast,
-                 {Operand::write(code_.outputs[k]), Operand::scalar(scalars_.constant(0, false))});
+            emit(Op::broadcast, {Operand::write(code_.outputs[k]), Operand::scalar(scalars_.constant(0, false))});
         }
     }
 }
@@ -70,8 +68,8 @@ std::vector<Move> Lowerer::movesOf(ir::BlockId from, size_t successor) {
     const ir::Block& block = program_.blocks[from];
     const ir::BlockId to = block.successors[successor];
     // The n-th edge from `from` to `to` is the n-th entry of `from` among the predecessors of `to`.
-    const auto earlier = std::count(block.successors.begin(),
-                                    block.successors.begin() + static_cast<ptrdiff_t>(successor), to);
+    const auto earlier =
+        std::count(block.successors.begin(), block.successors.begin() + static_cast<ptrdiff_t>(successor), to);
     const auto& predecessors = program_.blocks[to].predecessors;
     size_t edge = 0;
     for (auto left = earlier; edge < predecessors.size(); ++edge) {
@@ -187,8 +185,8 @@ void Lowerer::lowerBatch() {
             loop.header = b;
             loop.parent = facts_.cfg.loopParent[b];
             loop.begin = static_cast<uint32_t>(code_.insts.size());
-            loop.backEdges = static_cast<uint32_t>(std::count_if(
-                block.predecessors.begin(), block.predecessors.end(), [&](auto p) { return p >= b; }));
+            loop.backEdges = static_cast<uint32_t>(
+                std::count_if(block.predecessors.begin(), block.predecessors.end(), [&](auto p) { return p >= b; }));
             open.push_back(code_.loops.size());
             code_.loops.push_back(loop);
         }

@@ -33,9 +33,8 @@ void Lowerer::lowerElement(const ir::Inst& inst, Op op) {
 void Lowerer::lowerWords(const ir::Inst& inst) {
     const auto operands = program_.operandsOf(inst);
     const bool wide = ir::isWide(inst.type);
-    const bool renames = inst.op != ir::Op::select && isWide(operands[0]) == wide &&
-                         inst.op != ir::Op::makeWide && inst.op != ir::Op::lowWord &&
-                         inst.op != ir::Op::highWord;
+    const bool renames = inst.op != ir::Op::select && isWide(operands[0]) == wide && inst.op != ir::Op::makeWide &&
+                         inst.op != ir::Op::lowWord && inst.op != ir::Op::highWord;
     if (renames && !isScalar(operands[0])) {
         registers_[inst.result] = registerOf(operands[0]);
         return;
@@ -67,11 +66,9 @@ void Lowerer::lowerWords(const ir::Inst& inst) {
 bool Lowerer::lowerFused(const ir::Inst& inst) {
     const std::optional<Fusion> fusion = findFusion(program_, facts_.definition, fused_, facts_.scalar, inst);
     if (!fusion) return false;
-    if (fusion->op == Op::multiplyAdd || fusion->op == Op::multiplySubtract ||
-        fusion->op == Op::subtractMultiply) {
-        emitVector(
-            fusion->op, target(inst),
-            {operandOf(fusion->operands[0]), operandOf(fusion->operands[1]), operandOf(fusion->operands[2])});
+    if (fusion->op == Op::multiplyAdd || fusion->op == Op::multiplySubtract || fusion->op == Op::subtractMultiply) {
+        emitVector(fusion->op, target(inst),
+                   {operandOf(fusion->operands[0]), operandOf(fusion->operands[1]), operandOf(fusion->operands[2])});
         return true;
     }
     std::vector<Operand> operands{target(inst)};
@@ -112,23 +109,21 @@ void Lowerer::lowerInst(const ir::Inst& inst) {
             return lowerWords(inst);
         case ir::Op::loadBuffer: {
             const Operand descriptor = operandOf(operands[0]), offset = operandOf(operands[1]);
-            emit(Op::loadBuffer,
-                 {target(inst), descriptor, offset, Operand::number(static_cast<uint32_t>(inst.imm))})
+            emit(Op::loadBuffer, {target(inst), descriptor, offset, Operand::number(static_cast<uint32_t>(inst.imm))})
                 .form = static_cast<uint8_t>(descriptor.isScalar() | offset.isScalar() << 1);
             return;
         }
         case ir::Op::storeBuffer: {
             const Operand descriptor = operandOf(operands[0]), offset = operandOf(operands[1]);
             const Operand value = rowOf(operands[2]);
-            emit(Op::storeBuffer,
-                 {descriptor, offset, value, Operand::number(static_cast<uint32_t>(inst.imm))})
-                .form = static_cast<uint8_t>(descriptor.isScalar() | offset.isScalar() << 1);
+            emit(Op::storeBuffer, {descriptor, offset, value, Operand::number(static_cast<uint32_t>(inst.imm))}).form =
+                static_cast<uint8_t>(descriptor.isScalar() | offset.isScalar() << 1);
             return;
         }
         case ir::Op::bufferSize: {
             const Operand descriptor = operandOf(operands[0]);
-            emit(Op::bufferSize, {target(inst), descriptor, Operand::number(static_cast<uint32_t>(inst.imm))})
-                .form = descriptor.isScalar();
+            emit(Op::bufferSize, {target(inst), descriptor, Operand::number(static_cast<uint32_t>(inst.imm))}).form =
+                descriptor.isScalar();
             return;
         }
         case ir::Op::atomicBuffer:
@@ -183,9 +178,8 @@ void Lowerer::lowerAtomic(const ir::Inst& inst) {
     const Operand descriptor = rowOf(operands[0]), offset = rowOf(operands[1]);
     const Operand value = operands.size() > 2 ? rowOf(operands[2]) : offset;
     const Operand comparator = operands.size() > 3 ? rowOf(operands[3]) : value;
-    emit(Op::atomicBuffer,
-         {target(inst), descriptor, offset, Operand::number(static_cast<uint32_t>(inst.imm)),
-          Operand::number(static_cast<uint32_t>(operation)), value, comparator})
+    emit(Op::atomicBuffer, {target(inst), descriptor, offset, Operand::number(static_cast<uint32_t>(inst.imm)),
+                            Operand::number(static_cast<uint32_t>(operation)), value, comparator})
         .inPlace = false;
 }
 
@@ -213,8 +207,8 @@ void Lowerer::lowerInputIndexed(const ir::Inst& inst) {
         rows.push_back(Operand::read(reg));
     }
     const Operand index = rowOf(program_.operandsOf(inst)[0]);
-    MachineInst& out = emit(
-        Op::inputIndexed, {target(inst), index, Operand::number(code_.indexedRows), Operand::number(count)});
+    MachineInst& out =
+        emit(Op::inputIndexed, {target(inst), index, Operand::number(code_.indexedRows), Operand::number(count)});
     out.inPlace = false;
     out.hidden = std::move(rows);
     code_.indexedRows += count;
@@ -236,9 +230,7 @@ void Lowerer::lowerImage(const ir::Inst& inst) {
     const ir::ImageOp& op = program_.imageOps[inst.imm];
     const ir::ImageOperands places = ir::imageOperands(op);
     const auto operands = program_.operandsOf(inst);
-    const auto row = [&](uint32_t place) {
-        return place == ir::kNoIndex ? Operand{} : rowOf(operands[place]);
-    };
+    const auto row = [&](uint32_t place) { return place == ir::kNoIndex ? Operand{} : rowOf(operands[place]); };
     const auto rows = [&](uint32_t place, uint32_t count, uint32_t room, std::vector<Operand>& to) {
         for (uint32_t k = 0; k < room; ++k) {
             to.push_back(place != ir::kNoIndex && k < count ? rowOf(operands[place + k]) : Operand{});
@@ -253,8 +245,7 @@ void Lowerer::lowerImage(const ir::Inst& inst) {
     rows(ddy, op.gradients, 3, hidden);
     rows(places.offsets, op.offsets, 3, hidden);
     hidden.push_back(row(places.sample));
-    const uint32_t values =
-        places.values == ir::kNoIndex ? 0 : static_cast<uint32_t>(operands.size()) - places.values;
+    const uint32_t values = places.values == ir::kNoIndex ? 0 : static_cast<uint32_t>(operands.size()) - places.values;
     rows(places.values, values, 4, hidden);
     for (uint32_t k = 0; k < 4; ++k) {
         const bool wanted = inst.result != ir::kNoValue && facts_.uses[inst.result + k] != 0;

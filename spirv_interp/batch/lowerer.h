@@ -16,11 +16,7 @@ namespace vernier::batch {
 /// What both pieces share: facts about blocks and values.
 struct Facts {
     explicit Facts(const ir::Program& p)
-        : program(p),
-          cfg(p),
-          scalar(scalarValues(p)),
-          definition(p.valueTypes.size()),
-          uses(p.valueTypes.size()) {
+        : program(p), cfg(p), scalar(scalarValues(p)), definition(p.valueTypes.size()), uses(p.valueTypes.size()) {
         for (const ir::Block& block : p.blocks) {
             for (const ir::Inst& inst : block.insts) {
                 if (inst.result != ir::kNoValue) definition[inst.result] = &inst;
@@ -39,8 +35,7 @@ struct Facts {
 /// Lowers one piece. In draw-rate code every value but a constant is in a row.
 class Lowerer {
   public:
-    Lowerer(const Facts& facts, ScalarFile& scalars, std::vector<uint32_t>& scalarIndex, bool draw,
-            MachineCode& code)
+    Lowerer(const Facts& facts, ScalarFile& scalars, std::vector<uint32_t>& scalarIndex, bool draw, MachineCode& code)
         : facts_(facts),
           program_(facts.program),
           scalars_(scalars),

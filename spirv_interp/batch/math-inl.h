@@ -146,8 +146,7 @@ struct Functions {
         const V mantissa = number(hn::Add(hn::And(moved, setBits(kMantissaBits)), setBits(kRootHalf)));
         // The biased exponent becomes a number by standing in the low mantissa bits of 2^mantissa.
         const T base = static_cast<T>(typename L::Bits{1} << L::kMantissa);
-        const V biased =
-            hn::Sub(number(hn::Or(hn::ShiftRight<L::kMantissa>(moved), bits(set(base)))), set(base));
+        const V biased = hn::Sub(number(hn::Or(hn::ShiftRight<L::kMantissa>(moved), bits(set(base)))), set(base));
         const V bias = choose(denormal, set(T{L::kBias + L::kMantissa + 1}), set(T{L::kBias}));
         return {hn::Sub(biased, bias), hn::Div(hn::Sub(mantissa, set(1)), hn::Add(mantissa, set(1)))};
     }
@@ -197,16 +196,11 @@ struct Functions {
                 // Lanes of their own in double: which lanes share a vector does not matter.
                 using Wide = Functions<Fine>;
                 const hn::Half<DT> half;
-                const auto lower =
-                    Wide::reduceFar(hn::PromoteTo(typename Wide::DT(), hn::LowerHalf(half, x)));
-                const auto upper =
-                    Wide::reduceFar(hn::PromoteTo(typename Wide::DT(), hn::UpperHalf(half, x)));
-                rest = choose(
-                    far, hn::Combine(DT(), hn::DemoteTo(half, upper.rest), hn::DemoteTo(half, lower.rest)),
-                    rest);
-                n = choose(
-                    far, hn::Combine(DT(), hn::DemoteTo(half, upper.turns), hn::DemoteTo(half, lower.turns)),
-                    n);
+                const auto lower = Wide::reduceFar(hn::PromoteTo(typename Wide::DT(), hn::LowerHalf(half, x)));
+                const auto upper = Wide::reduceFar(hn::PromoteTo(typename Wide::DT(), hn::UpperHalf(half, x)));
+                rest = choose(far, hn::Combine(DT(), hn::DemoteTo(half, upper.rest), hn::DemoteTo(half, lower.rest)),
+                              rest);
+                n = choose(far, hn::Combine(DT(), hn::DemoteTo(half, upper.turns), hn::DemoteTo(half, lower.turns)), n);
             } else {
                 rest = choose(far, hn::Mul(x, set(0)), rest);
             }
@@ -229,8 +223,8 @@ struct Functions {
     };
     static HWY_INLINE SineCosine kernels(V r) {
         const V z = hn::Mul(r, r);
-        const V cosine = hn::Add(hn::Sub(set(1), hn::Mul(z, set(T{0.5}))),
-                                 hn::Mul(hn::Mul(z, z), polynomial(Tier::cosine, z)));
+        const V cosine =
+            hn::Add(hn::Sub(set(1), hn::Mul(z, set(T{0.5}))), hn::Mul(hn::Mul(z, z), polynomial(Tier::cosine, z)));
         return {oddPolynomial(Tier::sine, r), cosine};
     }
     static HWY_INLINE M isOdd(VBits quadrant) {
@@ -301,8 +295,7 @@ struct Functions {
         const M infinite = hn::Eq(largest, inf), huge = hn::Gt(largest, set(L::kLargest));
         const V shrink = choose(huge, set(T{0.25}), set(1));
         // inf / inf is taken as 1, anything else / inf as 0.
-        const V low =
-            choose(infinite, hn::IfThenElseZero(hn::Eq(least, inf), set(1)), hn::Mul(least, shrink));
+        const V low = choose(infinite, hn::IfThenElseZero(hn::Eq(least, inf), set(1)), hn::Mul(least, shrink));
         const V high = choose(infinite, set(1), hn::Mul(largest, shrink));
         V angle = arctangent(low, high);
         angle = choose(hn::Gt(a, b), hn::Sub(set(kPi / 2), hn::Sub(angle, set(kHalfPiLow))), angle);

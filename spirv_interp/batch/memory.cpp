@@ -69,8 +69,7 @@ void spreadWord(const Frame& frame, uint32_t row, uint32_t value) {
 
 /// Loads one word per lane from one buffer.
 template <bool kScalar>
-void gather(const Frame& frame, uint32_t row, const BufferBinding& buffer,
-            const LaneSource<kScalar>& offsets) {
+void gather(const Frame& frame, uint32_t row, const BufferBinding& buffer, const LaneSource<kScalar>& offsets) {
     if (buffer.size < 4 || offsets.isUniform(frame.lanes)) {
         spreadWord(frame, row, loadWord(buffer, offsets.at(0)));
         return;
@@ -130,8 +129,7 @@ template <bool kScalar>
 const Inst* bufferSize(Frame& frame, const Inst* inst) {
     const LaneSource<kScalar> descriptors(frame, inst->operand[1]);
     for (uint32_t lane = 0; lane < frame.lanes; ++lane) {
-        frame.row<uint32_t>(inst->operand[0])[lane] =
-            bufferOf(frame, inst->operand[2], descriptors.at(lane)).size;
+        frame.row<uint32_t>(inst->operand[0])[lane] = bufferOf(frame, inst->operand[2], descriptors.at(lane)).size;
     }
     return inst + 1;
 }
@@ -141,8 +139,7 @@ template <class F>
 uint32_t exchangeBy(uint32_t* word, F&& change) {
     std::atomic_ref target(*word);
     uint32_t old = target.load(std::memory_order_relaxed);
-    while (!target.compare_exchange_weak(old, change(old), std::memory_order_acq_rel,
-                                         std::memory_order_relaxed)) {
+    while (!target.compare_exchange_weak(old, change(old), std::memory_order_acq_rel, std::memory_order_relaxed)) {
     }
     return old;
 }
@@ -169,11 +166,9 @@ uint32_t atomic(ir::AtomicOp operation, uint32_t* word, uint32_t value, uint32_t
             target.store(value);
             return 0;
         case ir::AtomicOp::smin:
-            return exchangeBy(word,
-                              [&](uint32_t old) { return asSigned(old) < asSigned(value) ? old : value; });
+            return exchangeBy(word, [&](uint32_t old) { return asSigned(old) < asSigned(value) ? old : value; });
         case ir::AtomicOp::smax:
-            return exchangeBy(word,
-                              [&](uint32_t old) { return asSigned(old) > asSigned(value) ? old : value; });
+            return exchangeBy(word, [&](uint32_t old) { return asSigned(old) > asSigned(value) ? old : value; });
         case ir::AtomicOp::umin:
             return exchangeBy(word, [&](uint32_t old) { return old < value ? old : value; });
         case ir::AtomicOp::umax:
@@ -239,9 +234,7 @@ const Inst* inputIndexed(Frame& frame, const Inst* inst) {
 }  // namespace
 
 void addMemory(HandlerTable& table) {
-    const auto add = [&](Op op, Handler handler, size_t form = 0) {
-        table[static_cast<size_t>(op)][form] = handler;
-    };
+    const auto add = [&](Op op, Handler handler, size_t form = 0) { table[static_cast<size_t>(op)][form] = handler; };
     add(Op::loadBuffer, loadBuffer<0>, 0);
     add(Op::loadBuffer, loadBuffer<1>, 1);
     add(Op::loadBuffer, loadBuffer<2>, 2);

@@ -33,8 +33,7 @@ HandlerTable handlerTable(Isa isa, MathTier tier) {
     return table;
 }
 
-CompiledProgram::CompiledProgram(const ir::Program& source, LoweredProgram lowered,
-                                 const BatchOptions& options)
+CompiledProgram::CompiledProgram(const ir::Program& source, LoweredProgram lowered, const BatchOptions& options)
     : source_(source), masks_(maskFunctions(options.isa)) {
     const HandlerTable handlers = handlerTable(options.isa, options.tier);
     const Allocation batchRows = allocate(lowered.batch), drawRows = allocate(lowered.draw);
@@ -50,8 +49,8 @@ std::string CompiledProgram::disassemble() const {
     const auto list = [&](const char* name, const std::vector<uint32_t>& rows) {
         for (size_t k = 0; k < rows.size(); ++k) {
             if (rows[k] == kNone) continue;
-            text += name + std::to_string(k) + " r" +
-                    std::to_string(rows[k] / (batch_.lanes * sizeof(uint32_t))) + "\n";
+            text +=
+                name + std::to_string(k) + " r" + std::to_string(rows[k] / (batch_.lanes * sizeof(uint32_t))) + "\n";
         }
     };
     list("input ", batch_.inputs);

@@ -16,7 +16,8 @@ using ir::Op;
 using ir::Type;
 using ir::ValueId;
 
-// --- values -------------------------------------------------------------------------------------------------------------
+// --- values
+// -------------------------------------------------------------------------------------------------------------
 
 ValueId Emitter::constant(Type type, uint64_t bits) {
     const auto [found, added] = constants_[static_cast<size_t>(type)].try_emplace(bits, kNoValue);
@@ -50,7 +51,9 @@ ValueId Emitter::undef(Type type) {
     return value;
 }
 
-ValueId Emitter::resolved(ValueId value) { return ir::resolve(replacement_, value); }
+ValueId Emitter::resolved(ValueId value) {
+    return ir::resolve(replacement_, value);
+}
 
 std::optional<uint64_t> Emitter::constantBits(ValueId value) {
     const auto found = leafOf_.find(resolved(value));
@@ -66,7 +69,8 @@ bool Emitter::isUndef(ValueId value) {
 ValueId Emitter::simplified(Op op, Type type, std::span<const ValueId> operands) {
     // Offset arithmetic and conditions made of specialisation constants; the rest is for the passes.
     switch (op) {
-        case Op::copy: return operands[0];
+        case Op::copy:
+            return operands[0];
         case Op::iadd:
             if (constantBits(operands[0]) == 0u) return operands[1];
             return constantBits(operands[1]) == 0u ? operands[0] : kNoValue;
@@ -81,7 +85,8 @@ ValueId Emitter::simplified(Op op, Type type, std::span<const ValueId> operands)
             const std::optional<uint64_t> bits = constantBits(operands[0]);
             return bits ? operands[*bits != 0 ? 1 : 2] : kNoValue;
         }
-        default: return kNoValue;
+        default:
+            return kNoValue;
     }
 }
 
@@ -119,7 +124,8 @@ Inst& Emitter::append(Op op, Type type, std::span<const ValueId> operands, uint6
     return program_.blocks[current_].insts.emplace_back(inst);
 }
 
-// --- blocks -------------------------------------------------------------------------------------------------------------
+// --- blocks
+// -------------------------------------------------------------------------------------------------------------
 
 BlockId Emitter::newBlock() {
     program_.blocks.emplace_back();
@@ -191,10 +197,15 @@ void Emitter::switchOn(ValueId selector, BlockId otherwise, std::span<const int3
     for (const BlockId target : targets) addEdge(target);
 }
 
-void Emitter::ret() { terminate(Op::ret, {}); }
-void Emitter::kill() { terminate(Op::kill, {}); }
+void Emitter::ret() {
+    terminate(Op::ret, {});
+}
+void Emitter::kill() {
+    terminate(Op::kill, {});
+}
 
-// --- variables ----------------------------------------------------------------------------------------------------------
+// --- variables
+// ----------------------------------------------------------------------------------------------------------
 
 uint32_t Emitter::newVariables(uint32_t count) {
     const uint32_t first = variableCount_;
@@ -209,8 +220,8 @@ ValueId Emitter::read(uint32_t variable, Type type) {
 }
 
 ValueId Emitter::readAt(BlockId block, uint32_t variable, Type type) {
-    // Up through blocks with one predecessor to a definition or to a place that needs a phi; the phi stands in for what is
-    // above it, so nothing recurses.
+    // Up through blocks with one predecessor to a definition or to a place that needs a phi; the phi stands in for what
+    // is above it, so nothing recurses.
     BlockId at = block;
     ValueId value = kNoValue;
     while (value == kNoValue) {
@@ -275,7 +286,8 @@ void Emitter::complete(const Phi& phi) {
     replacement_[result] = same;
 }
 
-// --- end ----------------------------------------------------------------------------------------------------------------
+// --- end
+// ----------------------------------------------------------------------------------------------------------------
 
 void Emitter::finish() {
     replacement_.resize(program_.valueTypes.size(), kNoValue);
@@ -300,7 +312,8 @@ void Emitter::finish() {
     ir::replaceUses(program_, replacement_);
 }
 
-// --- map ----------------------------------------------------------------------------------------------------------------
+// --- map
+// ----------------------------------------------------------------------------------------------------------------
 
 ValueId* Emitter::Definitions::find(uint64_t key) {
     if (slots_.empty()) return nullptr;

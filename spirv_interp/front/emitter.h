@@ -1,6 +1,6 @@
-// Builds a Program while SPIR-V is walked: folds constants as they appear and turns variables into SSA values on the fly
-// (Braun, Buchwald, Hack, Leissa, Mallon, Zwinkau, "Simple and Efficient Construction of Static Single Assignment Form",
-// CC 2013). Blocks are created in any order and take their place when begin() is called.
+// Builds a Program while SPIR-V is walked: folds constants as they appear and turns variables into SSA values on the
+// fly (Braun, Buchwald, Hack, Leissa, Mallon, Zwinkau, "Simple and Efficient Construction of Static Single Assignment
+// Form", CC 2013). Blocks are created in any order and take their place when begin() is called.
 #pragma once
 
 #include <initializer_list>
@@ -43,8 +43,8 @@ class Emitter {
 
     // Blocks. An edge is recorded by the terminator of its source.
     ir::BlockId newBlock();
-    /// Takes the next place in the order; later instructions go there. A block that is no loop header is sealed: all its
-    /// predecessors have their terminators.
+    /// Takes the next place in the order; later instructions go there. A block that is no loop header is sealed: all
+    /// its predecessors have their terminators.
     void begin(ir::BlockId block, bool loopHeader = false);
     ir::BlockId current() const { return current_; }
     /// Whether an edge into the block has been recorded.
@@ -127,8 +127,8 @@ class Emitter {
     std::vector<ir::ValueId> replacement_;
     uint32_t variableCount_ = 0;
     size_t instructionCount_ = 0;
-    std::vector<ir::Inst> leaves_;                        // constants and undefs, for the front of the entry
-    std::unordered_map<ir::ValueId, uint32_t> leafOf_;    // value to index in leaves_
+    std::vector<ir::Inst> leaves_;                            // constants and undefs, for the front of the entry
+    std::unordered_map<ir::ValueId, uint32_t> leafOf_;        // value to index in leaves_
     std::unordered_map<uint64_t, ir::ValueId> constants_[6];  // by type
     ir::ValueId undefs_[6] = {ir::kNoValue, ir::kNoValue, ir::kNoValue, ir::kNoValue, ir::kNoValue, ir::kNoValue};
 };

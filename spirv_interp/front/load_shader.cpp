@@ -26,7 +26,8 @@ struct DestroyContext {
 }  // namespace
 
 Status checkModule(std::span<const uint32_t> words) {
-    if (words.size() < Module::kFirstInstruction) return invalidArgument("SPIR-V: the module is shorter than its header");
+    if (words.size() < Module::kFirstInstruction)
+        return invalidArgument("SPIR-V: the module is shorter than its header");
     const std::unique_ptr<std::remove_pointer_t<spv_context>, DestroyContext> context(
         spvContextCreate(environmentOf(words[1])));
     spv_diagnostic diagnostic = nullptr;

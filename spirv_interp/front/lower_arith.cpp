@@ -131,7 +131,9 @@ bool Lowering::lowerElementwise(const Instruction& inst) {
         for (uint32_t k = 0; k < found->operands; ++k) x[k] = operands[k][std::min(i, operands[k].size() - 1)];
         const Leaves given(x, found->operands);
         switch (found->shape) {
-            case Shape::same: leaves[i] = emitter_.emit(found->op, type, given); break;
+            case Shape::same:
+                leaves[i] = emitter_.emit(found->op, type, given);
+                break;
             case Shape::swapped:
                 std::swap(x[0], x[1]);
                 [[fallthrough]];
@@ -149,7 +151,9 @@ bool Lowering::lowerElementwise(const Instruction& inst) {
                 }
                 break;
             }
-            case Shape::shift: leaves[i] = emitter_.emit(found->op, type, {x[0], withType(x[1], type)}); break;
+            case Shape::shift:
+                leaves[i] = emitter_.emit(found->op, type, {x[0], withType(x[1], type)});
+                break;
             case Shape::bitfield: {
                 const uint32_t firstCount = found->operands - 2u;
                 for (uint32_t k = firstCount; k < found->operands; ++k) x[k] = toI32(x[k]);
@@ -209,14 +213,20 @@ bool Lowering::lowerExtendedResult(const Instruction& inst) {
             setValue(inst[2], inst[1], leaves);
             return true;
         }
-        case spv::Op::OpSelect: lowerSelect(inst); return true;
-        case spv::Op::OpBitcast: lowerBitcast(inst); return true;
-        default: return false;
+        case spv::Op::OpSelect:
+            lowerSelect(inst);
+            return true;
+        case spv::Op::OpBitcast:
+            lowerBitcast(inst);
+            return true;
+        default:
+            return false;
     }
 }
 
 void Lowering::lowerSelect(const Instruction& inst) {
-    if (idValue(inst[4]).kind != IdValue::Kind::value) refuse(inst, "a choice between pointers or images is not supported");
+    if (idValue(inst[4]).kind != IdValue::Kind::value)
+        refuse(inst, "a choice between pointers or images is not supported");
     const Leaves condition = leavesOf(inst[3]), yes = leavesOf(inst[4]), no = leavesOf(inst[5]);
     const std::span<ir::ValueId> leaves = newLeaves(yes.size());
     for (size_t i = 0; i < yes.size(); ++i) {
@@ -240,8 +250,8 @@ void Lowering::lowerBitcast(const Instruction& inst) {
             leaves[i] = cast(operand[i], types[i]);
         } else if (toWide) {
             // The lower-numbered component has the lower bits.
-            leaves[i] = emitter_.emit(Op::makeWide, types[i], {cast(operand[2 * i], ir::Type::i32),
-                                                               cast(operand[2 * i + 1], ir::Type::i32)});
+            leaves[i] = emitter_.emit(Op::makeWide, types[i],
+                                      {cast(operand[2 * i], ir::Type::i32), cast(operand[2 * i + 1], ir::Type::i32)});
         } else {
             const Op word = i % 2 == 0 ? Op::lowWord : Op::highWord;
             leaves[i] = cast(emitter_.emit(word, ir::Type::i32, {operand[i / 2]}), types[i]);

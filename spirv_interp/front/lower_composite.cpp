@@ -1,5 +1,5 @@
-// Taking composites apart and putting them together: bookkeeping of leaves, without instructions, except where a component
-// is chosen at run time.
+// Taking composites apart and putting them together: bookkeeping of leaves, without instructions, except where a
+// component is chosen at run time.
 #include <algorithm>
 
 #include "spirv_interp/front/lowering.h"
@@ -35,12 +35,15 @@ bool Lowering::lowerComposite(const Instruction& inst) {
             ids_[id] = copied;
             return true;
         }
-        case spv::Op::OpCopyLogical: setValue(id, type, leavesOf(inst[3])); return true;
+        case spv::Op::OpCopyLogical:
+            setValue(id, type, leavesOf(inst[3]));
+            return true;
         case spv::Op::OpCompositeConstruct: {
             const std::span<ir::ValueId> leaves = newLeaves(leafTypes(type).size());
             size_t next = 0;
             for (uint32_t word = 3; word < inst.count; ++word) {
-                if (idValue(inst[word]).kind != IdValue::Kind::value) refuse(inst, "a constituent is no value of scalars");
+                if (idValue(inst[word]).kind != IdValue::Kind::value)
+                    refuse(inst, "a constituent is no value of scalars");
                 for (const ir::ValueId leaf : idValue(inst[word]).leaves) {
                     if (next < leaves.size()) leaves[next++] = leaf;
                 }
@@ -95,7 +98,8 @@ bool Lowering::lowerComposite(const Instruction& inst) {
             setValue(id, type, leaves);
             return true;
         }
-        default: return false;
+        default:
+            return false;
     }
 }
 

@@ -1,5 +1,5 @@
-// Constants and specialisation constants. They become `constant` values of the entry block; operations on them are lowered
-// like any others and folded by the Emitter.
+// Constants and specialisation constants. They become `constant` values of the entry block; operations on them are
+// lowered like any others and folded by the Emitter.
 #include <cstring>
 
 #include "spirv_interp/front/lowering.h"
@@ -42,19 +42,25 @@ void Lowering::lowerConstant(const Instruction& inst) {
             setValue(id, type, leaves);
             break;
         }
-        case spv::Op::OpConstantNull: setValue(id, type, zeroOf(type)); break;
-        case spv::Op::OpUndef: setValue(id, type, undefOf(type)); break;
+        case spv::Op::OpConstantNull:
+            setValue(id, type, zeroOf(type));
+            break;
+        case spv::Op::OpUndef:
+            setValue(id, type, undefOf(type));
+            break;
         case spv::Op::OpSpecConstantOp: {
             // The operation without its opcode word has the layout of the instruction itself.
             std::vector<uint32_t> words{inst[0], type, id};
             for (uint32_t word = 4; word < inst.count; ++word) words.push_back(inst[word]);
-            const Instruction operation{static_cast<spv::Op>(inst[3]), static_cast<uint32_t>(words.size()), words.data()};
+            const Instruction operation{static_cast<spv::Op>(inst[3]), static_cast<uint32_t>(words.size()),
+                                        words.data()};
             if (!lowerComposite(operation) && !lowerArithmetic(operation)) {
                 refuse(operation, "is not supported in OpSpecConstantOp");
             }
             break;
         }
-        default: refuse(inst, "the constant is not supported");
+        default:
+            refuse(inst, "the constant is not supported");
     }
 }
 

@@ -1,5 +1,5 @@
-// Functions: calls are inlined, blocks are lowered in structured order, phis of the module become variables written at the
-// end of the predecessors.
+// Functions: calls are inlined, blocks are lowered in structured order, phis of the module become variables written at
+// the end of the predecessors.
 #include <algorithm>
 
 #include "spirv_interp/front/lowering.h"
@@ -8,6 +8,7 @@ namespace vernier {
 namespace {
 
 constexpr size_t kMaxCallDepth = 256;
+constexpr uint32_t kMaxCalls = 1u << 16;
 constexpr size_t kMaxInstructions = 1u << 20;
 constexpr size_t kMaxEdges = 4096;  // into one block; Inst::operandCount has 16 bits
 
@@ -20,7 +21,7 @@ struct Lowering::Frame {
     };
 
     const Function* function = nullptr;
-    std::vector<ir::BlockId> blocks;  // by index in the function; kNoIndex = unreachable
+    std::vector<ir::BlockId> blocks;              // by index in the function; kNoIndex = unreachable
     std::vector<std::vector<PhiVariables>> phis;  // by index in the function
     uint32_t returnVariables = 0;
     ir::BlockId returnBlock = ir::kNoIndex;  // kNoIndex: the only return falls through to what follows the call
@@ -43,6 +44,8 @@ void Lowering::lowerEntry(const EntryPoint& entry) {
 void Lowering::lowerFunction(const Function& function, Frame& frame) {
     if (calls_.size() >= kMaxCallDepth) refuseId(function.id, "is called too deep to be inlined");
     if (std::find(calls_.begin(), calls_.end(), &function) != calls_.end()) refuseId(function.id, "calls itself");
+    if (++callCount_ > kMaxCalls)
+        refuseId(function.id, "is called when " + std::to_string(kMaxCalls) + " calls are inlined");
     calls_.push_back(&function);
     const std::vector<StructuredBlock> order = structuredOrder(module_, function);
     frame.blocks.assign(function.blocks.size(), ir::kNoIndex);
@@ -126,25 +129,39 @@ void Lowering::lowerBlock(const SpirvBlock& block, Frame& frame) {
 
 void Lowering::lowerInstruction(const Instruction& inst) {
     switch (inst.op) {
-        case spv::Op::OpLine: emitter_.setLine(inst[2]); return;
-        case spv::Op::OpNoLine: emitter_.setLine(0); return;
+        case spv::Op::OpLine:
+            emitter_.setLine(inst[2]);
+            return;
+        case spv::Op::OpNoLine:
+            emitter_.setLine(0);
+            return;
         case spv::Op::OpNop:
         case spv::Op::OpPhi:
         case spv::Op::OpLoopMerge:
         case spv::Op::OpSelectionMerge:
         // Invocations do not wait for each other, and each sees its own accesses in order.
-        case spv::Op::OpMemoryBarrier: return;
-        case spv::Op::OpVariable: lowerVariable(inst); return;
-        case spv::Op::OpUndef: lowerConstant(inst); return;
-        case spv::Op::OpFunctionCall: lowerCall(inst); return;
-        case spv::Op::OpDemoteToHelperInvocation: emitter_.emit(ir::Op::demote, ir::Type::none, {}); return;
+        case spv::Op::OpMemoryBarrier:
+            return;
+        case spv::Op::OpVariable:
+            lowerVariable(inst);
+            return;
+        case spv::Op::OpUndef:
+            lowerConstant(inst);
+            return;
+        case spv::Op::OpFunctionCall:
+            lowerCall(inst);
+            return;
+        case spv::Op::OpDemoteToHelperInvocation:
+            emitter_.emit(ir::Op::demote, ir::Type::none, {});
+            return;
         case spv::Op::OpIsHelperInvocationEXT:
             setScalar(inst[2], inst[1], emitter_.emit(ir::Op::isHelper, ir::Type::b1, {}));
             return;
         case spv::Op::OpExtInst:
             if (module_.extendedSet(inst[3]) == "GLSL.std.450") break;
             return;
-        default: break;
+        default:
+            break;
     }
     bool hasResult = false, hasType = false;
     spv::HasResultAndType(inst.op, &hasResult, &hasType);
@@ -175,7 +192,9 @@ bool Lowering::lowerTerminator(const Instruction& inst, const SpirvBlock& block,
             lowerSwitch(inst, frame);
             return true;
         case spv::Op::OpReturn:
-        case spv::Op::OpReturnValue: lowerReturn(inst, frame); return true;
+        case spv::Op::OpReturnValue:
+            lowerReturn(inst, frame);
+            return true;
         case spv::Op::OpKill:
         case spv::Op::OpTerminateInvocation:
             emitter_.kill();
@@ -184,7 +203,8 @@ bool Lowering::lowerTerminator(const Instruction& inst, const SpirvBlock& block,
             // Never executed by a correct program; a wrong one ends here.
             emitter_.ret();
             return true;
-        default: return false;
+        default:
+            return false;
     }
 }
 

@@ -1,5 +1,5 @@
-// The extended instruction set GLSL.std.450: functions applied component by component, and the instructions with results
-// through pointers or structs. Operand words of an OpExtInst begin at 5.
+// The extended instruction set GLSL.std.450: functions applied component by component, and the instructions with
+// results through pointers or structs. Operand words of an OpExtInst begin at 5.
 #include <algorithm>
 
 #include <spirv/unified1/GLSL.std.450.h>
@@ -82,11 +82,16 @@ void Lowering::lowerExtended(const Instruction& inst) {
         case GLSLstd450Modf:
         case GLSLstd450ModfStruct:
         case GLSLstd450Frexp:
-        case GLSLstd450FrexpStruct: lowerSplit(inst); return;
+        case GLSLstd450FrexpStruct:
+            lowerSplit(inst);
+            return;
         case GLSLstd450InterpolateAtCentroid:
         case GLSLstd450InterpolateAtSample:
-        case GLSLstd450InterpolateAtOffset: lowerInterpolate(inst); return;
-        default: refuse(inst, "GLSL.std.450 instruction " + std::to_string(inst[4]) + " is not supported");
+        case GLSLstd450InterpolateAtOffset:
+            lowerInterpolate(inst);
+            return;
+        default:
+            refuse(inst, "GLSL.std.450 instruction " + std::to_string(inst[4]) + " is not supported");
     }
 }
 
@@ -117,11 +122,13 @@ bool Lowering::lowerExtendedElementwise(const Instruction& inst) {
         case GLSLstd450SClamp: {
             const bool isUnsigned = function == GLSLstd450UClamp;
             apply(3, [&](const ir::ValueId* x) {
-                return binary(isUnsigned ? Op::umin : Op::smin, binary(isUnsigned ? Op::umax : Op::smax, x[0], x[1]), x[2]);
+                return binary(isUnsigned ? Op::umin : Op::smin, binary(isUnsigned ? Op::umax : Op::smax, x[0], x[1]),
+                              x[2]);
             });
             return true;
         }
-        default: break;
+        default:
+            break;
     }
     for (const Elementwise& entry : kElementwise) {
         if (static_cast<uint32_t>(entry.function) != function) continue;
@@ -134,7 +141,8 @@ bool Lowering::lowerExtendedElementwise(const Instruction& inst) {
     return false;
 }
 
-/// Modf and Frexp: the fraction or mantissa is the result, the other half goes to a pointer or is the struct's second member.
+/// Modf and Frexp: the fraction or mantissa is the result, the other half goes to a pointer or is the struct's second
+/// member.
 void Lowering::lowerSplit(const Instruction& inst) {
     const bool modf = inst[4] == GLSLstd450Modf || inst[4] == GLSLstd450ModfStruct;
     const bool toPointer = inst[4] == GLSLstd450Modf || inst[4] == GLSLstd450Frexp;
@@ -147,9 +155,10 @@ void Lowering::lowerSplit(const Instruction& inst) {
             // Both parts have the operand's sign; an infinity has the fraction 0.
             const ir::ValueId whole = unary(Op::ftrunc, x);
             const ir::ValueId zero = emitter_.constantFloat(emitter_.typeOf(x), 0);
-            both[i] = emitter_.emit(Op::select, emitter_.typeOf(x),
-                                    {emitter_.emit(Op::fisinf, ir::Type::b1, {x}, static_cast<uint64_t>(emitter_.typeOf(x))),
-                                     zero, sub(x, whole)});
+            both[i] =
+                emitter_.emit(Op::select, emitter_.typeOf(x),
+                              {emitter_.emit(Op::fisinf, ir::Type::b1, {x}, static_cast<uint64_t>(emitter_.typeOf(x))),
+                               zero, sub(x, whole)});
             both[count + i] = whole;
         } else {
             both[i] = unary(Op::ffrexpMantissa, x);

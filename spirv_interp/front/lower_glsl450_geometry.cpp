@@ -1,4 +1,5 @@
-// GLSL.std.450: functions of whole vectors and matrices, by the formulas of the extended instruction set's specification.
+// GLSL.std.450: functions of whole vectors and matrices, by the formulas of the extended instruction set's
+// specification.
 #include <spirv/unified1/GLSL.std.450.h>
 
 #include "spirv_interp/front/lowering.h"
@@ -36,7 +37,9 @@ bool Lowering::lowerGeometric(const Instruction& inst) {
             }
             break;
         }
-        case GLSLstd450Normalize: lowerNormalize(inst); return true;
+        case GLSLstd450Normalize:
+            lowerNormalize(inst);
+            return true;
         case GLSLstd450FaceForward: {
             const Leaves n = operand(0);
             const ir::ValueId d = dot(operand(2), operand(1));
@@ -55,13 +58,18 @@ bool Lowering::lowerGeometric(const Instruction& inst) {
             for (size_t c = 0; c < i.size(); ++c) leaves[c] = sub(i[c], mul(twice, n[c]));
             break;
         }
-        case GLSLstd450Refract: lowerRefract(inst); return true;
+        case GLSLstd450Refract:
+            lowerRefract(inst);
+            return true;
         case GLSLstd450Determinant:
             leaves = newLeaves(1);
             leaves[0] = determinant(operand(0), typeInfo(typeOfId(inst[5])).count);
             break;
-        case GLSLstd450MatrixInverse: lowerInverse(inst); return true;
-        default: return false;
+        case GLSLstd450MatrixInverse:
+            lowerInverse(inst);
+            return true;
+        default:
+            return false;
     }
     setValue(inst[2], inst[1], leaves);
     return true;

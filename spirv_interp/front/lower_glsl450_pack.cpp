@@ -16,9 +16,9 @@ struct Packing {
 };
 
 constexpr Packing kPackings[] = {
-    {GLSLstd450PackSnorm4x8, true, true, 8},    {GLSLstd450PackUnorm4x8, true, false, 8},
-    {GLSLstd450PackSnorm2x16, true, true, 16},  {GLSLstd450PackUnorm2x16, true, false, 16},
-    {GLSLstd450UnpackSnorm4x8, false, true, 8}, {GLSLstd450UnpackUnorm4x8, false, false, 8},
+    {GLSLstd450PackSnorm4x8, true, true, 8},      {GLSLstd450PackUnorm4x8, true, false, 8},
+    {GLSLstd450PackSnorm2x16, true, true, 16},    {GLSLstd450PackUnorm2x16, true, false, 16},
+    {GLSLstd450UnpackSnorm4x8, false, true, 8},   {GLSLstd450UnpackUnorm4x8, false, false, 8},
     {GLSLstd450UnpackSnorm2x16, false, true, 16}, {GLSLstd450UnpackUnorm2x16, false, false, 16},
 };
 
@@ -75,8 +75,8 @@ ir::ValueId Lowering::packNorm(Leaves components, uint32_t bits, bool isSigned) 
     ir::ValueId word = ir::kNoValue;
     for (uint32_t i = 0; i < components.size(); ++i) {
         const ir::ValueId low = emitter_.constantFloat(ir::Type::f32, isSigned ? -1 : 0);
-        const ir::ValueId clamped = emitter_.emit(
-            Op::fclamp, ir::Type::f32, {components[i], low, emitter_.constantFloat(ir::Type::f32, 1)});
+        const ir::ValueId clamped =
+            emitter_.emit(Op::fclamp, ir::Type::f32, {components[i], low, emitter_.constantFloat(ir::Type::f32, 1)});
         const ir::ValueId rounded = unary(Op::froundEven, mul(clamped, emitter_.constantFloat(ir::Type::f32, scale)));
         ir::ValueId field = convert(Op::ftos, ir::Type::i32, rounded);
         if (isSigned) field = binary(Op::iand, field, emitter_.constantI32((1u << bits) - 1));
@@ -89,11 +89,10 @@ ir::ValueId Lowering::packNorm(Leaves components, uint32_t bits, bool isSigned) 
 /// f / (2^(bits-1) - 1 or 2^bits - 1), not below -1.
 ir::ValueId Lowering::unpackNorm(ir::ValueId word, uint32_t index, uint32_t bits, bool isSigned) {
     const double scale = static_cast<double>((1u << (isSigned ? bits - 1 : bits)) - 1);
-    const ir::ValueId field =
-        emitter_.emit(isSigned ? Op::bitFieldSExtract : Op::bitFieldUExtract, ir::Type::i32,
-                      {word, emitter_.constantI32(index * bits), emitter_.constantI32(bits)});
-    const ir::ValueId value = binary(Op::fdiv, convert(Op::stof, ir::Type::f32, field),
-                                     emitter_.constantFloat(ir::Type::f32, scale));
+    const ir::ValueId field = emitter_.emit(isSigned ? Op::bitFieldSExtract : Op::bitFieldUExtract, ir::Type::i32,
+                                            {word, emitter_.constantI32(index * bits), emitter_.constantI32(bits)});
+    const ir::ValueId value =
+        binary(Op::fdiv, convert(Op::stof, ir::Type::f32, field), emitter_.constantFloat(ir::Type::f32, scale));
     return isSigned ? binary(Op::fmax, value, emitter_.constantFloat(ir::Type::f32, -1)) : value;
 }
 

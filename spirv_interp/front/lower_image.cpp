@@ -9,12 +9,18 @@ namespace {
 
 ir::ImageDim dimOf(spv::Dim dim) {
     switch (dim) {
-        case spv::Dim::Dim1D: return ir::ImageDim::d1;
-        case spv::Dim::Dim3D: return ir::ImageDim::d3;
-        case spv::Dim::Cube: return ir::ImageDim::cube;
-        case spv::Dim::Buffer: return ir::ImageDim::buffer;
-        case spv::Dim::SubpassData: return ir::ImageDim::subpass;
-        default: return ir::ImageDim::d2;
+        case spv::Dim::Dim1D:
+            return ir::ImageDim::d1;
+        case spv::Dim::Dim3D:
+            return ir::ImageDim::d3;
+        case spv::Dim::Cube:
+            return ir::ImageDim::cube;
+        case spv::Dim::Buffer:
+            return ir::ImageDim::buffer;
+        case spv::Dim::SubpassData:
+            return ir::ImageDim::subpass;
+        default:
+            return ir::ImageDim::d2;
     }
 }
 
@@ -22,10 +28,13 @@ ir::ImageDim dimOf(spv::Dim dim) {
 uint8_t spatialCoords(ir::ImageDim dim) {
     switch (dim) {
         case ir::ImageDim::d1:
-        case ir::ImageDim::buffer: return 1;
+        case ir::ImageDim::buffer:
+            return 1;
         case ir::ImageDim::d3:
-        case ir::ImageDim::cube: return 3;
-        default: return 2;
+        case ir::ImageDim::cube:
+            return 3;
+        default:
+            return 2;
     }
 }
 
@@ -36,8 +45,8 @@ constexpr auto kConstOffset = static_cast<uint32_t>(spv::ImageOperandsMask::Cons
 constexpr auto kOffset = static_cast<uint32_t>(spv::ImageOperandsMask::Offset);
 constexpr auto kConstOffsets = static_cast<uint32_t>(spv::ImageOperandsMask::ConstOffsets);
 constexpr auto kSample = static_cast<uint32_t>(spv::ImageOperandsMask::Sample);
-// Availability, visibility and volatility: invocations see their own accesses in order, others' at barriers. Sign and zero
-// extension repeat what the sampled type says.
+// Availability, visibility and volatility: invocations see their own accesses in order, others' at barriers. Sign and
+// zero extension repeat what the sampled type says.
 constexpr uint32_t bitsOf(std::initializer_list<spv::ImageOperandsMask> masks) {
     uint32_t bits = 0;
     for (const spv::ImageOperandsMask mask : masks) bits |= static_cast<uint32_t>(mask);
@@ -73,18 +82,29 @@ bool Lowering::lowerImage(const Instruction& inst) {
         case spv::Op::OpImageSampleProjImplicitLod:
         case spv::Op::OpImageSampleProjExplicitLod:
         case spv::Op::OpImageSampleProjDrefImplicitLod:
-        case spv::Op::OpImageSampleProjDrefExplicitLod: lowerSample(inst); return true;
+        case spv::Op::OpImageSampleProjDrefExplicitLod:
+            lowerSample(inst);
+            return true;
         case spv::Op::OpImageGather:
-        case spv::Op::OpImageDrefGather: lowerGather(inst); return true;
+        case spv::Op::OpImageDrefGather:
+            lowerGather(inst);
+            return true;
         case spv::Op::OpImageFetch:
-        case spv::Op::OpImageRead: lowerFetch(inst); return true;
-        case spv::Op::OpImageWrite: lowerImageWrite(inst); return true;
+        case spv::Op::OpImageRead:
+            lowerFetch(inst);
+            return true;
+        case spv::Op::OpImageWrite:
+            lowerImageWrite(inst);
+            return true;
         case spv::Op::OpImageQuerySizeLod:
         case spv::Op::OpImageQuerySize:
         case spv::Op::OpImageQueryLod:
         case spv::Op::OpImageQueryLevels:
-        case spv::Op::OpImageQuerySamples: lowerImageQuery(inst); return true;
-        default: return false;
+        case spv::Op::OpImageQuerySamples:
+            lowerImageQuery(inst);
+            return true;
+        default:
+            return false;
     }
 }
 
@@ -168,15 +188,15 @@ void Lowering::appendImageOperands(const Instruction& inst, uint32_t maskWord, i
         append(leavesOf(inst[word++]).first(1));
     }
     const uint32_t known = kBias | kLod | kGrad | kConstOffset | kOffset | kConstOffsets | kSample | kNoEffect;
-    if ((mask & ~known) != 0) refuse(inst, "image operands " + std::to_string(mask & ~known) + " (MinLod) are not supported");
+    if ((mask & ~known) != 0)
+        refuse(inst, "image operands " + std::to_string(mask & ~known) + " (MinLod) are not supported");
 }
 
 void Lowering::lowerSample(const Instruction& inst) {
     const Handle& handle = handleOf(inst[3]);
-    const bool dref = inst.op == spv::Op::OpImageSampleDrefImplicitLod ||
-                      inst.op == spv::Op::OpImageSampleDrefExplicitLod ||
-                      inst.op == spv::Op::OpImageSampleProjDrefImplicitLod ||
-                      inst.op == spv::Op::OpImageSampleProjDrefExplicitLod;
+    const bool dref =
+        inst.op == spv::Op::OpImageSampleDrefImplicitLod || inst.op == spv::Op::OpImageSampleDrefExplicitLod ||
+        inst.op == spv::Op::OpImageSampleProjDrefImplicitLod || inst.op == spv::Op::OpImageSampleProjDrefExplicitLod;
     const bool projected = inst.op >= spv::Op::OpImageSampleProjImplicitLod;
     ir::ImageOp op = imageOpOf(handle, ir::ImageKind::sampleImplicit);
     op.depthCompare = dref;

@@ -36,10 +36,17 @@ void Lowering::lowerImageQuery(const Instruction& inst) {
     Handle handle = handleOf(inst[3]);
     ir::ImageKind kind = ir::ImageKind::querySize;
     switch (inst.op) {
-        case spv::Op::OpImageQueryLod: kind = ir::ImageKind::queryLod; break;
-        case spv::Op::OpImageQueryLevels: kind = ir::ImageKind::queryLevels; break;
-        case spv::Op::OpImageQuerySamples: kind = ir::ImageKind::querySamples; break;
-        default: break;
+        case spv::Op::OpImageQueryLod:
+            kind = ir::ImageKind::queryLod;
+            break;
+        case spv::Op::OpImageQueryLevels:
+            kind = ir::ImageKind::queryLevels;
+            break;
+        case spv::Op::OpImageQuerySamples:
+            kind = ir::ImageKind::querySamples;
+            break;
+        default:
+            break;
     }
     if (kind != ir::ImageKind::queryLod) handle.samplerResource = ir::kNoIndex;
     ir::ImageOp op = imageOpOf(handle, kind);

@@ -90,22 +90,21 @@ void Lowering::lowerVariable(const Instruction& inst) {
         case spv::StorageClass::PushConstant:
             pointer.base = Pointer::Base::buffer;
             pointer.root = id;
-            pointer.descriptorArray =
-                type.kind == SpirvType::Kind::array || type.kind == SpirvType::Kind::runtimeArray;
+            pointer.descriptorArray = type.kind == SpirvType::Kind::array || type.kind == SpirvType::Kind::runtimeArray;
             break;
         case spv::StorageClass::UniformConstant:
             pointer.base = Pointer::Base::handle;
             pointer.root = id;
-            pointer.descriptorArray =
-                type.kind == SpirvType::Kind::array || type.kind == SpirvType::Kind::runtimeArray;
+            pointer.descriptorArray = type.kind == SpirvType::Kind::array || type.kind == SpirvType::Kind::runtimeArray;
             break;
-        default: refuse(inst, "storage class " + std::to_string(inst[3]) + " is not supported");
+        default:
+            refuse(inst, "storage class " + std::to_string(inst[3]) + " is not supported");
     }
     setPointer(id, pointer);
 }
 
-/// The value a variable begins with. SSA variables without one are undefined from here on: a second pass through an inlined
-/// function does not see the first one's values.
+/// The value a variable begins with. SSA variables without one are undefined from here on: a second pass through an
+/// inlined function does not see the first one's values.
 void Lowering::initialise(const Instruction& inst, const Pointer& pointer) {
     if (inst.count > 4) {
         store(pointer, leavesOf(inst[4]));
@@ -147,11 +146,13 @@ void Lowering::lowerStageVariable(const Instruction& inst, bool input) {
 
 ir::Builtin Lowering::builtinOf(const SlotPlace& place, uint32_t builtin) const {
     for (const BuiltinEntry& entry : kBuiltins) {
-        if (static_cast<uint32_t>(entry.spirv) == builtin && entry.stage == program_.stage && entry.input == place.input) {
+        if (static_cast<uint32_t>(entry.spirv) == builtin && entry.stage == program_.stage &&
+            entry.input == place.input) {
             return entry.builtin;
         }
     }
-    refuseId(place.variable, "is built-in variable " + std::to_string(builtin) + ", which is not supported in this stage");
+    refuseId(place.variable,
+             "is built-in variable " + std::to_string(builtin) + ", which is not supported in this stage");
 }
 
 void Lowering::decorateSlot(const SlotPlace& place, ir::InterfaceSlot& slot, SlotCursor& at) const {
@@ -177,8 +178,9 @@ void Lowering::decorateSlot(const SlotPlace& place, ir::InterfaceSlot& slot, Slo
     }
 }
 
-// Locations: "Location Assignment" in the chapter "Shader Interfaces" of the Vulkan specification. A scalar or vector takes
-// one location (a 64-bit vector of three or four components two), matrices one per column, arrays one per element.
+// Locations: "Location Assignment" in the chapter "Shader Interfaces" of the Vulkan specification. A scalar or vector
+// takes one location (a 64-bit vector of three or four components two), matrices one per column, arrays one per
+// element.
 void Lowering::appendSlots(uint32_t typeId, const SlotPlace& place, ir::InterfaceSlot slot, SlotCursor& at,
                            std::vector<ir::InterfaceSlot>& slots) const {
     const SpirvType& type = typeInfo(typeId);
@@ -200,8 +202,10 @@ void Lowering::appendSlots(uint32_t typeId, const SlotPlace& place, ir::Interfac
         case SpirvType::Kind::vector:
         case SpirvType::Kind::boolean:
         case SpirvType::Kind::integer:
-        case SpirvType::Kind::floating: break;
-        default: refuseId(place.variable, "has a type that cannot be an input or output");
+        case SpirvType::Kind::floating:
+            break;
+        default:
+            refuseId(place.variable, "has a type that cannot be an input or output");
     }
     const bool wide = ir::isWide(type.scalar);
     const uint32_t firstComponent = slot.component;

@@ -1,5 +1,5 @@
-// Products of vectors and matrices. A matrix lies column after column in its leaves. Sums run from the first term to the
-// last, so that the rounding is the same wherever the code runs.
+// Products of vectors and matrices. A matrix lies column after column in its leaves. Sums run from the first term to
+// the last, so that the rounding is the same wherever the code runs.
 #include "spirv_interp/front/lowering.h"
 
 namespace vernier {
@@ -60,7 +60,8 @@ bool Lowering::lowerMatrix(const Instruction& inst) {
         case spv::Op::OpOuterProduct: {
             leaves = result();
             const Leaves column = leavesOf(inst[3]), row = leavesOf(inst[4]);
-            for (size_t i = 0; i < leaves.size(); ++i) leaves[i] = mul(column[i % column.size()], row[i / column.size()]);
+            for (size_t i = 0; i < leaves.size(); ++i)
+                leaves[i] = mul(column[i % column.size()], row[i / column.size()]);
             break;
         }
         case spv::Op::OpTranspose: {
@@ -71,7 +72,8 @@ bool Lowering::lowerMatrix(const Instruction& inst) {
             for (uint32_t i = 0; i < leaves.size(); ++i) leaves[i] = matrix[i % columns * rows + i / columns];
             break;
         }
-        default: return false;
+        default:
+            return false;
     }
     setValue(inst[2], inst[1], leaves);
     return true;

@@ -8,7 +8,8 @@ namespace vernier {
 
 using Base = Pointer::Base;
 
-// --- access chains ------------------------------------------------------------------------------------------------------
+// --- access chains
+// ------------------------------------------------------------------------------------------------------
 
 void Lowering::lowerAccessChain(const Instruction& inst) {
     Pointer pointer = pointerOf(inst[3]);
@@ -100,13 +101,15 @@ Pointer Lowering::stepInto(const Pointer& from, uint32_t indexId, const Instruct
             advance(pointer, indexId, type.count, stride);
             break;
         }
-        default: refuse(inst, "an index into something that has no parts");
+        default:
+            refuse(inst, "an index into something that has no parts");
     }
     pointer.type = type.element;
     return pointer;
 }
 
-// --- scalars in memory --------------------------------------------------------------------------------------------------
+// --- scalars in memory
+// --------------------------------------------------------------------------------------------------
 
 /// The place in the pointer's unit, `more` further on, as a value.
 ir::ValueId Lowering::place(const Pointer& pointer, uint32_t more) {
@@ -123,14 +126,17 @@ ir::ValueId Lowering::descriptorOf(const Pointer& pointer) {
 ir::ValueId Lowering::loadWord(const Pointer& pointer, uint32_t at, ir::Type type) {
     switch (pointer.base) {
         case Base::local:
-            return emitter_.emit(ir::Op::loadLocal, type, {place(pointer, at)}, ir::immPair(pointer.root, pointer.extent));
+            return emitter_.emit(ir::Op::loadLocal, type, {place(pointer, at)},
+                                 ir::immPair(pointer.root, pointer.extent));
         case Base::buffer:
             return emitter_.emit(ir::Op::loadBuffer, type, {descriptorOf(pointer), place(pointer, at)},
                                  resourceOf(pointer.root));
-        default: break;
+        default:
+            break;
     }
     if (pointer.dynamic != ir::kNoValue) {
-        return emitter_.emit(ir::Op::inputIndexed, type, {place(pointer, at)}, ir::immPair(pointer.root, pointer.extent));
+        return emitter_.emit(ir::Op::inputIndexed, type, {place(pointer, at)},
+                             ir::immPair(pointer.root, pointer.extent));
     }
     const uint32_t slot = pointer.root + pointer.offset + at;
     return emitter_.emit(ir::Op::input, program_.inputs[slot].type, {}, slot);
@@ -166,8 +172,8 @@ void Lowering::storeScalar(const Pointer& pointer, uint32_t at, ir::ValueId valu
     }
 }
 
-/// Calls visit(byte offset, scalar type) for every scalar of what a buffer pointer points to, by the offsets and strides of
-/// its layout decorations.
+/// Calls visit(byte offset, scalar type) for every scalar of what a buffer pointer points to, by the offsets and
+/// strides of its layout decorations.
 template <class Visit>
 void Lowering::visitBuffer(const Pointer& pointer, uint32_t at, const Visit& visit) {
     const uint32_t typeId = pointer.type;
@@ -186,7 +192,8 @@ void Lowering::visitBuffer(const Pointer& pointer, uint32_t at, const Visit& vis
             }
             break;
         case SpirvType::Kind::array: {
-            const uint32_t stride = module_.decorationOr(typeId, spv::Decoration::ArrayStride, Decoration::kNoMember, 0);
+            const uint32_t stride =
+                module_.decorationOr(typeId, spv::Decoration::ArrayStride, Decoration::kNoMember, 0);
             part.type = type.element;
             for (uint32_t i = 0; i < type.count; ++i) visitBuffer(part, at + i * stride, visit);
             break;
@@ -206,13 +213,15 @@ void Lowering::visitBuffer(const Pointer& pointer, uint32_t at, const Visit& vis
             break;
         }
         default:
-            if (type.scalar == ir::Type::none) refuseId(pointer.root, "is read or written as a whole where that is not possible");
+            if (type.scalar == ir::Type::none)
+                refuseId(pointer.root, "is read or written as a whole where that is not possible");
             visit(at, type.scalar);
             break;
     }
 }
 
-// --- loads and stores ---------------------------------------------------------------------------------------------------
+// --- loads and stores
+// ---------------------------------------------------------------------------------------------------
 
 Lowering::Leaves Lowering::load(const Pointer& pointer) {
     const std::vector<ir::Type>& types = leafTypes(pointer.type);
@@ -238,10 +247,15 @@ Lowering::Leaves Lowering::load(const Pointer& pointer) {
                 leaves[i] = chooseLeaf(parts, pointer.dynamic);
                 break;
             }
-            case Base::helper: leaves[i] = emitter_.emit(ir::Op::isHelper, ir::Type::b1, {}); break;
+            case Base::helper:
+                leaves[i] = emitter_.emit(ir::Op::isHelper, ir::Type::b1, {});
+                break;
             case Base::local:
-            case Base::input: leaves[i] = loadScalar(pointer, at, types[i]); break;
-            default: refuseId(pointer.root, "is not memory that can be loaded from");
+            case Base::input:
+                leaves[i] = loadScalar(pointer, at, types[i]);
+                break;
+            default:
+                refuseId(pointer.root, "is not memory that can be loaded from");
         }
         at += ir::isWide(types[i]) ? 2 : 1;
     }
@@ -271,7 +285,8 @@ void Lowering::store(const Pointer& pointer, Leaves leaves) {
             visitBuffer(pointer, 0, [&](uint32_t at, ir::Type) { storeScalar(pointer, at, leaves[next++]); });
             break;
         }
-        default: refuseId(pointer.root, "is stored to, but it is only read");
+        default:
+            refuseId(pointer.root, "is stored to, but it is only read");
     }
 }
 
@@ -282,7 +297,8 @@ void Lowering::storeChoice(const Pointer& pointer, Leaves leaves) {
         for (uint32_t i = 0; i < leaves.size(); ++i) {
             const uint32_t variable = pointer.root + pointer.offset + c * pointer.choiceStride + i;
             const ir::Type type = emitter_.typeOf(leaves[i]);
-            emitter_.write(variable, emitter_.emit(ir::Op::select, type, {here, leaves[i], emitter_.read(variable, type)}));
+            emitter_.write(variable,
+                           emitter_.emit(ir::Op::select, type, {here, leaves[i], emitter_.read(variable, type)}));
         }
     }
 }
@@ -290,7 +306,9 @@ void Lowering::storeChoice(const Pointer& pointer, Leaves leaves) {
 bool Lowering::lowerMemory(const Instruction& inst) {
     switch (inst.op) {
         case spv::Op::OpAccessChain:
-        case spv::Op::OpInBoundsAccessChain: lowerAccessChain(inst); return true;
+        case spv::Op::OpInBoundsAccessChain:
+            lowerAccessChain(inst);
+            return true;
         case spv::Op::OpLoad: {
             const Pointer& pointer = pointerOf(inst[3]);
             if (pointer.base != Base::handle) {
@@ -313,11 +331,20 @@ bool Lowering::lowerMemory(const Instruction& inst) {
             setHandle(inst[2], handle);
             return true;
         }
-        case spv::Op::OpStore: store(pointerOf(inst[1]), leavesOf(inst[2])); return true;
-        case spv::Op::OpCopyMemory: store(pointerOf(inst[1]), load(pointerOf(inst[2]))); return true;
-        case spv::Op::OpArrayLength: lowerArrayLength(inst); return true;
-        case spv::Op::OpImageTexelPointer: lowerTexelPointer(inst); return true;
-        default: return lowerAtomic(inst);
+        case spv::Op::OpStore:
+            store(pointerOf(inst[1]), leavesOf(inst[2]));
+            return true;
+        case spv::Op::OpCopyMemory:
+            store(pointerOf(inst[1]), load(pointerOf(inst[2])));
+            return true;
+        case spv::Op::OpArrayLength:
+            lowerArrayLength(inst);
+            return true;
+        case spv::Op::OpImageTexelPointer:
+            lowerTexelPointer(inst);
+            return true;
+        default:
+            return lowerAtomic(inst);
     }
 }
 
@@ -337,7 +364,8 @@ void Lowering::lowerArrayLength(const Instruction& inst) {
     setScalar(inst[2], inst[1], binary(ir::Op::udiv, bytes, emitter_.constantI32(std::max(stride, 1u))));
 }
 
-// --- atomics ------------------------------------------------------------------------------------------------------------
+// --- atomics
+// ------------------------------------------------------------------------------------------------------------
 
 ir::ValueId Lowering::atomic(const Pointer& pointer, ir::AtomicOp op, ir::Type type, Leaves values) {
     std::vector<ir::ValueId> operands;
@@ -364,11 +392,16 @@ bool Lowering::lowerAtomic(const Instruction& inst) {
         ir::AtomicOp op;
     };
     static constexpr Entry kBinary[] = {
-        {spv::Op::OpAtomicExchange, ir::AtomicOp::exchange}, {spv::Op::OpAtomicIAdd, ir::AtomicOp::add},
-        {spv::Op::OpAtomicISub, ir::AtomicOp::sub},          {spv::Op::OpAtomicSMin, ir::AtomicOp::smin},
-        {spv::Op::OpAtomicUMin, ir::AtomicOp::umin},         {spv::Op::OpAtomicSMax, ir::AtomicOp::smax},
-        {spv::Op::OpAtomicUMax, ir::AtomicOp::umax},         {spv::Op::OpAtomicAnd, ir::AtomicOp::iand},
-        {spv::Op::OpAtomicOr, ir::AtomicOp::ior},            {spv::Op::OpAtomicXor, ir::AtomicOp::ixor},
+        {spv::Op::OpAtomicExchange, ir::AtomicOp::exchange},
+        {spv::Op::OpAtomicIAdd, ir::AtomicOp::add},
+        {spv::Op::OpAtomicISub, ir::AtomicOp::sub},
+        {spv::Op::OpAtomicSMin, ir::AtomicOp::smin},
+        {spv::Op::OpAtomicUMin, ir::AtomicOp::umin},
+        {spv::Op::OpAtomicSMax, ir::AtomicOp::smax},
+        {spv::Op::OpAtomicUMax, ir::AtomicOp::umax},
+        {spv::Op::OpAtomicAnd, ir::AtomicOp::iand},
+        {spv::Op::OpAtomicOr, ir::AtomicOp::ior},
+        {spv::Op::OpAtomicXor, ir::AtomicOp::ixor},
     };
     const auto run = [&](uint32_t pointerId, ir::AtomicOp op, std::initializer_list<ir::ValueId> values) {
         const Pointer& pointer = pointerOf(pointerId);
@@ -379,7 +412,8 @@ bool Lowering::lowerAtomic(const Instruction& inst) {
         }
         std::vector<ir::ValueId> words;
         for (const ir::ValueId value : values) {
-            words.push_back(emitter_.typeOf(value) == ir::Type::f32 ? convert(ir::Op::bitcast, ir::Type::i32, value) : value);
+            words.push_back(emitter_.typeOf(value) == ir::Type::f32 ? convert(ir::Op::bitcast, ir::Type::i32, value)
+                                                                    : value);
         }
         const ir::ValueId result = atomic(pointer, op, ir::Type::i32, words);
         return scalarType(pointer.type) == ir::Type::f32 ? convert(ir::Op::bitcast, ir::Type::f32, result) : result;
@@ -390,8 +424,12 @@ bool Lowering::lowerAtomic(const Instruction& inst) {
         return true;
     }
     switch (inst.op) {
-        case spv::Op::OpAtomicLoad: setScalar(inst[2], inst[1], run(inst[3], ir::AtomicOp::load, {})); return true;
-        case spv::Op::OpAtomicStore: run(inst[1], ir::AtomicOp::store, {scalarOf(inst[4])}); return true;
+        case spv::Op::OpAtomicLoad:
+            setScalar(inst[2], inst[1], run(inst[3], ir::AtomicOp::load, {}));
+            return true;
+        case spv::Op::OpAtomicStore:
+            run(inst[1], ir::AtomicOp::store, {scalarOf(inst[4])});
+            return true;
         case spv::Op::OpAtomicIIncrement:
             setScalar(inst[2], inst[1], run(inst[3], ir::AtomicOp::add, {emitter_.constantI32(1)}));
             return true;
@@ -402,7 +440,8 @@ bool Lowering::lowerAtomic(const Instruction& inst) {
             setScalar(inst[2], inst[1],
                       run(inst[3], ir::AtomicOp::compareExchange, {scalarOf(inst[7]), scalarOf(inst[8])}));
             return true;
-        default: return false;
+        default:
+            return false;
     }
 }
 

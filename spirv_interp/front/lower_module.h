@@ -5,8 +5,8 @@
 
 namespace vernier {
 
-/// `source.words` must be a valid module. The result is not optimised: it may hold unreachable blocks and dead code, and is
-/// not in loop-closed form; ir::optimise puts that right.
+/// `source.words` must be a valid module. The result is not optimised: it may hold unreachable blocks and dead code,
+/// and is not in loop-closed form; ir::optimise puts that right.
 Result<ir::Program> lowerModule(const ShaderSource& source);
 
 }  // namespace vernier

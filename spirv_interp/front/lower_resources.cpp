@@ -8,12 +8,15 @@ namespace vernier {
 ir::ResourceKind Lowering::resourceKindOf(uint32_t variable, spv::StorageClass storage, uint32_t typeId) const {
     const SpirvType* type = &typeInfo(typeId);
     switch (storage) {
-        case spv::StorageClass::PushConstant: return ir::ResourceKind::pushConstants;
-        case spv::StorageClass::StorageBuffer: return ir::ResourceKind::storageBuffer;
+        case spv::StorageClass::PushConstant:
+            return ir::ResourceKind::pushConstants;
+        case spv::StorageClass::StorageBuffer:
+            return ir::ResourceKind::storageBuffer;
         case spv::StorageClass::Uniform:
             return module_.hasDecoration(typeId, spv::Decoration::BufferBlock) ? ir::ResourceKind::storageBuffer
                                                                                : ir::ResourceKind::uniformBuffer;
-        default: break;
+        default:
+            break;
     }
     bool sampled = false;
     if (type->kind == SpirvType::Kind::sampler) return ir::ResourceKind::sampler;
@@ -57,7 +60,8 @@ uint32_t Lowering::resourceOf(uint32_t variable) {
     if (same == program_.resources.end()) {
         program_.resources.push_back(resource);
     } else {
-        same->arraySize = same->arraySize == 0 || resource.arraySize == 0 ? 0 : std::max(same->arraySize, resource.arraySize);
+        same->arraySize =
+            same->arraySize == 0 || resource.arraySize == 0 ? 0 : std::max(same->arraySize, resource.arraySize);
         same->byteSize = std::max(same->byteSize, resource.byteSize);
     }
     return index;
@@ -77,7 +81,8 @@ uint32_t Lowering::byteSizeOf(uint32_t typeId, uint32_t matrixStride, bool rowMa
             return size;
         }
         case SpirvType::Kind::array: {
-            const uint32_t stride = module_.decorationOr(typeId, spv::Decoration::ArrayStride, Decoration::kNoMember, 0);
+            const uint32_t stride =
+                module_.decorationOr(typeId, spv::Decoration::ArrayStride, Decoration::kNoMember, 0);
             const uint32_t count = std::max(type.count, 1u);
             return stride * (count - 1) + byteSizeOf(type.element, matrixStride, rowMajor);
         }
@@ -88,7 +93,8 @@ uint32_t Lowering::byteSizeOf(uint32_t typeId, uint32_t matrixStride, bool rowMa
             const uint32_t along = rowMajor ? type.count : column.count;
             return matrixStride * (lines - 1) + along * scalarBytes;
         }
-        default: return type.words * 4;
+        default:
+            return type.words * 4;
     }
 }
 

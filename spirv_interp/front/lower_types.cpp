@@ -1,10 +1,14 @@
 // Types, and the list of scalars a value of a type comes apart into.
+#include <algorithm>
+
 #include "spirv_interp/front/lowering.h"
 
 namespace vernier {
 namespace {
 
-uint32_t wordsOf(ir::Type type) { return type == ir::Type::i64 || type == ir::Type::f64 ? 2 : 1; }
+uint32_t wordsOf(ir::Type type) {
+    return type == ir::Type::i64 || type == ir::Type::f64 ? 2 : 1;
+}
 
 }  // namespace
 
@@ -20,22 +24,28 @@ void Lowering::lowerType(const Instruction& inst) {
         const SpirvType& part = typeInfo(element);
         type.kind = kind;
         type.element = element;
+        type.depth = part.depth + 1;
         type.count = static_cast<uint32_t>(count);
         if (kind != Kind::array) type.scalar = part.scalar;
         // Buffers may hold arrays of any length; only values that come apart are limited, where they do.
-        const auto capped = [count](uint64_t each) { return static_cast<uint32_t>(std::min<uint64_t>(each * count, ~0u)); };
+        const auto capped = [count](uint64_t each) {
+            return static_cast<uint32_t>(std::min<uint64_t>(each * count, ~0u));
+        };
         type.leaves = capped(part.leaves);
         type.words = capped(part.words);
     };
     const uint32_t id = inst[1];
     switch (inst.op) {
-        case spv::Op::OpTypeVoid: type.kind = Kind::void_; break;
+        case spv::Op::OpTypeVoid:
+            type.kind = Kind::void_;
+            break;
         case spv::Op::OpTypeBool:
             type.kind = Kind::boolean;
             type.scalar = ir::Type::b1;
             break;
         case spv::Op::OpTypeInt:
-            if (inst[2] != 32 && inst[2] != 64) refuse(inst, std::to_string(inst[2]) + "-bit integers are not supported");
+            if (inst[2] != 32 && inst[2] != 64)
+                refuse(inst, std::to_string(inst[2]) + "-bit integers are not supported");
             type.kind = Kind::integer;
             type.scalar = inst[2] == 32 ? ir::Type::i32 : ir::Type::i64;
             type.isSigned = inst[3] != 0;
@@ -45,21 +55,31 @@ void Lowering::lowerType(const Instruction& inst) {
             type.kind = Kind::floating;
             type.scalar = inst[2] == 32 ? ir::Type::f32 : ir::Type::f64;
             break;
-        case spv::Op::OpTypeVector: repeat(Kind::vector, inst[2], inst[3]); break;
-        case spv::Op::OpTypeMatrix: repeat(Kind::matrix, inst[2], inst[3]); break;
-        case spv::Op::OpTypeArray: repeat(Kind::array, inst[2], constantIndex(inst[3])); break;
+        case spv::Op::OpTypeVector:
+            repeat(Kind::vector, inst[2], inst[3]);
+            break;
+        case spv::Op::OpTypeMatrix:
+            repeat(Kind::matrix, inst[2], inst[3]);
+            break;
+        case spv::Op::OpTypeArray:
+            repeat(Kind::array, inst[2], constantIndex(inst[3]));
+            break;
         case spv::Op::OpTypeRuntimeArray:
             type.kind = Kind::runtimeArray;
             type.element = inst[2];
+            type.depth = typeInfo(inst[2]).depth + 1;
             break;
         case spv::Op::OpTypeStruct:
             type.kind = Kind::structure;
             for (uint32_t word = 2; word < inst.count; ++word) {
                 const SpirvType& member = typeInfo(inst[word]);
                 type.members.push_back(inst[word]);
+                type.depth = std::max(type.depth, member.depth + 1);
                 type.memberLeaf.push_back(type.leaves);
                 type.memberWord.push_back(type.words);
-                const auto sum = [](uint64_t a, uint64_t b) { return static_cast<uint32_t>(std::min<uint64_t>(a + b, ~0u)); };
+                const auto sum = [](uint64_t a, uint64_t b) {
+                    return static_cast<uint32_t>(std::min<uint64_t>(a + b, ~0u));
+                };
                 type.leaves = sum(type.leaves, member.leaves);
                 type.words = sum(type.words, member.words);
             }
@@ -69,7 +89,9 @@ void Lowering::lowerType(const Instruction& inst) {
             type.storage = static_cast<spv::StorageClass>(inst[2]);
             type.element = inst[3];
             break;
-        case spv::Op::OpTypeFunction: type.kind = Kind::function; break;
+        case spv::Op::OpTypeFunction:
+            type.kind = Kind::function;
+            break;
         case spv::Op::OpTypeImage: {
             const SpirvType& sampled = typeInfo(inst[2]);
             type.kind = Kind::image;
@@ -83,13 +105,17 @@ void Lowering::lowerType(const Instruction& inst) {
             type.image.storage = inst[7] == 2;
             break;
         }
-        case spv::Op::OpTypeSampler: type.kind = Kind::sampler; break;
+        case spv::Op::OpTypeSampler:
+            type.kind = Kind::sampler;
+            break;
         case spv::Op::OpTypeSampledImage:
             type.kind = Kind::sampledImage;
             type.element = inst[2];
             break;
-        default: refuse(inst, "the type is not supported");
+        default:
+            refuse(inst, "the type is not supported");
     }
+    if (type.depth > kMaxTypeDepth) refuse(inst, "types are nested deeper than " + std::to_string(kMaxTypeDepth));
     if (type.scalar != ir::Type::none && !type.isComposite()) {
         type.leaves = 1;
         type.words = wordsOf(type.scalar);

@@ -10,33 +10,66 @@ namespace {
 using spv::Capability;
 
 constexpr Capability kCapabilities[] = {
-    Capability::Matrix, Capability::Shader, Capability::Float64, Capability::Int64,
+    Capability::Matrix,
+    Capability::Shader,
+    Capability::Float64,
+    Capability::Int64,
     // Declared by fragment shaders that read PrimitiveId or Layer.
-    Capability::Geometry, Capability::ImageGatherExtended, Capability::StorageImageMultisample,
-    Capability::UniformBufferArrayDynamicIndexing, Capability::SampledImageArrayDynamicIndexing,
-    Capability::StorageBufferArrayDynamicIndexing, Capability::StorageImageArrayDynamicIndexing,
-    Capability::ClipDistance, Capability::CullDistance, Capability::ImageCubeArray, Capability::SampleRateShading,
-    Capability::InputAttachment, Capability::Sampled1D, Capability::Image1D, Capability::SampledCubeArray,
-    Capability::SampledBuffer, Capability::ImageBuffer, Capability::ImageMSArray,
-    Capability::StorageImageExtendedFormats, Capability::ImageQuery, Capability::DerivativeControl,
-    Capability::InterpolationFunction, Capability::StorageImageReadWithoutFormat,
-    Capability::StorageImageWriteWithoutFormat, Capability::MultiViewport, Capability::ShaderLayer,
-    Capability::ShaderViewportIndex, Capability::DrawParameters, Capability::MultiView, Capability::DenormPreserve,
-    Capability::SignedZeroInfNanPreserve, Capability::RoundingModeRTE, Capability::StencilExportEXT,
-    Capability::ShaderViewportIndexLayerEXT, Capability::ShaderNonUniform, Capability::RuntimeDescriptorArray,
-    Capability::InputAttachmentArrayDynamicIndexing, Capability::UniformTexelBufferArrayDynamicIndexing,
-    Capability::StorageTexelBufferArrayDynamicIndexing, Capability::UniformBufferArrayNonUniformIndexing,
-    Capability::SampledImageArrayNonUniformIndexing, Capability::StorageBufferArrayNonUniformIndexing,
-    Capability::StorageImageArrayNonUniformIndexing, Capability::InputAttachmentArrayNonUniformIndexing,
-    Capability::UniformTexelBufferArrayNonUniformIndexing, Capability::StorageTexelBufferArrayNonUniformIndexing,
-    Capability::VulkanMemoryModel, Capability::VulkanMemoryModelDeviceScope,
+    Capability::Geometry,
+    Capability::ImageGatherExtended,
+    Capability::StorageImageMultisample,
+    Capability::UniformBufferArrayDynamicIndexing,
+    Capability::SampledImageArrayDynamicIndexing,
+    Capability::StorageBufferArrayDynamicIndexing,
+    Capability::StorageImageArrayDynamicIndexing,
+    Capability::ClipDistance,
+    Capability::CullDistance,
+    Capability::ImageCubeArray,
+    Capability::SampleRateShading,
+    Capability::InputAttachment,
+    Capability::Sampled1D,
+    Capability::Image1D,
+    Capability::SampledCubeArray,
+    Capability::SampledBuffer,
+    Capability::ImageBuffer,
+    Capability::ImageMSArray,
+    Capability::StorageImageExtendedFormats,
+    Capability::ImageQuery,
+    Capability::DerivativeControl,
+    Capability::InterpolationFunction,
+    Capability::StorageImageReadWithoutFormat,
+    Capability::StorageImageWriteWithoutFormat,
+    Capability::MultiViewport,
+    Capability::ShaderLayer,
+    Capability::ShaderViewportIndex,
+    Capability::DrawParameters,
+    Capability::MultiView,
+    Capability::DenormPreserve,
+    Capability::SignedZeroInfNanPreserve,
+    Capability::RoundingModeRTE,
+    Capability::StencilExportEXT,
+    Capability::ShaderViewportIndexLayerEXT,
+    Capability::ShaderNonUniform,
+    Capability::RuntimeDescriptorArray,
+    Capability::InputAttachmentArrayDynamicIndexing,
+    Capability::UniformTexelBufferArrayDynamicIndexing,
+    Capability::StorageTexelBufferArrayDynamicIndexing,
+    Capability::UniformBufferArrayNonUniformIndexing,
+    Capability::SampledImageArrayNonUniformIndexing,
+    Capability::StorageBufferArrayNonUniformIndexing,
+    Capability::StorageImageArrayNonUniformIndexing,
+    Capability::InputAttachmentArrayNonUniformIndexing,
+    Capability::UniformTexelBufferArrayNonUniformIndexing,
+    Capability::StorageTexelBufferArrayNonUniformIndexing,
+    Capability::VulkanMemoryModel,
+    Capability::VulkanMemoryModelDeviceScope,
     Capability::DemoteToHelperInvocationEXT,
 };
 
 /// The name by way of the disassembler, which knows the grammar.
 std::string capabilityName(uint32_t capability) {
-    const uint32_t words[] = {spv::MagicNumber, 0x00010600, 0, 1, 0, (2u << 16) | static_cast<uint32_t>(spv::Op::OpCapability),
-                              capability};
+    const uint32_t words[] = {
+        spv::MagicNumber, 0x00010600, 0, 1, 0, (2u << 16) | static_cast<uint32_t>(spv::Op::OpCapability), capability};
     const spv_context context = spvContextCreate(SPV_ENV_UNIVERSAL_1_6);
     spv_text text = nullptr;
     std::string name = std::to_string(capability);
@@ -53,9 +86,12 @@ std::string capabilityName(uint32_t capability) {
 
 spv::ExecutionModel modelOf(ir::Stage stage) {
     switch (stage) {
-        case ir::Stage::vertex: return spv::ExecutionModel::Vertex;
-        case ir::Stage::fragment: return spv::ExecutionModel::Fragment;
-        case ir::Stage::compute: break;
+        case ir::Stage::vertex:
+            return spv::ExecutionModel::Vertex;
+        case ir::Stage::fragment:
+            return spv::ExecutionModel::Fragment;
+        case ir::Stage::compute:
+            break;
     }
     return spv::ExecutionModel::GLCompute;
 }
@@ -63,7 +99,8 @@ spv::ExecutionModel modelOf(ir::Stage stage) {
 }  // namespace
 
 void Lowering::run() {
-    if (source_.stage == ir::Stage::compute) throw LoweringError{unsupported("SPIR-V: compute shaders are not supported")};
+    if (source_.stage == ir::Stage::compute)
+        throw LoweringError{unsupported("SPIR-V: compute shaders are not supported")};
     const auto& entries = module_.entryPoints();
     const auto found = std::find_if(entries.begin(), entries.end(), [this](const EntryPoint& entry) {
         return entry.name == source_.entryPoint && entry.model == modelOf(source_.stage);
@@ -121,7 +158,9 @@ void Lowering::lowerExecutionModes(const EntryPoint& entry) {
         const Instruction inst = module_.next(offset);
         if (inst[1] != entry.function) continue;
         switch (static_cast<spv::ExecutionMode>(inst[2])) {
-            case spv::ExecutionMode::EarlyFragmentTests: program_.earlyFragmentTests = true; break;
+            case spv::ExecutionMode::EarlyFragmentTests:
+                program_.earlyFragmentTests = true;
+                break;
             case spv::ExecutionMode::OriginUpperLeft:
             case spv::ExecutionMode::DepthReplacing:
             case spv::ExecutionMode::DepthGreater:
@@ -131,13 +170,16 @@ void Lowering::lowerExecutionModes(const EntryPoint& entry) {
             // What they ask for is what every program gets.
             case spv::ExecutionMode::DenormPreserve:
             case spv::ExecutionMode::SignedZeroInfNanPreserve:
-            case spv::ExecutionMode::RoundingModeRTE: break;
-            default: refuse(inst, "execution mode " + std::to_string(inst[2]) + " is not supported");
+            case spv::ExecutionMode::RoundingModeRTE:
+                break;
+            default:
+                refuse(inst, "execution mode " + std::to_string(inst[2]) + " is not supported");
         }
     }
 }
 
-// --- ids ----------------------------------------------------------------------------------------------------------------
+// --- ids
+// ----------------------------------------------------------------------------------------------------------------
 
 const IdValue& Lowering::idValue(uint32_t id) const {
     if (id >= ids_.size() || ids_[id].kind == IdValue::Kind::none) refuseId(id, "is used where it has no value");
@@ -180,7 +222,8 @@ void Lowering::setHandle(uint32_t id, const Handle& handle) {
     ids_[id] = {IdValue::Kind::handle, handle.imageType, {}, nullptr, arena_.create(handle)};
 }
 
-// --- errors -------------------------------------------------------------------------------------------------------------
+// --- errors
+// -------------------------------------------------------------------------------------------------------------
 
 std::string Lowering::describe(const Instruction& inst) const {
     std::string text = std::string("Op") + spvOpcodeString(static_cast<uint32_t>(inst.op));

@@ -1,7 +1,7 @@
 // Lowers one entry point of a valid module to the IR. The class is one; its parts are spread over lower_*.cpp by theme.
 //
-// Inside front/ what cannot be lowered is thrown as a LoweringError and caught in load_shader.cpp: the errors come from deep
-// inside expressions, and every one of them ends the whole lowering.
+// Inside front/ what cannot be lowered is thrown as a LoweringError and caught in load_shader.cpp: the errors come from
+// deep inside expressions, and every one of them ends the whole lowering.
 #pragma once
 
 #include <span>
@@ -35,14 +35,14 @@ struct Pointer {
     Base base = Base::ssa;
     uint32_t type = 0;  // of what it points to
     uint32_t root = 0, extent = 0;
-    uint32_t offset = 0;                    // constant part, in leaves (ssa), words (local, input) or bytes (buffer)
-    ir::ValueId dynamic = ir::kNoValue;     // the rest, in the same unit; ssa: which of `choices` equal parts
-    uint32_t choices = 0, choiceStride = 0; // ssa with `dynamic`: the parts and the leaves from one to the next
-    ir::ValueId descriptor = ir::kNoValue;  // buffer, handle: index in the array of descriptors
-    bool descriptorArray = false;           // the next indices select a descriptor
-    uint32_t matrixStride = 0;              // buffer: of the matrices inside
+    uint32_t offset = 0;                     // constant part, in leaves (ssa), words (local, input) or bytes (buffer)
+    ir::ValueId dynamic = ir::kNoValue;      // the rest, in the same unit; ssa: which of `choices` equal parts
+    uint32_t choices = 0, choiceStride = 0;  // ssa with `dynamic`: the parts and the leaves from one to the next
+    ir::ValueId descriptor = ir::kNoValue;   // buffer, handle: index in the array of descriptors
+    bool descriptorArray = false;            // the next indices select a descriptor
+    uint32_t matrixStride = 0;               // buffer: of the matrices inside
     bool rowMajor = false;
-    uint32_t elementStride = 0;             // buffer: bytes between the components of a vector that is a matrix's column
+    uint32_t elementStride = 0;  // buffer: bytes between the components of a vector that is a matrix's column
     const struct Texel* texel = nullptr;
 };
 
@@ -102,8 +102,7 @@ class Lowering {
     void lowerExecutionModes(const EntryPoint& entry);
     void lowerGlobals();
     void classifyVariables();
-    Indexing indexingOf(const Instruction& chain) const;
-    uint32_t rootOf(uint32_t id) const;
+    Indexing indexingOf(const Instruction& chain, Indexing before) const;
     bool isConstantId(uint32_t id) const;
     [[noreturn]] void refuse(const Instruction& inst, const std::string& reason) const;
     [[noreturn]] void refuseId(uint32_t id, const std::string& reason) const;
@@ -198,7 +197,9 @@ class Lowering {
     ir::ValueId add(ir::ValueId a, ir::ValueId b) { return binary(ir::Op::fadd, a, b); }
     ir::ValueId sub(ir::ValueId a, ir::ValueId b) { return binary(ir::Op::fsub, a, b); }
     ir::ValueId mul(ir::ValueId a, ir::ValueId b) { return binary(ir::Op::fmul, a, b); }
-    ir::ValueId binary(ir::Op op, ir::ValueId a, ir::ValueId b) { return emitter_.emit(op, emitter_.typeOf(a), {a, b}); }
+    ir::ValueId binary(ir::Op op, ir::ValueId a, ir::ValueId b) {
+        return emitter_.emit(op, emitter_.typeOf(a), {a, b});
+    }
     ir::ValueId unary(ir::Op op, ir::ValueId a) { return emitter_.emit(op, emitter_.typeOf(a), {a}); }
     ir::ValueId compare(ir::Op op, ir::ValueId a, ir::ValueId b) {
         return emitter_.emit(op, ir::Type::b1, {a, b}, static_cast<uint64_t>(emitter_.typeOf(a)));
@@ -248,11 +249,12 @@ class Lowering {
     std::vector<uint32_t> typeIndex_;  // by id, into types_
     std::vector<SpirvType> types_{SpirvType{}};
     std::vector<std::vector<ir::Type>> leafTypes_{{}};
-    std::vector<Indexing> indexing_;   // by id of a variable or parameter
+    std::vector<Indexing> indexing_;  // by id of a variable or parameter
     std::vector<Output> outputs_;
-    std::vector<uint32_t> interface_;        // ids of the entry point's interface variables
-    std::vector<uint32_t> resourceOfId_;     // by id of a variable; kNoIndex = not used so far
-    std::vector<uint32_t> localOfId_;        // by id of a variable in local memory: its first word
+    std::vector<uint32_t> interface_;     // ids of the entry point's interface variables
+    std::vector<uint32_t> resourceOfId_;  // by id of a variable; kNoIndex = not used so far
+    std::vector<uint32_t> localOfId_;     // by id of a variable in local memory: its first word
+    uint32_t callCount_ = 0;
     std::vector<const Function*> calls_;  // functions being inlined, outermost first
 };
 

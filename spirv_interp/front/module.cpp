@@ -71,7 +71,9 @@ bool Module::scan(std::string& error) {
                 current->id = inst[2];
                 current->resultType = inst[1];
                 break;
-            case spv::Op::OpFunctionEnd: current = nullptr; break;
+            case spv::Op::OpFunctionEnd:
+                current = nullptr;
+                break;
             case spv::Op::OpFunctionParameter:
                 if (current != nullptr) current->parameters.push_back(inst[2]);
                 break;
@@ -102,7 +104,9 @@ void Module::scanAnnotation(const Instruction& inst) {
             addDecoration(inst[1], {inst[2], static_cast<spv::Decoration>(inst[3]), inst[4], 0});
             break;
         case spv::Op::OpGroupDecorate:
-        case spv::Op::OpGroupMemberDecorate: groups_.push_back(offset); break;
+        case spv::Op::OpGroupMemberDecorate:
+            groups_.push_back(offset);
+            break;
         case spv::Op::OpEntryPoint: {
             EntryPoint& entry = entryPoints_.emplace_back();
             entry.model = static_cast<spv::ExecutionModel>(inst[1]);
@@ -114,9 +118,14 @@ void Module::scanAnnotation(const Instruction& inst) {
             break;
         }
         case spv::Op::OpExecutionMode:
-        case spv::Op::OpExecutionModeId: executionModes_.push_back(offset); break;
-        case spv::Op::OpExtInstImport: extendedSets_.emplace_back(inst[1], literalString(inst, 2)); break;
-        default: break;
+        case spv::Op::OpExecutionModeId:
+            executionModes_.push_back(offset);
+            break;
+        case spv::Op::OpExtInstImport:
+            extendedSets_.emplace_back(inst[1], literalString(inst, 2));
+            break;
+        default:
+            break;
     }
 }
 

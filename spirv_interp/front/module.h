@@ -97,7 +97,7 @@ class Module {
     std::span<const uint32_t> words_;
     uint32_t bound_ = 0;
     uint32_t globalsEnd_ = 0;
-    std::vector<uint32_t> definitions_;  // word offset by id, 0 = none
+    std::vector<uint32_t> definitions_;      // word offset by id, 0 = none
     std::vector<uint32_t> firstDecoration_;  // by id, index into decorations_, 0 = none
     std::vector<Decoration> decorations_{Decoration{}};
     std::vector<uint32_t> groups_;  // word offsets of OpGroupDecorate and OpGroupMemberDecorate

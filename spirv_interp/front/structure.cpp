@@ -6,7 +6,8 @@ namespace vernier {
 namespace {
 
 struct BlockShape {
-    std::vector<uint32_t> next;  // blocks to visit, the merge block first, then the continue target, then the successors
+    std::vector<uint32_t>
+        next;  // blocks to visit, the merge block first, then the continue target, then the successors
     bool loop = false;
     bool merges = false;  // next[0] is a merge block
 };
@@ -33,8 +34,12 @@ BlockShape shapeOf(const Module& module, const Function& function, const SpirvBl
                 shape.merges = true;
                 labels = {inst[1]};
                 break;
-            case spv::Op::OpSwitch: appendTargets(inst, literalWordsOf(module, inst), labels); break;
-            default: appendTargets(inst, 1, labels); break;
+            case spv::Op::OpSwitch:
+                appendTargets(inst, literalWordsOf(module, inst), labels);
+                break;
+            default:
+                appendTargets(inst, 1, labels);
+                break;
         }
     }
     const size_t constructs = shape.loop ? 2 : shape.merges ? 1 : 0;
@@ -55,7 +60,9 @@ BlockShape shapeOf(const Module& module, const Function& function, const SpirvBl
 
 void appendTargets(const Instruction& terminator, uint32_t literalWords, std::vector<uint32_t>& labels) {
     switch (terminator.op) {
-        case spv::Op::OpBranch: labels.push_back(terminator[1]); break;
+        case spv::Op::OpBranch:
+            labels.push_back(terminator[1]);
+            break;
         case spv::Op::OpBranchConditional:
             labels.push_back(terminator[2]);
             labels.push_back(terminator[3]);
@@ -66,13 +73,14 @@ void appendTargets(const Instruction& terminator, uint32_t literalWords, std::ve
                 labels.push_back(terminator[word]);
             }
             break;
-        default: break;
+        default:
+            break;
     }
 }
 
-// Reverse postorder of a depth-first walk that visits a construct's merge block before its body: what the merge block leads
-// to is finished first, so it comes after the body in the order, and the body stays together. The blocks finished between
-// a loop's merge block and its header are the loop.
+// Reverse postorder of a depth-first walk that visits a construct's merge block before its body: what the merge block
+// leads to is finished first, so it comes after the body in the order, and the body stays together. The blocks finished
+// between a loop's merge block and its header are the loop.
 std::vector<StructuredBlock> structuredOrder(const Module& module, const Function& function) {
     std::vector<StructuredBlock> postorder;
     if (function.blocks.empty()) return postorder;

@@ -15,7 +15,8 @@ struct StructuredBlock {
 /// The reachable blocks. Every edge but back edges goes forward; the blocks of a loop are contiguous, header first.
 std::vector<StructuredBlock> structuredOrder(const Module& module, const Function& function);
 
-/// The labels a terminator goes to, in the order of its operands. OpSwitch lists each case; literals may take two words.
+/// The labels a terminator goes to, in the order of its operands. OpSwitch lists each case; literals may take two
+/// words.
 void appendTargets(const Instruction& terminator, uint32_t literalWords, std::vector<uint32_t>& labels);
 
 }  // namespace vernier

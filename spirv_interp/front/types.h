@@ -17,8 +17,21 @@ struct ImageType {
 
 struct SpirvType {
     enum class Kind : uint8_t {
-        unknown, void_, boolean, integer, floating, vector, matrix, array, runtimeArray, structure, pointer, function,
-        image, sampler, sampledImage,
+        unknown,
+        void_,
+        boolean,
+        integer,
+        floating,
+        vector,
+        matrix,
+        array,
+        runtimeArray,
+        structure,
+        pointer,
+        function,
+        image,
+        sampler,
+        sampledImage,
     };
     Kind kind = Kind::unknown;
     ir::Type scalar = ir::Type::none;  // of scalars, vectors and matrices
@@ -28,8 +41,9 @@ struct SpirvType {
     spv::StorageClass storage{};       // pointer
     std::vector<uint32_t> members;     // structure: type ids; their first leaves and words in memberLeaf, memberWord
     std::vector<uint32_t> memberLeaf, memberWord;
-    uint32_t leaves = 0;               // scalars in a value; opaque types have none
-    uint32_t words = 0;                // 32-bit words of the leaves
+    uint32_t leaves = 0;  // scalars in a value; opaque types have none
+    uint32_t words = 0;   // 32-bit words of the leaves
+    uint32_t depth = 0;   // of composites inside composites
     ImageType image;
 
     bool isComposite() const {
@@ -40,5 +54,8 @@ struct SpirvType {
 
 /// Composites of more leaves than this are refused.
 inline constexpr uint32_t kMaxLeaves = 1u << 16;
+
+/// And those nested deeper: types are walked by recursion. The universal limit for structures is the same.
+inline constexpr uint32_t kMaxTypeDepth = 255;
 
 }  // namespace vernier

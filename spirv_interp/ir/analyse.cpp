@@ -52,21 +52,29 @@ void analyse(Program& program) {
                 case Op::ddxFine:
                 case Op::ddyFine:
                 case Op::ddxCoarse:
-                case Op::ddyCoarse: program.usesQuads = true; break;
+                case Op::ddyCoarse:
+                    program.usesQuads = true;
+                    break;
                 case Op::kill:
-                case Op::demote: program.canDiscard = true; break;
-                case Op::storeBuffer: written[inst.imm] = true; break;
+                case Op::demote:
+                    program.canDiscard = true;
+                    break;
+                case Op::storeBuffer:
+                    written[inst.imm] = true;
+                    break;
                 case Op::atomicBuffer:
                     if (static_cast<AtomicOp>(immHigh(inst)) != AtomicOp::load) written[immLow(inst)] = true;
                     break;
                 case Op::image:
                 case Op::imageStore: {
                     const ImageOp& op = program.imageOps[inst.imm];
-                    if (op.kind == ImageKind::sampleImplicit || op.kind == ImageKind::queryLod) program.usesQuads = true;
+                    if (op.kind == ImageKind::sampleImplicit || op.kind == ImageKind::queryLod)
+                        program.usesQuads = true;
                     if (op.kind == ImageKind::store || op.kind == ImageKind::atomic) written[op.imageResource] = true;
                     break;
                 }
-                default: break;
+                default:
+                    break;
             }
         }
     }

@@ -32,7 +32,8 @@ class Builder {
     // Terminators; they record both ends of their edges.
     void jump(BlockId to);
     void branch(ValueId condition, BlockId ifTrue, BlockId ifFalse);
-    void switchOn(ValueId selector, BlockId otherwise, std::span<const int32_t> cases, std::span<const BlockId> targets);
+    void switchOn(ValueId selector, BlockId otherwise, std::span<const int32_t> cases,
+                  std::span<const BlockId> targets);
     void ret() { append(Op::ret, Type::none, {}); }
     void kill() { append(Op::kill, Type::none, {}); }
 

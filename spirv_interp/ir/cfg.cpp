@@ -6,8 +6,8 @@
 
 namespace vernier::ir {
 
-// Structured order is a reverse postorder of a reducible graph, so the dominators settle in one pass of the iteration of
-// Cooper, Harvey and Kennedy ("A Simple, Fast Dominance Algorithm", 2001): back edges do not matter.
+// Structured order is a reverse postorder of a reducible graph, so the dominators settle in one pass of the iteration
+// of Cooper, Harvey and Kennedy ("A Simple, Fast Dominance Algorithm", 2001): back edges do not matter.
 Cfg::Cfg(const Program& program) {
     const auto count = static_cast<BlockId>(program.blocks.size());
     idom.assign(count, kNoIndex);

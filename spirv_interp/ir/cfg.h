@@ -29,12 +29,12 @@ struct Cfg {
 /// Where each value is defined; kNoIndex for values without a definition.
 std::vector<BlockId> definingBlocks(const Program& program);
 
-/// Takes one edge from `from` to `to` away: the entry in the predecessors and the phis' operands. The caller changes the
-/// terminator and the successors of `from`.
+/// Takes one edge from `from` to `to` away: the entry in the predecessors and the phis' operands. The caller changes
+/// the terminator and the successors of `from`.
 void removePredecessor(Program& program, BlockId from, BlockId to);
 
-/// Drops the blocks with keep[b] == false, which no kept block may go to (edges out of dropped blocks are taken away), and
-/// renumbers the rest.
+/// Drops the blocks with keep[b] == false, which no kept block may go to (edges out of dropped blocks are taken away),
+/// and renumbers the rest.
 void removeBlocks(Program& program, const std::vector<bool>& keep);
 
 /// Drops blocks that cannot be reached from the entry, and loops whose back edges are all gone. Returns whether it did.

@@ -37,17 +37,28 @@ std::optional<uint64_t> foldFloat(Op op, std::span<const uint64_t> operands) {
     const F z = operands.size() > 2 ? asFloat<F>(operands[2]) : F{};
     if (x != x || y != y || z != z) return std::nullopt;
     switch (op) {
-        case Op::fadd: return floatBits<F>(x + y);
-        case Op::fsub: return floatBits<F>(x - y);
-        case Op::fmul: return floatBits<F>(x * y);
-        case Op::fdiv: return floatBits<F>(x / y);
-        case Op::fneg: return floatBits<F>(-x);
-        case Op::fabs: return floatBits<F>(std::fabs(x));
-        case Op::ffloor: return floatBits<F>(std::floor(x));
-        case Op::fceil: return floatBits<F>(std::ceil(x));
-        case Op::ftrunc: return floatBits<F>(std::trunc(x));
-        case Op::fsqrt: return floatBits<F>(std::sqrt(x));
-        case Op::ffma: return floatBits<F>(std::fma(x, y, z));
+        case Op::fadd:
+            return floatBits<F>(x + y);
+        case Op::fsub:
+            return floatBits<F>(x - y);
+        case Op::fmul:
+            return floatBits<F>(x * y);
+        case Op::fdiv:
+            return floatBits<F>(x / y);
+        case Op::fneg:
+            return floatBits<F>(-x);
+        case Op::fabs:
+            return floatBits<F>(std::fabs(x));
+        case Op::ffloor:
+            return floatBits<F>(std::floor(x));
+        case Op::fceil:
+            return floatBits<F>(std::ceil(x));
+        case Op::ftrunc:
+            return floatBits<F>(std::trunc(x));
+        case Op::fsqrt:
+            return floatBits<F>(std::sqrt(x));
+        case Op::ffma:
+            return floatBits<F>(std::fma(x, y, z));
         case Op::fmin:
         case Op::fmax:
             // Which zero comes out of min(-0, +0) is the interpreter's affair.
@@ -56,7 +67,8 @@ std::optional<uint64_t> foldFloat(Op op, std::span<const uint64_t> operands) {
         case Op::fsign:
             if (x == F{}) return std::nullopt;
             return floatBits<F>(x > F{} ? F{1} : F{-1});
-        default: return std::nullopt;
+        default:
+            return std::nullopt;
     }
 }
 
@@ -70,12 +82,18 @@ std::optional<uint64_t> foldInteger(Op op, std::span<const uint64_t> operands) {
     const bool overflow = sx == std::numeric_limits<S>::min() && sy == -1;
     const auto bits = [](U value) { return std::optional<uint64_t>(value); };
     switch (op) {
-        case Op::iadd: return bits(x + y);
-        case Op::isub: return bits(x - y);
-        case Op::imul: return bits(x * y);
-        case Op::udiv: return bits(y == 0 ? 0 : x / y);
-        case Op::umod: return bits(y == 0 ? 0 : x % y);
-        case Op::sdiv: return bits(y == 0 ? 0 : overflow ? x : static_cast<U>(sx / sy));
+        case Op::iadd:
+            return bits(x + y);
+        case Op::isub:
+            return bits(x - y);
+        case Op::imul:
+            return bits(x * y);
+        case Op::udiv:
+            return bits(y == 0 ? 0 : x / y);
+        case Op::umod:
+            return bits(y == 0 ? 0 : x % y);
+        case Op::sdiv:
+            return bits(y == 0 ? 0 : overflow ? x : static_cast<U>(sx / sy));
         case Op::srem:
             if (y == 0) return std::nullopt;
             return bits(overflow ? 0 : static_cast<U>(sx % sy));
@@ -84,30 +102,48 @@ std::optional<uint64_t> foldInteger(Op op, std::span<const uint64_t> operands) {
             const S rest = overflow ? S{0} : static_cast<S>(sx % sy);
             return bits(static_cast<U>(rest != 0 && (rest < 0) != (sy < 0) ? rest + sy : rest));
         }
-        case Op::ineg: return bits(U{0} - x);
-        case Op::iabs: return bits(sx < 0 ? U{0} - x : x);
-        case Op::isign: return bits(static_cast<U>(sx > 0 ? 1 : sx < 0 ? -1 : 0));
-        case Op::smin: return bits(sx < sy ? x : y);
-        case Op::smax: return bits(sx > sy ? x : y);
-        case Op::umin: return bits(x < y ? x : y);
-        case Op::umax: return bits(x > y ? x : y);
-        case Op::iand: return bits(x & y);
-        case Op::ior: return bits(x | y);
-        case Op::ixor: return bits(x ^ y);
-        case Op::inot: return bits(~x);
-        case Op::shl: return bits(x << (y % kWidth));
-        case Op::lshr: return bits(x >> (y % kWidth));
-        case Op::ashr: return bits(static_cast<U>(sx >> (y % kWidth)));
-        case Op::bitCount: return bits(static_cast<U>(std::popcount(x)));
-        case Op::addCarry: return bits(static_cast<U>(x + y) < x ? 1 : 0);
-        case Op::subBorrow: return bits(x < y ? 1 : 0);
+        case Op::ineg:
+            return bits(U{0} - x);
+        case Op::iabs:
+            return bits(sx < 0 ? U{0} - x : x);
+        case Op::isign:
+            return bits(static_cast<U>(sx > 0 ? 1 : sx < 0 ? -1 : 0));
+        case Op::smin:
+            return bits(sx < sy ? x : y);
+        case Op::smax:
+            return bits(sx > sy ? x : y);
+        case Op::umin:
+            return bits(x < y ? x : y);
+        case Op::umax:
+            return bits(x > y ? x : y);
+        case Op::iand:
+            return bits(x & y);
+        case Op::ior:
+            return bits(x | y);
+        case Op::ixor:
+            return bits(x ^ y);
+        case Op::inot:
+            return bits(~x);
+        case Op::shl:
+            return bits(x << (y % kWidth));
+        case Op::lshr:
+            return bits(x >> (y % kWidth));
+        case Op::ashr:
+            return bits(static_cast<U>(sx >> (y % kWidth)));
+        case Op::bitCount:
+            return bits(static_cast<U>(std::popcount(x)));
+        case Op::addCarry:
+            return bits(static_cast<U>(x + y) < x ? 1 : 0);
+        case Op::subBorrow:
+            return bits(x < y ? 1 : 0);
         case Op::umulHigh:
             if constexpr (sizeof(U) == 4) return bits(static_cast<U>(static_cast<uint64_t>(x) * y >> 32));
             return std::nullopt;
         case Op::smulHigh:
             if constexpr (sizeof(U) == 4) return bits(static_cast<U>(static_cast<int64_t>(sx) * sy >> 32));
             return std::nullopt;
-        default: return std::nullopt;
+        default:
+            return std::nullopt;
     }
 }
 
@@ -117,17 +153,28 @@ std::optional<uint64_t> foldFloatCompare(Op op, std::span<const uint64_t> operan
     const F y = operands.size() > 1 ? asFloat<F>(operands[1]) : F{};
     const bool unordered = x != x || y != y;
     switch (op) {
-        case Op::foeq: return !unordered && x == y;
-        case Op::fone: return !unordered && x != y;
-        case Op::folt: return x < y;
-        case Op::fole: return x <= y;
-        case Op::fueq: return unordered || x == y;
-        case Op::fune: return unordered || x != y;
-        case Op::fult: return unordered || x < y;
-        case Op::fule: return unordered || x <= y;
-        case Op::fisnan: return x != x;
-        case Op::fisinf: return std::isinf(x);
-        default: return std::nullopt;
+        case Op::foeq:
+            return !unordered && x == y;
+        case Op::fone:
+            return !unordered && x != y;
+        case Op::folt:
+            return x < y;
+        case Op::fole:
+            return x <= y;
+        case Op::fueq:
+            return unordered || x == y;
+        case Op::fune:
+            return unordered || x != y;
+        case Op::fult:
+            return unordered || x < y;
+        case Op::fule:
+            return unordered || x <= y;
+        case Op::fisnan:
+            return x != x;
+        case Op::fisinf:
+            return std::isinf(x);
+        default:
+            return std::nullopt;
     }
 }
 
@@ -136,13 +183,20 @@ std::optional<uint64_t> foldIntegerCompare(Op op, std::span<const uint64_t> oper
     using S = std::make_signed_t<U>;
     const U x = static_cast<U>(operands[0]), y = static_cast<U>(operands[1]);
     switch (op) {
-        case Op::ieq: return x == y;
-        case Op::ine: return x != y;
-        case Op::slt: return static_cast<S>(x) < static_cast<S>(y);
-        case Op::sle: return static_cast<S>(x) <= static_cast<S>(y);
-        case Op::ult: return x < y;
-        case Op::ule: return x <= y;
-        default: return std::nullopt;
+        case Op::ieq:
+            return x == y;
+        case Op::ine:
+            return x != y;
+        case Op::slt:
+            return static_cast<S>(x) < static_cast<S>(y);
+        case Op::sle:
+            return static_cast<S>(x) <= static_cast<S>(y);
+        case Op::ult:
+            return x < y;
+        case Op::ule:
+            return x <= y;
+        default:
+            return std::nullopt;
     }
 }
 
@@ -187,12 +241,16 @@ std::optional<uint64_t> foldConversion(Op op, Type type, Type from, uint64_t x) 
             if (from == type) return std::nullopt;
             return type == Type::f32 ? floatBits<float>(static_cast<float>(asFloat<double>(x)))
                                      : floatBits<double>(static_cast<double>(asFloat<float>(x)));
-        case Op::zext: return from == Type::b1 ? x & 1 : x;
-        case Op::bitcast: return x;
-        case Op::itrunc: return x & 0xFFFFFFFFu;
+        case Op::zext:
+            return from == Type::b1 ? x & 1 : x;
+        case Op::bitcast:
+            return x;
+        case Op::itrunc:
+            return x & 0xFFFFFFFFu;
         case Op::sext:
             return type == Type::i64 ? static_cast<uint64_t>(static_cast<int64_t>(static_cast<int32_t>(x))) : x;
-        default: return std::nullopt;
+        default:
+            return std::nullopt;
     }
 }
 
@@ -214,16 +272,26 @@ std::optional<uint64_t> foldAny(Op op, Type type, uint64_t imm, std::span<const 
     }
     if (op >= Op::ftos && op <= Op::bitcast) return foldConversion(op, type, from, x[0]);
     switch (op) {
-        case Op::copy: return x[0];
-        case Op::band: return x[0] & x[1];
-        case Op::bor: return x[0] | x[1];
-        case Op::bxor: return x[0] ^ x[1];
-        case Op::bnot: return x[0] == 0;
-        case Op::select: return x[0] != 0 ? x[1] : x[2];
-        case Op::makeWide: return immPair(static_cast<uint32_t>(x[0]), static_cast<uint32_t>(x[1]));
-        case Op::lowWord: return x[0] & 0xFFFFFFFFu;
-        case Op::highWord: return x[0] >> 32;
-        default: return std::nullopt;
+        case Op::copy:
+            return x[0];
+        case Op::band:
+            return x[0] & x[1];
+        case Op::bor:
+            return x[0] | x[1];
+        case Op::bxor:
+            return x[0] ^ x[1];
+        case Op::bnot:
+            return x[0] == 0;
+        case Op::select:
+            return x[0] != 0 ? x[1] : x[2];
+        case Op::makeWide:
+            return immPair(static_cast<uint32_t>(x[0]), static_cast<uint32_t>(x[1]));
+        case Op::lowWord:
+            return x[0] & 0xFFFFFFFFu;
+        case Op::highWord:
+            return x[0] >> 32;
+        default:
+            return std::nullopt;
     }
 }
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "spirv_interp/ir/optimise.h"
 #include "spirv_interp/ir/ops.h"
+#include "spirv_interp/ir/optimise.h"
 
 namespace vernier::ir {
 namespace {
@@ -14,11 +14,13 @@ bool samePlace(const InterfaceSlot& output, const InterfaceSlot& input) {
 
 /// Whether a fragment input is fed by a vertex output, rather than by the rasteriser.
 bool isVarying(const InterfaceSlot& slot) {
-    return slot.builtin == Builtin::user || slot.builtin == Builtin::clipDistance || slot.builtin == Builtin::cullDistance;
+    return slot.builtin == Builtin::user || slot.builtin == Builtin::clipDistance ||
+           slot.builtin == Builtin::cullDistance;
 }
 
 const InterfaceSlot* findSlot(const std::vector<InterfaceSlot>& slots, const InterfaceSlot& like) {
-    const auto found = std::find_if(slots.begin(), slots.end(), [&](const InterfaceSlot& s) { return samePlace(s, like); });
+    const auto found =
+        std::find_if(slots.begin(), slots.end(), [&](const InterfaceSlot& s) { return samePlace(s, like); });
     return found == slots.end() ? nullptr : &*found;
 }
 

@@ -11,9 +11,9 @@ struct Entry {
 
 template <class T>
 struct Tag;
-#define VERNIER_IR_TAG(type, number)           \
-    template <>                                \
-    struct Tag<type> {                         \
+#define VERNIER_IR_TAG(type, number)             \
+    template <>                                  \
+    struct Tag<type> {                           \
         static constexpr uint8_t value = number; \
     };
 VERNIER_IR_TAG(Stage, 0)
@@ -61,12 +61,12 @@ constexpr bool inOrder() {
 
 }  // namespace
 
-#define VERNIER_IR_TABLE(type)                                   \
-    template <>                                                  \
-    std::span<const EnumName<type>> enumNames<type>() {          \
+#define VERNIER_IR_TABLE(type)                                      \
+    template <>                                                     \
+    std::span<const EnumName<type>> enumNames<type>() {             \
         static_assert(inOrder<type>(), "names.def lacks a " #type); \
-        static constexpr auto kTable = makeTable<type>();        \
-        return kTable;                                           \
+        static constexpr auto kTable = makeTable<type>();           \
+        return kTable;                                              \
     }
 VERNIER_IR_TABLE(Stage)
 VERNIER_IR_TABLE(Builtin)

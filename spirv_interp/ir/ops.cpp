@@ -13,14 +13,18 @@ constexpr OpInfo kOps[] = {
 
 constexpr std::string_view kTypeNames[] = {"none", "b1", "i32", "f32", "i64", "f64"};
 
-constexpr uint32_t bit(Type type) { return 1u << static_cast<uint32_t>(type); }
+constexpr uint32_t bit(Type type) {
+    return 1u << static_cast<uint32_t>(type);
+}
 constexpr uint32_t kInts = bit(Type::i32) | bit(Type::i64);
 constexpr uint32_t kFloats = bit(Type::f32) | bit(Type::f64);
 constexpr uint32_t kWords = bit(Type::i32) | bit(Type::f32);
 constexpr uint32_t kWide = bit(Type::i64) | bit(Type::f64);
 constexpr uint32_t kAll = bit(Type::b1) | kInts | kFloats;
 
-constexpr bool between(Op op, Op first, Op last) { return op >= first && op <= last; }
+constexpr bool between(Op op, Op first, Op last) {
+    return op >= first && op <= last;
+}
 
 uint32_t immTypeBit(const Inst& inst) {
     return inst.imm >= 1 && inst.imm <= static_cast<uint64_t>(Type::f64) ? 1u << inst.imm : 0;
@@ -46,9 +50,13 @@ uint32_t imageOperandTypes(const ImageOp& op, uint32_t index) {
 
 }  // namespace
 
-const OpInfo& opInfo(Op op) { return kOps[static_cast<size_t>(op)]; }
+const OpInfo& opInfo(Op op) {
+    return kOps[static_cast<size_t>(op)];
+}
 
-std::string_view typeName(Type type) { return kTypeNames[static_cast<size_t>(type)]; }
+std::string_view typeName(Type type) {
+    return kTypeNames[static_cast<size_t>(type)];
+}
 
 std::optional<Type> typeFromName(std::string_view name) {
     for (size_t i = 0; i < std::size(kTypeNames); ++i) {
@@ -67,23 +75,31 @@ std::optional<Op> opFromName(std::string_view name) {
 ImmKind immKind(Op op) {
     if (between(op, Op::foeq, Op::ule) || between(op, Op::ftos, Op::bitcast)) return ImmKind::type;
     switch (op) {
-        case Op::constant: return ImmKind::bits;
-        case Op::ffrexpExponent: return ImmKind::type;
+        case Op::constant:
+            return ImmKind::bits;
+        case Op::ffrexpExponent:
+            return ImmKind::type;
         case Op::input:
         case Op::interpolateAtCentroid:
         case Op::interpolateAtSample:
-        case Op::interpolateAtOffset: return ImmKind::input;
-        case Op::storeOutput: return ImmKind::output;
+        case Op::interpolateAtOffset:
+            return ImmKind::input;
+        case Op::storeOutput:
+            return ImmKind::output;
         case Op::loadBuffer:
         case Op::storeBuffer:
-        case Op::bufferSize: return ImmKind::resource;
+        case Op::bufferSize:
+            return ImmKind::resource;
         case Op::image:
-        case Op::imageStore: return ImmKind::imageOp;
+        case Op::imageStore:
+            return ImmKind::imageOp;
         case Op::inputIndexed:
         case Op::atomicBuffer:
         case Op::loadLocal:
-        case Op::storeLocal: return ImmKind::pair;
-        default: return ImmKind::none;
+        case Op::storeLocal:
+            return ImmKind::pair;
+        default:
+            return ImmKind::none;
     }
 }
 
@@ -114,7 +130,8 @@ ImageOperands imageOperands(const ImageOp& op) {
 
 uint32_t operandCountOf(const Program& program, const Inst& inst) {
     switch (inst.op) {
-        case Op::phi: return kNoIndex;
+        case Op::phi:
+            return kNoIndex;
         case Op::image:
         case Op::imageStore:
             return inst.imm < program.imageOps.size() ? imageOperands(program.imageOps[inst.imm]).count : kNoIndex;
@@ -122,7 +139,8 @@ uint32_t operandCountOf(const Program& program, const Inst& inst) {
             const auto op = static_cast<AtomicOp>(immHigh(inst));
             return op == AtomicOp::compareExchange ? 4 : op == AtomicOp::load ? 2 : 3;
         }
-        default: return opInfo(inst.op).operands;
+        default:
+            return opInfo(inst.op).operands;
     }
 }
 
@@ -137,25 +155,38 @@ uint32_t operandTypes(const Program& program, const Inst& inst, uint32_t index) 
         case Op::makeWide:
         case Op::unpackHalfLow:
         case Op::unpackHalfHigh:
-        case Op::interpolateAtSample: return bit(Type::i32);
-        case Op::storeBuffer: return index < 2 ? bit(Type::i32) : kWords;
-        case Op::storeLocal: return index < 1 ? bit(Type::i32) : kWords;
-        case Op::atomicBuffer: return index < 2 ? bit(Type::i32) : inst.type == Type::none ? kWords : bit(inst.type);
+        case Op::interpolateAtSample:
+            return bit(Type::i32);
+        case Op::storeBuffer:
+            return index < 2 ? bit(Type::i32) : kWords;
+        case Op::storeLocal:
+            return index < 1 ? bit(Type::i32) : kWords;
+        case Op::atomicBuffer:
+            return index < 2 ? bit(Type::i32) : inst.type == Type::none ? kWords : bit(inst.type);
         case Op::packHalf:
-        case Op::interpolateAtOffset: return bit(Type::f32);
+        case Op::interpolateAtOffset:
+            return bit(Type::f32);
         case Op::lowWord:
-        case Op::highWord: return kWide;
-        case Op::branch: return bit(Type::b1);
-        case Op::select: return index == 0 ? bit(Type::b1) : bit(inst.type);
-        case Op::fldexp: return index == 1 ? bit(Type::i32) : bit(inst.type);
-        case Op::bitFieldInsert: return index >= 2 ? bit(Type::i32) : bit(inst.type);
+        case Op::highWord:
+            return kWide;
+        case Op::branch:
+            return bit(Type::b1);
+        case Op::select:
+            return index == 0 ? bit(Type::b1) : bit(inst.type);
+        case Op::fldexp:
+            return index == 1 ? bit(Type::i32) : bit(inst.type);
+        case Op::bitFieldInsert:
+            return index >= 2 ? bit(Type::i32) : bit(inst.type);
         case Op::bitFieldSExtract:
-        case Op::bitFieldUExtract: return index >= 1 ? bit(Type::i32) : bit(inst.type);
-        case Op::storeOutput: return inst.imm < program.outputs.size() ? bit(program.outputs[inst.imm].type) : 0;
+        case Op::bitFieldUExtract:
+            return index >= 1 ? bit(Type::i32) : bit(inst.type);
+        case Op::storeOutput:
+            return inst.imm < program.outputs.size() ? bit(program.outputs[inst.imm].type) : 0;
         case Op::image:
         case Op::imageStore:
             return inst.imm < program.imageOps.size() ? imageOperandTypes(program.imageOps[inst.imm], index) : 0;
-        default: return bit(inst.type);
+        default:
+            return bit(inst.type);
     }
 }
 
@@ -169,36 +200,46 @@ uint32_t resultTypes(Op op) {
         case Op::undef:
         case Op::phi:
         case Op::copy:
-        case Op::select: return kAll;
+        case Op::select:
+            return kAll;
         case Op::input:
-        case Op::inputIndexed: return kWords | bit(Type::b1);
+        case Op::inputIndexed:
+            return kWords | bit(Type::b1);
         case Op::ffrexpExponent:
         case Op::lowWord:
         case Op::highWord:
         case Op::packHalf:
         case Op::bufferSize:
-        case Op::itrunc: return bit(Type::i32);
+        case Op::itrunc:
+            return bit(Type::i32);
         case Op::ftos:
         case Op::ftou:
         case Op::zext:
-        case Op::sext: return kInts;
+        case Op::sext:
+            return kInts;
         case Op::stof:
         case Op::utof:
         case Op::ftof:
         case Op::ddxFine:
         case Op::ddyFine:
         case Op::ddxCoarse:
-        case Op::ddyCoarse: return kFloats;
-        case Op::bitcast: return kInts | kFloats;
-        case Op::makeWide: return kWide;
+        case Op::ddyCoarse:
+            return kFloats;
+        case Op::bitcast:
+            return kInts | kFloats;
+        case Op::makeWide:
+            return kWide;
         case Op::unpackHalfLow:
         case Op::unpackHalfHigh:
         case Op::quantizeF16:
         case Op::interpolateAtCentroid:
         case Op::interpolateAtSample:
-        case Op::interpolateAtOffset: return bit(Type::f32);
-        case Op::isHelper: return bit(Type::b1);
-        default: return kWords;
+        case Op::interpolateAtOffset:
+            return bit(Type::f32);
+        case Op::isHelper:
+            return bit(Type::b1);
+        default:
+            return kWords;
     }
 }
 

@@ -15,26 +15,38 @@ std::optional<Op> opFromName(std::string_view name);
 /// How Inst::imm of an operation is read.
 enum class ImmKind : uint8_t {
     none,
-    bits,     // of a constant
-    type,     // the ir::Type of the operands
-    input,    // index into Program::inputs
-    output,   // index into Program::outputs
-    resource, // index into Program::resources
-    imageOp,  // index into Program::imageOps
-    pair,     // two 32-bit numbers, low and high
+    bits,      // of a constant
+    type,      // the ir::Type of the operands
+    input,     // index into Program::inputs
+    output,    // index into Program::outputs
+    resource,  // index into Program::resources
+    imageOp,   // index into Program::imageOps
+    pair,      // two 32-bit numbers, low and high
 };
 ImmKind immKind(Op op);
 
-inline uint32_t immLow(const Inst& inst) { return static_cast<uint32_t>(inst.imm); }
-inline uint32_t immHigh(const Inst& inst) { return static_cast<uint32_t>(inst.imm >> 32); }
-inline uint64_t immPair(uint32_t low, uint32_t high) { return low | static_cast<uint64_t>(high) << 32; }
+inline uint32_t immLow(const Inst& inst) {
+    return static_cast<uint32_t>(inst.imm);
+}
+inline uint32_t immHigh(const Inst& inst) {
+    return static_cast<uint32_t>(inst.imm >> 32);
+}
+inline uint64_t immPair(uint32_t low, uint32_t high) {
+    return low | static_cast<uint64_t>(high) << 32;
+}
 
 /// The bits of a b1 constant that is true, as in a lane.
 inline constexpr uint64_t kTrueBits = 0xFFFFFFFFu;
 
-constexpr bool isFloat(Type type) { return type == Type::f32 || type == Type::f64; }
-constexpr bool isInteger(Type type) { return type == Type::i32 || type == Type::i64; }
-constexpr bool isWide(Type type) { return type == Type::i64 || type == Type::f64; }
+constexpr bool isFloat(Type type) {
+    return type == Type::f32 || type == Type::f64;
+}
+constexpr bool isInteger(Type type) {
+    return type == Type::i32 || type == Type::i64;
+}
+constexpr bool isWide(Type type) {
+    return type == Type::i64 || type == Type::f64;
+}
 
 /// The types operand `index` may have, as a bit set of 1 << Type; 0 when the instruction has no such operand or its
 /// immediate is out of range.
@@ -49,8 +61,8 @@ uint32_t operandCountOf(const Program& program, const Inst& inst);
 
 /// Where the operands of an image instruction stand; kNoIndex = not there. `count` is their number.
 struct ImageOperands {
-    uint32_t image = 0, sampler = kNoIndex, coords = kNoIndex, dref = kNoIndex, lodOrBias = kNoIndex, gradients = kNoIndex,
-             offsets = kNoIndex, sample = kNoIndex, values = kNoIndex;
+    uint32_t image = 0, sampler = kNoIndex, coords = kNoIndex, dref = kNoIndex, lodOrBias = kNoIndex,
+             gradients = kNoIndex, offsets = kNoIndex, sample = kNoIndex, values = kNoIndex;
     uint32_t count = 0;
 };
 ImageOperands imageOperands(const ImageOp& op);
@@ -62,6 +74,8 @@ bool hasSideEffect(const Program& program, const Inst& inst);
 /// in the program writes.
 bool isMovable(const Program& program, const Inst& inst);
 
-inline bool isTerminator(Op op) { return opInfo(op).kind == 'T'; }
+inline bool isTerminator(Op op) {
+    return opInfo(op).kind == 'T';
+}
 
 }  // namespace vernier::ir

@@ -213,11 +213,13 @@ class Parser {
     }
 
     void fact(LineReader& in) {
-        const std::pair<std::string_view, bool*> facts[] = {
-            {"earlyFragmentTests", &program_.earlyFragmentTests}, {"usesQuads", &program_.usesQuads},
-            {"canDiscard", &program_.canDiscard},                 {"writesDepth", &program_.writesDepth},
-            {"writesSampleMask", &program_.writesSampleMask},     {"hasSideEffects", &program_.hasSideEffects},
-            {"perSample", &program_.perSample}};
+        const std::pair<std::string_view, bool*> facts[] = {{"earlyFragmentTests", &program_.earlyFragmentTests},
+                                                            {"usesQuads", &program_.usesQuads},
+                                                            {"canDiscard", &program_.canDiscard},
+                                                            {"writesDepth", &program_.writesDepth},
+                                                            {"writesSampleMask", &program_.writesSampleMask},
+                                                            {"hasSideEffects", &program_.hasSideEffects},
+                                                            {"perSample", &program_.perSample}};
         const std::string_view word = in.word();
         for (const auto& [name, flag] : facts) {
             if (name != word) continue;
@@ -265,7 +267,8 @@ class Parser {
         const std::optional<Op> op = opFromName(name);
         if (!op) return in.fail("an operation");
         inst.op = *op;
-        if ((opInfo(*op).results != 0) != (inst.result != kNoValue)) return in.fail("as many results as the operation has");
+        if ((opInfo(*op).results != 0) != (inst.result != kNoValue))
+            return in.fail("as many results as the operation has");
         immediate(in, inst);
         inst.firstOperand = static_cast<uint32_t>(program_.operands.size());
         while (in.atValue() && program_.operands.size() - inst.firstOperand < 0xFFFF) {
@@ -287,8 +290,11 @@ class Parser {
 
     void immediate(LineReader& in, Inst& inst) {
         switch (immKind(inst.op)) {
-            case ImmKind::none: return;
-            case ImmKind::bits: inst.imm = in.number(~0ull); return;
+            case ImmKind::none:
+                return;
+            case ImmKind::bits:
+                inst.imm = in.number(~0ull);
+                return;
             case ImmKind::type:
                 in.expect(".", "the type of the operands");
                 inst.imm = static_cast<uint64_t>(type(in));
@@ -325,6 +331,8 @@ class Parser {
 
 }  // namespace
 
-Result<Program> parse(std::string_view text) { return Parser().run(text); }
+Result<Program> parse(std::string_view text) {
+    return Parser().run(text);
+}
 
 }  // namespace vernier::ir

@@ -64,7 +64,8 @@ bool foldTerminators(Program& program) {
     return changed;
 }
 
-/// A block that only jumps is left out: its predecessors go where it goes. Latches stay, so that a loop keeps one back edge.
+/// A block that only jumps is left out: its predecessors go where it goes. Latches stay, so that a loop keeps one back
+/// edge.
 bool skipEmptyBlocks(Program& program) {
     std::vector<bool> keep(program.blocks.size(), true);
     bool changed = false;
@@ -81,8 +82,8 @@ bool skipEmptyBlocks(Program& program) {
                    std::count(block.predecessors.begin(), block.predecessors.end(), p) > 1;
         });
         if (hasPhis && clash) continue;
-        const auto index =
-            static_cast<size_t>(std::find(target.predecessors.begin(), target.predecessors.end(), b) - target.predecessors.begin());
+        const auto index = static_cast<size_t>(std::find(target.predecessors.begin(), target.predecessors.end(), b) -
+                                               target.predecessors.begin());
         for (Inst& phi : target.insts) {
             if (phi.op != Op::phi) break;
             std::vector<ValueId> operands(program.operandsOf(phi).begin(), program.operandsOf(phi).end());

@@ -25,8 +25,10 @@ bool isCommutative(Op op) {
         case Op::foeq:
         case Op::fone:
         case Op::fueq:
-        case Op::fune: return true;
-        default: return false;
+        case Op::fune:
+            return true;
+        default:
+            return false;
     }
 }
 

@@ -136,17 +136,20 @@ class Folder {
                                  : *bits == std::bit_cast<uint64_t>(value);
     }
 
-    /// 1 / c when c is a power of two whose reciprocal is a normal number: x / c and x * (1 / c) then round the same value.
+    /// 1 / c when c is a power of two whose reciprocal is a normal number: x / c and x * (1 / c) then round the same
+    /// value.
     static std::optional<uint64_t> exactReciprocal(const std::optional<uint64_t>& bits, Type type) {
         if (!bits) return std::nullopt;
         int exponent = 0;
         if (type == Type::f32) {
             const float c = std::bit_cast<float>(static_cast<uint32_t>(*bits));
-            if (std::fabs(std::frexp(c, &exponent)) != 0.5f || !std::isnormal(c) || !std::isnormal(1 / c)) return std::nullopt;
+            if (std::fabs(std::frexp(c, &exponent)) != 0.5f || !std::isnormal(c) || !std::isnormal(1 / c))
+                return std::nullopt;
             return std::bit_cast<uint32_t>(1 / c);
         }
         const double c = std::bit_cast<double>(*bits);
-        if (std::fabs(std::frexp(c, &exponent)) != 0.5 || !std::isnormal(c) || !std::isnormal(1 / c)) return std::nullopt;
+        if (std::fabs(std::frexp(c, &exponent)) != 0.5 || !std::isnormal(c) || !std::isnormal(1 / c))
+            return std::nullopt;
         return std::bit_cast<uint64_t>(1 / c);
     }
 
@@ -168,7 +171,7 @@ class Folder {
                 if (isFloatConstant(each[0], inst.type, 1.0)) return replace(inst, b);
                 if (isFloatConstant(each[1], inst.type, -1.0)) return rewrite(inst, Op::fneg, {a});
                 if (isFloatConstant(each[0], inst.type, -1.0)) return rewrite(inst, Op::fneg, {b});
-                if (const Inst *m = definedBy(a, Op::fneg), *n = definedBy(b, Op::fneg); m != nullptr && n != nullptr) {
+                if (const Inst* m = definedBy(a, Op::fneg), *n = definedBy(b, Op::fneg); m != nullptr && n != nullptr) {
                     return rewrite(inst, Op::fmul, {operand(*m, 0), operand(*n, 0)});
                 }
                 return;
@@ -185,7 +188,8 @@ class Folder {
                 if (definedBy(a, Op::fabs) != nullptr) return replace(inst, a);
                 if (const Inst* n = definedBy(a, Op::fneg)) return rewrite(inst, Op::fabs, {operand(*n, 0)});
                 return;
-            default: return;
+            default:
+                return;
         }
     }
 
@@ -257,7 +261,8 @@ class Folder {
             case Op::ineg:
                 if (const Inst* n = definedBy(a, Op::ineg)) return replace(inst, operand(*n, 0));
                 return;
-            default: return;
+            default:
+                return;
         }
     }
 
@@ -294,7 +299,8 @@ class Folder {
                 if (is(0, kTrueBits)) return rewrite(inst, Op::bnot, {b});
                 if (is(1, kTrueBits)) return rewrite(inst, Op::bnot, {a});
                 return;
-            case Op::bnot: return invert(inst, a);
+            case Op::bnot:
+                return invert(inst, a);
             case Op::bitcast:
                 if (static_cast<Type>(inst.imm) == inst.type) return replace(inst, a);
                 if (const Inst* inner = definedBy(a, Op::bitcast)) {
@@ -317,7 +323,8 @@ class Folder {
                     return replace(inst, operand(*word, 0));
                 }
                 return;
-            default: return;
+            default:
+                return;
         }
     }
 
@@ -349,6 +356,8 @@ class Folder {
 
 }  // namespace
 
-bool foldConstants(Program& program) { return Folder(program).run(); }
+bool foldConstants(Program& program) {
+    return Folder(program).run();
+}
 
 }  // namespace vernier::ir

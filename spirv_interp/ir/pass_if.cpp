@@ -19,12 +19,14 @@ uint32_t costOf(const Program& program, const Inst& inst) {
     switch (inst.op) {
         case Op::constant:
         case Op::undef:
-        case Op::copy: return 0;
+        case Op::copy:
+            return 0;
         case Op::fdiv:
         case Op::fsqrt:
         case Op::finverseSqrt:
         case Op::loadBuffer:
-        case Op::fsmoothstep: return 4;
+        case Op::fsmoothstep:
+            return 4;
         case Op::frem:
         case Op::fmod:
         case Op::ffma:
@@ -37,8 +39,10 @@ uint32_t costOf(const Program& program, const Inst& inst) {
         case Op::inputIndexed:
         case Op::interpolateAtCentroid:
         case Op::interpolateAtSample:
-        case Op::interpolateAtOffset: return kCostLimit;
-        default: return inst.op >= Op::fsin && inst.op <= Op::fpow ? kCostLimit : 1;
+        case Op::interpolateAtOffset:
+            return kCostLimit;
+        default:
+            return inst.op >= Op::fsin && inst.op <= Op::fpow ? kCostLimit : 1;
     }
 }
 
@@ -118,8 +122,10 @@ class IfConverter {
         }
         Block& target = program_.blocks[merge];
         auto& predecessors = target.predecessors;
-        const auto yesAt = static_cast<uint32_t>(std::find(predecessors.begin(), predecessors.end(), yes) - predecessors.begin());
-        const auto noAt = static_cast<uint32_t>(std::find(predecessors.begin(), predecessors.end(), no) - predecessors.begin());
+        const auto yesAt =
+            static_cast<uint32_t>(std::find(predecessors.begin(), predecessors.end(), yes) - predecessors.begin());
+        const auto noAt =
+            static_cast<uint32_t>(std::find(predecessors.begin(), predecessors.end(), no) - predecessors.begin());
         for (Inst& phi : target.insts) {
             if (phi.op != Op::phi) break;
             ValueId* operands = program_.operands.data() + phi.firstOperand;
@@ -154,6 +160,8 @@ class IfConverter {
 
 }  // namespace
 
-bool convertIfs(Program& program) { return IfConverter(program).run(); }
+bool convertIfs(Program& program) {
+    return IfConverter(program).run();
+}
 
 }  // namespace vernier::ir

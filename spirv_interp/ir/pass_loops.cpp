@@ -8,8 +8,8 @@
 namespace vernier::ir {
 namespace {
 
-/// One value defined in a loop and used outside, at a time: a phi where edges leave the loop, and more phis on the way from
-/// there to the uses where ways meet.
+/// One value defined in a loop and used outside, at a time: a phi where edges leave the loop, and more phis on the way
+/// from there to the uses where ways meet.
 class Closer {
   public:
     Closer(Program& program, const Cfg& cfg) : program_(program), cfg_(cfg), added_(program.blocks.size()) {}

@@ -36,7 +36,8 @@ bool simplifyPhis(Program& program) {
                 }
                 if (!trivial) continue;
                 // Where an operand is undefined, the other may stand for it only if it exists on every way here.
-                if (same != kNoValue && unknown != kNoValue && (home[same] == b || !cfg.dominates(home[same], b))) continue;
+                if (same != kNoValue && unknown != kNoValue && (home[same] == b || !cfg.dominates(home[same], b)))
+                    continue;
                 if (same == kNoValue) same = unknown;
                 if (same == kNoValue) continue;
                 replacement[phi.result] = same;
@@ -46,7 +47,8 @@ bool simplifyPhis(Program& program) {
     }
     if (!any) return false;
     for (Block& block : program.blocks) {
-        std::erase_if(block.insts, [&](const Inst& inst) { return inst.op == Op::phi && replacement[inst.result] != kNoValue; });
+        std::erase_if(block.insts,
+                      [&](const Inst& inst) { return inst.op == Op::phi && replacement[inst.result] != kNoValue; });
     }
     replaceUses(program, replacement);
     return true;

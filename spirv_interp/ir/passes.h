@@ -1,5 +1,5 @@
-// The passes over programs. Each takes any program that verifies, loop-closed or not; all but closeLoops may leave it out of
-// loop-closed form. They return whether they changed something.
+// The passes over programs. Each takes any program that verifies, loop-closed or not; all but closeLoops may leave it
+// out of loop-closed form. They return whether they changed something.
 #pragma once
 
 #include "spirv_interp/ir/ir.h"
@@ -9,15 +9,16 @@ namespace vernier::ir {
 /// Phis whose operands are all one value (or undefined) become that value.
 bool simplifyPhis(Program& program);
 
-/// Operations on constants are evaluated; identities that hold for every bit pattern are applied (IEEE 754: x * 1, x - 0,
+/// Operations on constants are evaluated; identities that hold for every bit pattern are applied (IEEE 754: x * 1, x -
+/// 0,
 /// -(-x), division by a power of two, ...); copies disappear.
 bool foldConstants(Program& program);
 
 /// Equal pure operations and loads of memory nobody writes are done once, where one dominates the other.
 bool eliminateCommon(Program& program);
 
-/// Branches on constants become jumps; unreachable blocks disappear; blocks that only jump are skipped; chains of blocks
-/// become one.
+/// Branches on constants become jumps; unreachable blocks disappear; blocks that only jump are skipped; chains of
+/// blocks become one.
 bool foldBranches(Program& program);
 
 /// Small diamonds and triangles without side effects become selects: the batch interpreter runs both sides anyway when

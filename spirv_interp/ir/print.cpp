@@ -8,7 +8,9 @@
 namespace vernier::ir {
 namespace {
 
-std::string number(uint64_t value) { return std::to_string(value); }
+std::string number(uint64_t value) {
+    return std::to_string(value);
+}
 
 std::string hex(uint64_t value) {
     char text[24];
@@ -51,11 +53,13 @@ void printImageOp(std::string& out, size_t index, const ImageOp& op) {
 }
 
 void printFlags(std::string& out, const Program& program) {
-    const std::pair<const char*, bool> flags[] = {
-        {"earlyFragmentTests", program.earlyFragmentTests}, {"usesQuads", program.usesQuads},
-        {"canDiscard", program.canDiscard},                 {"writesDepth", program.writesDepth},
-        {"writesSampleMask", program.writesSampleMask},     {"hasSideEffects", program.hasSideEffects},
-        {"perSample", program.perSample}};
+    const std::pair<const char*, bool> flags[] = {{"earlyFragmentTests", program.earlyFragmentTests},
+                                                  {"usesQuads", program.usesQuads},
+                                                  {"canDiscard", program.canDiscard},
+                                                  {"writesDepth", program.writesDepth},
+                                                  {"writesSampleMask", program.writesSampleMask},
+                                                  {"hasSideEffects", program.hasSideEffects},
+                                                  {"perSample", program.perSample}};
     std::string line;
     for (const auto& [name, set] : flags) {
         if (set) line += std::string(" ") + name;
@@ -81,15 +85,22 @@ std::string printInst(const Program& program, const Block& block, const Inst& in
     if (!out.empty()) out += " = ";
     out += info.name;
     switch (immKind(inst.op)) {
-        case ImmKind::none: break;
-        case ImmKind::bits: out += " " + hex(inst.imm); break;
-        case ImmKind::type:
-            out += "." + (inst.imm <= static_cast<uint64_t>(Type::f64)
-                              ? std::string(typeName(static_cast<Type>(inst.imm)))
-                              : number(inst.imm));
+        case ImmKind::none:
             break;
-        case ImmKind::pair: out += " #" + number(immLow(inst)) + ":" + number(immHigh(inst)); break;
-        default: out += " #" + number(inst.imm); break;
+        case ImmKind::bits:
+            out += " " + hex(inst.imm);
+            break;
+        case ImmKind::type:
+            out +=
+                "." + (inst.imm <= static_cast<uint64_t>(Type::f64) ? std::string(typeName(static_cast<Type>(inst.imm)))
+                                                                    : number(inst.imm));
+            break;
+        case ImmKind::pair:
+            out += " #" + number(immLow(inst)) + ":" + number(immHigh(inst));
+            break;
+        default:
+            out += " #" + number(inst.imm);
+            break;
     }
     for (uint32_t i = 0; i < inst.operandCount && inst.firstOperand + i < program.operands.size(); ++i) {
         out += " %" + number(program.operands[inst.firstOperand + i]);

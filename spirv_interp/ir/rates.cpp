@@ -8,8 +8,8 @@ namespace vernier::ir {
 
 std::vector<Rate> computeRates(const Program& program) {
     std::vector<Rate> rates(program.valueTypes.size(), Rate::invocation);
-    // In structured order definitions come before uses, except round a loop, where a phi is in between: and which operand a
-    // phi takes is a matter of the invocation's way, so its rate is never lower.
+    // In structured order definitions come before uses, except round a loop, where a phi is in between: and which
+    // operand a phi takes is a matter of the invocation's way, so its rate is never lower.
     for (const Block& block : program.blocks) {
         for (const Inst& inst : block.insts) {
             if (!isMovable(program, inst)) continue;
@@ -19,8 +19,11 @@ std::vector<Rate> computeRates(const Program& program) {
                 case Op::inputIndexed:
                 case Op::interpolateAtCentroid:
                 case Op::interpolateAtSample:
-                case Op::interpolateAtOffset: rate = Rate::invocation; break;
-                default: break;
+                case Op::interpolateAtOffset:
+                    rate = Rate::invocation;
+                    break;
+                default:
+                    break;
             }
             for (const ValueId operand : program.operandsOf(inst)) rate = std::max(rate, rates[operand]);
             rates[inst.result] = rate;

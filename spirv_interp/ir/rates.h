@@ -7,8 +7,8 @@
 
 namespace vernier::ir {
 
-/// `draw`: made of constants and of loads, at draw-rate places, from push constants and from buffers that the program only
-/// reads. Such loads may run before any branch: outside a buffer they give 0.
+/// `draw`: made of constants and of loads, at draw-rate places, from push constants and from buffers that the program
+/// only reads. Such loads may run before any branch: outside a buffer they give 0.
 enum class Rate : uint8_t { constant, draw, invocation };
 
 /// By value, the lowest rate that is safe. Values without a definition are `invocation`.

@@ -73,7 +73,8 @@ class Verifier {
                 }
                 const bool last = i + 1 == block.insts.size();
                 if (isTerminator(inst.op) != last) {
-                    return failInst(b, i, last ? "the last instruction is no terminator" : "a terminator inside a block");
+                    return failInst(b, i,
+                                    last ? "the last instruction is no terminator" : "a terminator inside a block");
                 }
                 if (inst.op == Op::phi && phisDone) return failInst(b, i, "phis come first in a block");
                 phisDone = phisDone || inst.op != Op::phi;
@@ -169,8 +170,8 @@ class Verifier {
     void instruction(BlockId b, size_t i) {
         const Inst& inst = program_.blocks[b].insts[i];
         if (const char* reason = badImmediate(inst)) return failInst(b, i, reason);
-        const uint32_t count =
-            inst.op == Op::phi ? static_cast<uint32_t>(program_.blocks[b].predecessors.size()) : operandCountOf(program_, inst);
+        const uint32_t count = inst.op == Op::phi ? static_cast<uint32_t>(program_.blocks[b].predecessors.size())
+                                                  : operandCountOf(program_, inst);
         if (inst.operandCount != count) {
             return failInst(b, i, std::to_string(inst.operandCount) + " operands instead of " + std::to_string(count));
         }
@@ -194,7 +195,8 @@ class Verifier {
             if (operand >= program_.valueTypes.size()) return failInst(b, i, "an operand is no value of the program");
             const Type type = program_.valueTypes[operand];
             if ((operandTypes(program_, inst, index) >> static_cast<uint32_t>(type) & 1) == 0) {
-                return failInst(b, i, "operand %" + std::to_string(operand) + " has type " + std::string(typeName(type)));
+                return failInst(b, i,
+                                "operand %" + std::to_string(operand) + " has type " + std::string(typeName(type)));
             }
             ++index;
         }
@@ -202,7 +204,8 @@ class Verifier {
 
     const char* badImmediate(const Inst& inst) const {
         switch (immKind(inst.op)) {
-            case ImmKind::none: return inst.imm != 0 ? "an immediate where there is none" : nullptr;
+            case ImmKind::none:
+                return inst.imm != 0 ? "an immediate where there is none" : nullptr;
             case ImmKind::bits: {
                 if (inst.type == Type::b1 && inst.imm != 0 && inst.imm != kTrueBits) {
                     return "a boolean constant that is neither all zeros nor all ones";
@@ -210,11 +213,13 @@ class Verifier {
                 if (!isWide(inst.type) && inst.imm > 0xFFFFFFFFu) return "a 32-bit constant with more bits";
                 return nullptr;
             }
-            case ImmKind::type: return badOperandType(inst);
+            case ImmKind::type:
+                return badOperandType(inst);
             case ImmKind::input:
                 if (inst.imm >= program_.inputs.size()) return "an input that does not exist";
                 return inst.type != program_.inputs[inst.imm].type ? "the input has another type" : nullptr;
-            case ImmKind::output: return inst.imm >= program_.outputs.size() ? "an output that does not exist" : nullptr;
+            case ImmKind::output:
+                return inst.imm >= program_.outputs.size() ? "an output that does not exist" : nullptr;
             case ImmKind::resource: {
                 if (inst.imm >= program_.resources.size()) return "a resource that does not exist";
                 return badBuffer(program_.resources[inst.imm], inst.op == Op::storeBuffer);
@@ -224,7 +229,8 @@ class Verifier {
                 const bool store = program_.imageOps[inst.imm].kind == ImageKind::store;
                 return store != (inst.op == Op::imageStore) ? "the kind of image operation does not fit" : nullptr;
             }
-            case ImmKind::pair: return badPair(inst);
+            case ImmKind::pair:
+                return badPair(inst);
         }
         return nullptr;
     }
@@ -251,7 +257,8 @@ class Verifier {
     }
 
     static const char* badBuffer(const Resource& resource, bool written) {
-        const bool buffer = resource.kind == ResourceKind::uniformBuffer || resource.kind == ResourceKind::storageBuffer ||
+        const bool buffer = resource.kind == ResourceKind::uniformBuffer ||
+                            resource.kind == ResourceKind::storageBuffer ||
                             resource.kind == ResourceKind::pushConstants;
         if (!buffer) return "the resource is no buffer";
         if (!written) return nullptr;
@@ -303,6 +310,8 @@ class Verifier {
 
 }  // namespace
 
-Status verify(const Program& program) { return Verifier(program).run(); }
+Status verify(const Program& program) {
+    return Verifier(program).run();
+}
 
 }  // namespace vernier::ir

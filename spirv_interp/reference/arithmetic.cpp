@@ -23,8 +23,7 @@ Number modulo(const Number& x, const Number& y) {
 
 template <class Number>
 bool Machine<Number>::executeArithmetic(const Instruction& i) {
-    return executeFloat(i) || executeInteger(i) || executeFloatComparison(i) || executeMatrix(i) ||
-           executeExtended(i);
+    return executeFloat(i) || executeInteger(i) || executeFloatComparison(i) || executeMatrix(i) || executeExtended(i);
 }
 
 template <class Number>
@@ -92,8 +91,7 @@ bool Machine<Number>::executeFloatComparison(const Instruction& i) {
         const size_t count = resultCount(i);
         const Scalars<Number>& x = data(i.operand(0), count);
         Scalars<Number> result;
-        for (size_t k = 0; k < count; ++k)
-            result.push_back(Scalar<Number>::ofBits(function(x[k].number) ? 1 : 0));
+        for (size_t k = 0; k < count; ++k) result.push_back(Scalar<Number>::ofBits(function(x[k].number) ? 1 : 0));
         setResult(i, std::move(result));
         return true;
     };
@@ -236,8 +234,7 @@ bool Machine<Number>::executeExtended(const Instruction& i) {
         case spv::OpUMulExtended:
         case spv::OpSMulExtended:
             return extended([&](uint64_t a, uint64_t b, uint32_t width) {
-                return Pair{(a * b) & widthMask(width),
-                            multiplyHigh(a, b, width, i.op == spv::OpSMulExtended)};
+                return Pair{(a * b) & widthMask(width), multiplyHigh(a, b, width, i.op == spv::OpSMulExtended)};
             });
         default:
             return false;

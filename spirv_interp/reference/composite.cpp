@@ -16,8 +16,7 @@ bool Machine<Number>::executeComposite(const Instruction& i) {
             Scalars<Number> result;
             for (const Id id : i.operands) {
                 const Scalars<Number>& part = data(id);
-                if (part.size() > count - result.size())
-                    fail("OpCompositeConstruct has too many constituents");
+                if (part.size() > count - result.size()) fail("OpCompositeConstruct has too many constituents");
                 result.insert(result.end(), part.begin(), part.end());
             }
             setResult(i, std::move(result));
@@ -57,8 +56,7 @@ bool Machine<Number>::executeComposite(const Instruction& i) {
             both.insert(both.end(), second.begin(), second.end());
             for (const uint32_t component : i.operands.subspan(2)) {
                 // 0xFFFFFFFF asks for an undefined component.
-                if (component != ~0u && component >= both.size())
-                    fail("OpVectorShuffle component out of range");
+                if (component != ~0u && component >= both.size()) fail("OpVectorShuffle component out of range");
                 result.push_back(component < both.size() ? both[component] : Scalar<Number>{});
             }
             setResult(i, std::move(result));
@@ -96,8 +94,7 @@ bool Machine<Number>::executeComposite(const Instruction& i) {
             const Scalars<Number>&yes = data(i.operand(1), condition.size()),
                   &no = data(i.operand(2), condition.size());
             Scalars<Number> result;
-            for (size_t k = 0; k < condition.size(); ++k)
-                result.push_back(condition[k].bits != 0 ? yes[k] : no[k]);
+            for (size_t k = 0; k < condition.size(); ++k) result.push_back(condition[k].bits != 0 ? yes[k] : no[k]);
             setResult(i, std::move(result));
             return true;
         }

@@ -51,7 +51,7 @@ class ConstantParser {
             case spv::OpSpecConstantComposite:
                 return composite();
             default:
-                return expression(static_cast<spv::Op>(i_.operand(0)), i_.operands.subspan(1));
+                return expression(enumerant<spv::Op>(i_.operand(0)), i_.operands.subspan(1));
         }
     }
 
@@ -103,8 +103,7 @@ class ConstantParser {
             case spv::OpCompositeInsert: {
                 const Constant& whole = module_.constant(argument(arguments, 1));
                 const auto range = module_.subrange(module_.types[whole.type], arguments.subspan(2));
-                if (range.count != first.scalars.size())
-                    fail(name(i_.result) + " inserts a part of another size");
+                if (range.count != first.scalars.size()) fail(name(i_.result) + " inserts a part of another size");
                 std::vector<ConstantScalar> scalars = whole.scalars;
                 std::copy(first.scalars.begin(), first.scalars.end(),
                           scalars.begin() + static_cast<ptrdiff_t>(range.first));
@@ -121,8 +120,7 @@ class ConstantParser {
             case spv::OpSelect: {
                 const auto& yes = module_.constant(argument(arguments, 1)).scalars;
                 const auto& no = module_.constant(argument(arguments, 2)).scalars;
-                if (yes.size() != no.size())
-                    fail(name(i_.result) + " selects between values of different sizes");
+                if (yes.size() != no.size()) fail(name(i_.result) + " selects between values of different sizes");
                 std::vector<ConstantScalar> scalars;
                 for (size_t k = 0; k < yes.size(); ++k) {
                     const size_t c = first.scalars.size() == 1 ? 0 : k;
@@ -148,8 +146,7 @@ class ConstantParser {
                     scalars.push_back({0, x.bits & widthMask(to.width)});
                     continue;
                 case spv::OpSConvert:
-                    scalars.push_back(
-                        {0, static_cast<uint64_t>(asSigned(x.bits, from.width)) & widthMask(to.width)});
+                    scalars.push_back({0, static_cast<uint64_t>(asSigned(x.bits, from.width)) & widthMask(to.width)});
                     continue;
                 case spv::OpFConvert:
                     scalars.push_back(
@@ -191,8 +188,7 @@ void parseConstant(ModuleData& module, const Instruction& instruction) {
     if (constant.scalars.size() != module.valueScalars(module.types[constant.type]))
         fail("constant " + name(instruction.result) + " does not fit its type");
     module.constantScalars += constant.scalars.size();
-    if (module.constantScalars > kMaxConstantScalars)
-        failUnsupported("more than a million scalars of constants");
+    if (module.constantScalars > kMaxConstantScalars) failUnsupported("more than a million scalars of constants");
     module.constants.push_back(std::move(constant));
 }
 

@@ -27,9 +27,8 @@ bool Machine<Number>::executeConversion(const Instruction& i) {
                 return S::ofNumber(fromInteger<Number>(x.bits, from.width, i.op == spv::OpConvertSToF));
             });
         case spv::OpUConvert:
-            return convert([](const S& x, const Type&, const Type& to) {
-                return S::ofBits(x.bits & widthMask(to.width));
-            });
+            return convert(
+                [](const S& x, const Type&, const Type& to) { return S::ofBits(x.bits & widthMask(to.width)); });
         case spv::OpSConvert:
             return convert([](const S& x, const Type& from, const Type& to) {
                 return S::ofBits(static_cast<uint64_t>(asSigned(x.bits, from.width)) & widthMask(to.width));

@@ -40,9 +40,9 @@ W smoothStep(const W& edge0, const W& edge1, const W& x) {
 template <class Number>
 bool Machine<Number>::glslNumber(const Instruction& i, uint32_t function) {
     using W = Wide<Number>;
-    using std::acos, std::acosh, std::asin, std::asinh, std::atan, std::atan2, std::atanh, std::ceil,
-        std::cos, std::cosh, std::exp, std::exp2, std::fabs, std::floor, std::fma, std::log, std::log2,
-        std::pow, std::rint, std::sin, std::sinh, std::sqrt, std::tan, std::tanh, std::trunc;
+    using std::acos, std::acosh, std::asin, std::asinh, std::atan, std::atan2, std::atanh, std::ceil, std::cos,
+        std::cosh, std::exp, std::exp2, std::fabs, std::floor, std::fma, std::log, std::log2, std::pow, std::rint,
+        std::sin, std::sinh, std::sqrt, std::tan, std::tanh, std::trunc;
     const auto finish = [&](size_t count, auto component) {
         Scalars<Number> result;
         for (size_t k = 0; k < count; ++k)
@@ -58,8 +58,7 @@ bool Machine<Number>::glslNumber(const Instruction& i, uint32_t function) {
     const auto binary = [&](auto f) {
         const size_t count = resultCount(i);
         const Scalars<Number>&x = data(i.operand(2), count), &y = data(i.operand(3), count);
-        return finish(count,
-                      [&](size_t k) { return f(static_cast<W>(x[k].number), static_cast<W>(y[k].number)); });
+        return finish(count, [&](size_t k) { return f(static_cast<W>(x[k].number), static_cast<W>(y[k].number)); });
     };
     const auto ternary = [&](auto f) {
         const size_t count = resultCount(i);
@@ -158,8 +157,7 @@ bool Machine<Number>::glslNumber(const Instruction& i, uint32_t function) {
 
 template <class Number>
 void Machine<Number>::executeGlsl(const Instruction& i) {
-    if (module_.info(i.operand(0)).kind != IdKind::glslSet)
-        fail(name(i.operand(0)) + " is no instruction set");
+    if (module_.info(i.operand(0)).kind != IdKind::glslSet) fail(name(i.operand(0)) + " is no instruction set");
     const uint32_t function = i.operand(1);
     const bool known = glslNumber(i, function) || glslGeometric(i, function) || glslStructured(i, function) ||
                        glslInteger(i, function) || glslPacking(i, function) || glslInterpolate(i, function);

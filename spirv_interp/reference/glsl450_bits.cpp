@@ -98,8 +98,7 @@ bool Machine<Number>::glslStructured(const Instruction& i, uint32_t function) {
             Scalars<Number> result;
             for (size_t k = 0; k < count; ++k) {
                 // Beyond +-100000 every number type has long overflowed or underflowed.
-                const int64_t exponent =
-                    std::clamp<int64_t>(asSigned(exponents[k].bits, width), -100000, 100000);
+                const int64_t exponent = std::clamp<int64_t>(asSigned(exponents[k].bits, width), -100000, 100000);
                 result.push_back(S::ofNumber(Number(ldexp(x[k].number, static_cast<int>(exponent)))));
             }
             setResult(i, std::move(result));
@@ -142,8 +141,7 @@ bool Machine<Number>::glslInteger(const Instruction& i, uint32_t function) {
     };
     switch (function) {
         case GLSLstd450SAbs:
-            return componentwise(
-                1, [](X x, uint32_t w) { return asSigned(x[0], w) < 0 ? uint64_t{0} - x[0] : x[0]; });
+            return componentwise(1, [](X x, uint32_t w) { return asSigned(x[0], w) < 0 ? uint64_t{0} - x[0] : x[0]; });
         case GLSLstd450SSign:
             return componentwise(1, [](X x, uint32_t w) {
                 return x[0] == 0 ? uint64_t{0} : asSigned(x[0], w) < 0 ? ~uint64_t{0} : uint64_t{1};
@@ -168,9 +166,8 @@ bool Machine<Number>::glslInteger(const Instruction& i, uint32_t function) {
             return componentwise(1, [](X x, uint32_t w) { return highestBit(x[0], w); });
         case GLSLstd450FindSMsb:
             // For a negative number the highest 0 bit.
-            return componentwise(1, [](X x, uint32_t w) {
-                return highestBit(asSigned(x[0], w) < 0 ? ~x[0] & widthMask(w) : x[0], w);
-            });
+            return componentwise(
+                1, [](X x, uint32_t w) { return highestBit(asSigned(x[0], w) < 0 ? ~x[0] & widthMask(w) : x[0], w); });
         default:
             return false;
     }
@@ -199,8 +196,7 @@ bool Machine<Number>::glslPacking(const Instruction& i, uint32_t function) {
             const uint64_t packed = bits(i.operand(2));
             Scalars<Number> result;
             for (uint32_t c = 0; c < format->components; ++c) {
-                const auto code =
-                    static_cast<uint32_t>((packed >> (c * format->width)) & widthMask(format->width));
+                const auto code = static_cast<uint32_t>((packed >> (c * format->width)) & widthMask(format->width));
                 auto number = static_cast<int32_t>(code);
                 if (format->isSigned && code >> (format->width - 1) != 0) number -= 1 << format->width;
                 const Number x = Number(number) / Number(format->scale());
@@ -211,8 +207,8 @@ bool Machine<Number>::glslPacking(const Instruction& i, uint32_t function) {
         }
         case GLSLstd450PackHalf2x16: {
             const Scalars<Number>& x = data(i.operand(2), 2);
-            setResult(i, S::ofBits(float32ToHalf(toFloat32(x[0].number)) |
-                                   float32ToHalf(toFloat32(x[1].number)) << 16));
+            setResult(i,
+                      S::ofBits(float32ToHalf(toFloat32(x[0].number)) | float32ToHalf(toFloat32(x[1].number)) << 16));
             return true;
         }
         case GLSLstd450UnpackHalf2x16: {
@@ -258,8 +254,7 @@ bool Machine<Number>::glslInterpolate(const Instruction& i, uint32_t function) {
             return false;
     }
     const Pointer<Number> p = pointer(i.operand(2));
-    if (!p.object || !p.object->layout || p.object->layout->output)
-        fail("interpolation of something that is no input");
+    if (!p.object || !p.object->layout || p.object->layout->output) fail("interpolation of something that is no input");
     Scalars<Number> result = loadScalars(p);
     for (size_t k = 0; k < result.size() && !p.outside; ++k) {
         const InterfaceCell& cell = p.object->layout->cells[p.offset + k];

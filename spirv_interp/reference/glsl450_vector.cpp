@@ -77,9 +77,7 @@ bool Machine<Number>::glslGeometric(const Instruction& i, uint32_t function) {
         return true;
     };
     const auto argument = [&](size_t index) { return widen<W>(data(i.operand(2 + index))); };
-    const auto sameSize = [&](size_t index, size_t count) {
-        return widen<W>(data(i.operand(2 + index), count));
-    };
+    const auto sameSize = [&](size_t index, size_t count) { return widen<W>(data(i.operand(2 + index), count)); };
     switch (function) {
         case GLSLstd450Length: {
             const Vector<W> x = argument(0);

@@ -22,8 +22,7 @@ float halfToFloat32(uint32_t half) {
     const int exponent = static_cast<int>((half >> 10) & 31u);
     const auto fraction = static_cast<float>(half & 1023u);
     if (exponent == 31)
-        return fraction != 0 ? std::numeric_limits<float>::quiet_NaN()
-                             : sign * std::numeric_limits<float>::infinity();
+        return fraction != 0 ? std::numeric_limits<float>::quiet_NaN() : sign * std::numeric_limits<float>::infinity();
     if (exponent == 0) return sign * std::ldexp(fraction, -24);
     return sign * std::ldexp(1024.0f + fraction, exponent - 25);
 }

@@ -127,8 +127,7 @@ void Machine<Number>::setTexel(const Instruction& i, const Texel<Number>& texel,
 template <class Number>
 bool Machine<Number>::implicitDerivatives(ImageRequest<Number>& r) {
     const size_t dimensions = spatialDimensions(r.shape.dim);
-    std::vector<Number> offer(r.coordinates.begin(),
-                              r.coordinates.begin() + static_cast<ptrdiff_t>(dimensions));
+    std::vector<Number> offer(r.coordinates.begin(), r.coordinates.begin() + static_cast<ptrdiff_t>(dimensions));
     if (!exchange(std::move(offer))) return false;
     for (size_t k = 0; k < dimensions; ++k) {
         r.ddx[k] = rounded(difference(k, true, program_.options.coarseDerivatives));
@@ -181,8 +180,7 @@ void Machine<Number>::fetchImage(const Instruction& i) {
     const Scalars<Number>& coordinates = data(i.operand(1));
     const size_t count = coordinateCount(r.shape);
     if (coordinates.size() < count || count > 4) fail(name(i.op) + " has too few coordinates");
-    for (size_t k = 0; k < count; ++k)
-        r.texel[k] = static_cast<int32_t>(static_cast<uint32_t>(coordinates[k].bits));
+    for (size_t k = 0; k < count; ++k) r.texel[k] = static_cast<int32_t>(static_cast<uint32_t>(coordinates[k].bits));
     r.lodMode = LodMode::explicitLod;
     applyOperands(r, i, 2);
     setTexel(i, resources_.fetch(r), r.shape);
@@ -194,8 +192,7 @@ void Machine<Number>::writeImage(const Instruction& i) {
     const Scalars<Number>&coordinates = data(i.operand(1)), &source = data(i.operand(2));
     const size_t count = coordinateCount(r.shape);
     if (coordinates.size() < count || count > 4) fail(name(i.op) + " has too few coordinates");
-    for (size_t k = 0; k < count; ++k)
-        r.texel[k] = static_cast<int32_t>(static_cast<uint32_t>(coordinates[k].bits));
+    for (size_t k = 0; k < count; ++k) r.texel[k] = static_cast<int32_t>(static_cast<uint32_t>(coordinates[k].bits));
     applyOperands(r, i, 3);
     Texel<Number> texel{};
     for (size_t k = 0; k < source.size() && k < 4; ++k) texel[k] = source[k];
@@ -211,8 +208,7 @@ bool Machine<Number>::executeImage(const Instruction& i) {
     // Queries: the image, and up to four integers as the result.
     const auto integers = [&](const std::array<int32_t, 4>& numbers) {
         Scalars<Number> result;
-        for (size_t k = 0; k < resultCount(i) && k < 4; ++k)
-            result.push_back(Scalar<Number>::ofInt(numbers[k]));
+        for (size_t k = 0; k < resultCount(i) && k < 4; ++k) result.push_back(Scalar<Number>::ofInt(numbers[k]));
         setResult(i, std::move(result));
         return true;
     };

@@ -109,8 +109,7 @@ uint32_t integerOperandCount(spv::Op op) {
     }
 }
 
-std::optional<uint64_t> integerOperation(spv::Op op, uint32_t width,
-                                         const std::array<uint64_t, 4>& operands) {
+std::optional<uint64_t> integerOperation(spv::Op op, uint32_t width, const std::array<uint64_t, 4>& operands) {
     const uint64_t mask = widthMask(width);
     const uint64_t a = operands[0], b = operands[1];
     const int64_t sa = asSigned(a, width), sb = asSigned(b, width);

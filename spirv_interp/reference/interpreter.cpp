@@ -25,8 +25,7 @@ Result<T> guarded(const F& f) {
 template <class Number>
 Value<Number> constantValue(const Constant& constant) {
     Value<Number> value;
-    for (const ConstantScalar& s : constant.scalars)
-        value.scalars.push_back({static_cast<Number>(s.number), s.bits});
+    for (const ConstantScalar& s : constant.scalars) value.scalars.push_back({static_cast<Number>(s.number), s.bits});
     value.defined = true;
     return value;
 }
@@ -42,8 +41,7 @@ void drive(std::array<std::optional<Machine<Number>>, 4>& machines) {
         for (size_t k = 0; k < 4; ++k) {
             if (!machines[k]) continue;
             waiting[k] = machines[k]->run() == Status::waiting;
-            if (waiting[k] && (!earliest || machines[k]->position() < *earliest))
-                earliest = machines[k]->position();
+            if (waiting[k] && (!earliest || machines[k]->position() < *earliest)) earliest = machines[k]->position();
         }
         if (!earliest) return;
         typename Machine<Number>::QuadValues values;
@@ -105,8 +103,8 @@ Result<Interpreter<Number>> Interpreter<Number>::create(const Module& module, sp
                 state->program.constants.push_back(constantValue<Number>(constant));
             return Interpreter(std::move(state));
         }
-        return invalidArgument("SPIR-V: no entry point \"" + std::string(entryPoint) +
-                               "\" of execution model " + std::to_string(static_cast<uint32_t>(model)));
+        return invalidArgument("SPIR-V: no entry point \"" + std::string(entryPoint) + "\" of execution model " +
+                               std::to_string(static_cast<uint32_t>(model)));
     });
 }
 
@@ -127,8 +125,7 @@ Result<std::array<Outcome<Number>, 4>> Interpreter<Number>::runQuad(
     Resources<Number>& resources) const {
     return guarded<std::array<Outcome<Number>, 4>>([&] {
         std::array<std::optional<Machine<Number>>, 4> machines;
-        for (uint32_t k = 0; k < 4; ++k)
-            machines[k].emplace(state_->program, inputs[k], resources, k, helper[k]);
+        for (uint32_t k = 0; k < 4; ++k) machines[k].emplace(state_->program, inputs[k], resources, k, helper[k]);
         drive(machines);
         std::array<Outcome<Number>, 4> outcomes;
         for (size_t k = 0; k < 4; ++k) outcomes[k] = machines[k]->outcome();

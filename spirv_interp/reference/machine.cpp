@@ -126,12 +126,10 @@ bool Machine<Number>::executeControl(const Instruction& i) {
 
 template <class Number>
 void Machine<Number>::call(const Function& function, Id result, const std::vector<Value<Number>>& arguments) {
-    if (frames_.size() >= kMaxCallDepth)
-        fail("calls are nested more than " + std::to_string(kMaxCallDepth) + " deep");
+    if (frames_.size() >= kMaxCallDepth) fail("calls are nested more than " + std::to_string(kMaxCallDepth) + " deep");
     if (function.blocks.empty()) fail("function " + name(function.id) + " has no body");
     if (arguments.size() != function.parameters.size())
-        fail("function " + name(function.id) + " takes " + std::to_string(function.parameters.size()) +
-             " arguments");
+        fail("function " + name(function.id) + " takes " + std::to_string(function.parameters.size()) + " arguments");
     charge(1 + function.slots / kScalarsPerStep);
     Frame frame;
     frame.function = &function;
@@ -142,10 +140,8 @@ void Machine<Number>::call(const Function& function, Id result, const std::vecto
     for (size_t p = 0; p < arguments.size(); ++p) {
         const auto& [id, typeIndex] = function.parameters[p];
         const Type& type = module_.types[typeIndex];
-        if (!arguments[p].pointer && !arguments[p].image &&
-            arguments[p].scalars.size() != module_.valueScalars(type))
-            fail("argument " + std::to_string(p) + " of function " + name(function.id) +
-                 " does not fit its type");
+        if (!arguments[p].pointer && !arguments[p].image && arguments[p].scalars.size() != module_.valueScalars(type))
+            fail("argument " + std::to_string(p) + " of function " + name(function.id) + " does not fit its type");
         frame.values[module_.info(id).index] = arguments[p];
     }
     frames_.push_back(std::move(frame));
@@ -182,8 +178,7 @@ void Machine<Number>::enterBlock(Id label) {
         Id incoming = 0;
         for (size_t k = 0; k + 1 < phi.operands.size(); k += 2)
             if (phi.operands[k + 1] == frame.block) incoming = phi.operands[k];
-        if (incoming == 0)
-            fail("phi " + name(phi.result) + " has no value for predecessor " + name(frame.block));
+        if (incoming == 0) fail("phi " + name(phi.result) + " has no value for predecessor " + name(frame.block));
         charge(1);
         phis.emplace_back(&phi, value(incoming));
     }
@@ -294,8 +289,7 @@ void Machine<Number>::resume(QuadValues values) {
 template <class Number>
 Number Machine<Number>::difference(size_t component, bool alongX, bool coarse) const {
     const uint32_t step = alongX ? 1 : 2, other = alongX ? 2 : 1;
-    const std::array<uint32_t, 2> starts{coarse ? 0 : invocation_ & other,
-                                         coarse ? other : invocation_ & other};
+    const std::array<uint32_t, 2> starts{coarse ? 0 : invocation_ & other, coarse ? other : invocation_ & other};
     for (const uint32_t start : starts) {
         const std::vector<Number>&from = (*quad_)[start], &to = (*quad_)[start + step];
         if (component < from.size() && component < to.size()) return to[component] - from[component];
@@ -310,10 +304,9 @@ void Machine<Number>::derivative(const Instruction& i) {
     std::vector<Number> offer;
     for (const Scalar<Number>& s : p) offer.push_back(s.number);
     if (!exchange(std::move(offer))) return;
-    const bool coarse = i.op == spv::OpDPdxCoarse || i.op == spv::OpDPdyCoarse ||
-                        i.op == spv::OpFwidthCoarse ||
-                        ((i.op == spv::OpDPdx || i.op == spv::OpDPdy || i.op == spv::OpFwidth) &&
-                         program_.options.coarseDerivatives);
+    const bool coarse =
+        i.op == spv::OpDPdxCoarse || i.op == spv::OpDPdyCoarse || i.op == spv::OpFwidthCoarse ||
+        ((i.op == spv::OpDPdx || i.op == spv::OpDPdy || i.op == spv::OpFwidth) && program_.options.coarseDerivatives);
     const bool x = i.op == spv::OpDPdx || i.op == spv::OpDPdxFine || i.op == spv::OpDPdxCoarse;
     const bool y = i.op == spv::OpDPdy || i.op == spv::OpDPdyFine || i.op == spv::OpDPdyCoarse;
     Scalars<Number> result;
@@ -321,8 +314,8 @@ void Machine<Number>::derivative(const Instruction& i) {
         if (x || y)
             result.push_back(Scalar<Number>::ofNumber(difference(k, x, coarse)));
         else
-            result.push_back(Scalar<Number>::ofNumber(fabs(difference(k, true, coarse)) +
-                                                      fabs(difference(k, false, coarse))));
+            result.push_back(
+                Scalar<Number>::ofNumber(fabs(difference(k, true, coarse)) + fabs(difference(k, false, coarse))));
     }
     quad_.reset();
     setResult(i, std::move(result));

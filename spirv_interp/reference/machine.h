@@ -79,8 +79,8 @@ class Machine {
     /// What the invocations of a group have brought to a derivative; empty where one does not take part.
     using QuadValues = std::array<std::vector<Number>, 4>;
 
-    Machine(const Program<Number>& program, const InterfaceValues<Number>& inputs,
-            Resources<Number>& resources, uint32_t invocation, bool helper);
+    Machine(const Program<Number>& program, const InterfaceValues<Number>& inputs, Resources<Number>& resources,
+            uint32_t invocation, bool helper);
 
     /// Until waiting or done. Throws Failure.
     Status run();

@@ -18,13 +18,11 @@ Scalar<Number> readScalar(std::span<const std::byte> bytes, uint64_t offset, con
     uint64_t raw = 0;
     std::memcpy(&raw, bytes.data() + offset, size);
     if (type.kind == TypeKind::integer) return Scalar<Number>::ofBits(raw);
-    return Scalar<Number>::ofNumber(type.width == 64 ? fromFloat64Bits<Number>(raw)
-                                                     : fromFloat32Bits<Number>(raw));
+    return Scalar<Number>::ofNumber(type.width == 64 ? fromFloat64Bits<Number>(raw) : fromFloat32Bits<Number>(raw));
 }
 
 template <class Number>
-void writeScalar(std::span<std::byte> bytes, uint64_t offset, const Type& type,
-                 const Scalar<Number>& scalar) {
+void writeScalar(std::span<std::byte> bytes, uint64_t offset, const Type& type, const Scalar<Number>& scalar) {
     const size_t size = type.width / 8;
     if (bytes.size() < size || offset > bytes.size() - size) return;
     const uint64_t raw = type.kind == TypeKind::integer ? scalar.bits
@@ -50,8 +48,7 @@ void Machine<Number>::createInterface(const InterfaceValues<Number>& inputs) {
                 const auto found = inputs.builtins.find(cell.builtin);
                 if (found != inputs.builtins.end() && cell.element < found->second.size())
                     target = found->second[cell.element];
-            } else if (const auto found = inputs.locations.find(cell.location);
-                       found != inputs.locations.end()) {
+            } else if (const auto found = inputs.locations.find(cell.location); found != inputs.locations.end()) {
                 target = found->second[cell.component];
                 if (module_.types[cell.type].width == 64 && cell.component < 3 &&
                     module_.types[cell.type].kind == TypeKind::integer)
@@ -86,8 +83,7 @@ Pointer<Number> Machine<Number>::variablePointer(const Variable& variable) {
             pointer.isBuffer = true;
             pointer.atDescriptors = type.isArray();
             const Type& block = type.isArray() ? module_.types[type.element] : type;
-            if (variable.storage == spv::StorageClassStorageBuffer ||
-                module_.decorationsOf(block.id).bufferBlock)
+            if (variable.storage == spv::StorageClassStorageBuffer || module_.decorationsOf(block.id).bufferBlock)
                 pointer.kind = BufferKind::storage;
             return pointer;
         }
@@ -176,8 +172,8 @@ Pointer<Number> Machine<Number>::index(Pointer<Number> p, Id indexId) const {
 /// Calls visit(scalar type, byte offset) for the scalars of `type` in flattened order.
 template <class Number>
 template <class Visit>
-void Machine<Number>::forEachScalar(const Type& type, uint64_t offset, MatrixLayout matrix,
-                                    uint32_t componentStride, const Visit& visit) const {
+void Machine<Number>::forEachScalar(const Type& type, uint64_t offset, MatrixLayout matrix, uint32_t componentStride,
+                                    const Visit& visit) const {
     switch (type.kind) {
         case TypeKind::vector: {
             const Type& scalar = module_.types[type.element];
@@ -247,8 +243,8 @@ Value<Number> Machine<Number>::load(const Pointer<Number>& p) {
     } else if (p.object || p.isBuffer || p.atDescriptors) {
         fail("a load of type " + name(type.id) + " that is not in UniformConstant");
     } else {
-        result.image = ImageHandle{type.kind == TypeKind::sampledImage ? type.element : p.type, p.descriptor,
-                                   p.descriptor};
+        result.image =
+            ImageHandle{type.kind == TypeKind::sampledImage ? type.element : p.type, p.descriptor, p.descriptor};
     }
     return result;
 }
@@ -274,9 +270,8 @@ void Machine<Number>::store(const Pointer<Number>& p, const Scalars<Number>& sca
     if (helper_) return;
     const std::span<std::byte> bytes = resources_.buffer(p.kind, p.descriptor);
     size_t next = 0;
-    forEachScalar(type, p.offset, p.matrix, p.componentStride, [&](const Type& scalar, uint64_t offset) {
-        writeScalar(bytes, offset, scalar, scalars[next++]);
-    });
+    forEachScalar(type, p.offset, p.matrix, p.componentStride,
+                  [&](const Type& scalar, uint64_t offset) { writeScalar(bytes, offset, scalar, scalars[next++]); });
 }
 
 template <class Number>
@@ -301,7 +296,7 @@ bool Machine<Number>::executeMemory(const Instruction& i) {
             Variable variable;
             variable.id = i.result;
             variable.pointerType = module_.typeIndex(i.type);
-            variable.storage = static_cast<spv::StorageClass>(i.operand(0));
+            variable.storage = enumerant<spv::StorageClass>(i.operand(0));
             if (i.operands.size() > 1) variable.initializer = i.operands[1];
             if (variable.storage != spv::StorageClassFunction ||
                 module_.types[variable.pointerType].kind != TypeKind::pointer)

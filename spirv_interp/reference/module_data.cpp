@@ -28,9 +28,8 @@ std::string name(Id id) {
 }
 
 std::string name(spv::Op op) {
-    const auto* found = std::find_if(std::begin(kOpNames), std::end(kOpNames), [op](const OpName& entry) {
-        return entry.op == static_cast<uint32_t>(op);
-    });
+    const auto* found = std::find_if(std::begin(kOpNames), std::end(kOpNames),
+                                     [op](const OpName& entry) { return entry.op == static_cast<uint32_t>(op); });
     return found != std::end(kOpNames) ? found->text : "opcode " + std::to_string(static_cast<uint32_t>(op));
 }
 

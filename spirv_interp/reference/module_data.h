@@ -33,8 +33,8 @@ inline constexpr uint64_t kMaxScalars = uint64_t{1} << 18;
 inline constexpr uint32_t kMaxTypeDepth = 64;
 
 struct Decorations {
-    std::optional<uint32_t> location, component, index, builtin, specId, arrayStride, matrixStride, offset,
-        binding, set, inputAttachmentIndex;
+    std::optional<uint32_t> location, component, index, builtin, specId, arrayStride, matrixStride, offset, binding,
+        set, inputAttachmentIndex;
     bool flat = false, noPerspective = false, centroid = false, sample = false;
     bool block = false, bufferBlock = false, rowMajor = false, isVolatile = false;
 };
@@ -59,12 +59,12 @@ enum class TypeKind : uint8_t {
 struct Type {
     Id id = 0;
     TypeKind kind = TypeKind::voidType;
-    uint32_t width = 32;    // integer, floating
-    bool isSigned = false;  // integer
-    uint32_t element = 0;   // index of the element type (vector, matrix, array), pointee, image of a sampled
-                            // image, return type of a function
-    uint32_t count = 0;     // components, columns, array length
-    std::vector<uint32_t> members;      // type indices: of a struct, parameters of a function
+    uint32_t width = 32;            // integer, floating
+    bool isSigned = false;          // integer
+    uint32_t element = 0;           // index of the element type (vector, matrix, array), pointee, image of a sampled
+                                    // image, return type of a function
+    uint32_t count = 0;             // components, columns, array length
+    std::vector<uint32_t> members;  // type indices: of a struct, parameters of a function
     std::vector<uint64_t> cellOffsets;  // struct: first scalar of each member
     uint64_t scalars = 0;               // when flattened; 0 for opaque types, saturating
     uint32_t depth = 0;                 // nesting
@@ -93,6 +93,12 @@ struct Instruction {
         return operands[index];
     }
 };
+
+/// A word as one of SPIR-V's enumerations, whose values end at 0x7FFFFFFF (...Max).
+template <class Enum>
+Enum enumerant(uint32_t word) {
+    return static_cast<Enum>(word < 0x7FFFFFFFu ? word : 0x7FFFFFFFu);
+}
 
 /// The text in `words` from `first`, and the index of the word after it.
 std::pair<std::string, size_t> literalString(std::span<const uint32_t> words, size_t first);

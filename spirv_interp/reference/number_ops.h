@@ -80,17 +80,16 @@ uint64_t toInteger(const Number& x, uint32_t width, bool isSigned) {
     const Number unit = ldexp(Number(1), 32);
     const Number high = trunc(magnitude / unit);
     const Number low = magnitude - high * unit;
-    const uint64_t bits = (static_cast<uint64_t>(static_cast<double>(high)) << 32) +
-                          static_cast<uint64_t>(static_cast<double>(low));
+    const uint64_t bits =
+        (static_cast<uint64_t>(static_cast<double>(high)) << 32) + static_cast<uint64_t>(static_cast<double>(low));
     return negative ? (uint64_t{0} - bits) & mask : bits;
 }
 
 template <class Number>
 Number fromInteger(uint64_t bits, uint32_t width, bool isSigned) {
     if (!isSigned) return static_cast<Number>(bits);
-    return static_cast<Number>(width == 32
-                                   ? static_cast<int64_t>(static_cast<int32_t>(static_cast<uint32_t>(bits)))
-                                   : static_cast<int64_t>(bits));
+    return static_cast<Number>(width == 32 ? static_cast<int64_t>(static_cast<int32_t>(static_cast<uint32_t>(bits)))
+                                           : static_cast<int64_t>(bits));
 }
 
 }  // namespace vernier::reference

@@ -61,9 +61,8 @@ class Parser {
     void run() {
         checkHeader();
         uint32_t maxId = 0;
-        forEachInstruction(module_.words, [&](const Instruction& instruction) {
-            maxId = std::max(maxId, instruction.result);
-        });
+        forEachInstruction(module_.words,
+                           [&](const Instruction& instruction) { maxId = std::max(maxId, instruction.result); });
         if (maxId >= module_.words[3])
             fail("result " + name(maxId) + " is not below the bound " + std::to_string(module_.words[3]));
         module_.ids.resize(size_t{maxId} + 1);
@@ -78,8 +77,7 @@ class Parser {
     void checkHeader() const {
         const auto& words = module_.words;
         if (words.size() < kHeaderWords) fail("a SPIR-V module has at least 5 words");
-        if (words[0] != spv::MagicNumber)
-            fail("not a SPIR-V module in this machine's byte order: wrong magic number");
+        if (words[0] != spv::MagicNumber) fail("not a SPIR-V module in this machine's byte order: wrong magic number");
         if ((words[1] >> 16) != 1 || ((words[1] >> 8) & 0xFF) > 6)
             failUnsupported("SPIR-V version " + std::to_string((words[1] >> 16) & 0xFF) + "." +
                             std::to_string((words[1] >> 8) & 0xFF));
@@ -123,8 +121,7 @@ class Parser {
             case spv::OpMemberDecorateString:
                 return;
             case spv::OpExtInst:
-                if (module_.info(i.operand(0)).kind != IdKind::ignoredSet)
-                    fail("OpExtInst outside a function");
+                if (module_.info(i.operand(0)).kind != IdKind::ignoredSet) fail("OpExtInst outside a function");
                 return;
             case spv::OpExtInstImport:
                 return importSet(i);
@@ -178,8 +175,7 @@ class Parser {
             case spv::OpTypePointer:
             case spv::OpTypeFunction:
                 parseType(module_, i);
-                return define(i.result,
-                              {IdKind::type, static_cast<uint32_t>(module_.types.size() - 1), 0, 0});
+                return define(i.result, {IdKind::type, static_cast<uint32_t>(module_.types.size() - 1), 0, 0});
             default:
                 failUnsupported(name(i.op) + " outside a function");
         }
@@ -194,7 +190,7 @@ class Parser {
 
     void entryPoint(const Instruction& i) {
         EntryPoint entry;
-        entry.model = static_cast<spv::ExecutionModel>(i.operand(0));
+        entry.model = enumerant<spv::ExecutionModel>(i.operand(0));
         EntryPointData data;
         data.function = i.operand(1);
         auto [text, next] = literalString(i.operands, 2);
@@ -206,7 +202,7 @@ class Parser {
 
     void executionMode(const Instruction& i) {
         const Id function = i.operand(0);
-        const auto mode = static_cast<spv::ExecutionMode>(i.operand(1));
+        const auto mode = enumerant<spv::ExecutionMode>(i.operand(1));
         for (size_t k = 0; k < module_.entryPoints.size(); ++k) {
             if (module_.entryPointData[k].function != function) continue;
             ExecutionModes& modes = module_.entryPoints[k].modes;
@@ -242,7 +238,7 @@ class Parser {
     }
 
     static void decorate(Decorations& d, const Instruction& i, size_t first) {
-        switch (static_cast<spv::Decoration>(i.operand(first))) {
+        switch (enumerant<spv::Decoration>(i.operand(first))) {
             case spv::DecorationLocation:
                 d.location = i.operand(first + 1);
                 break;
@@ -313,7 +309,7 @@ class Parser {
         Variable variable;
         variable.id = i.result;
         variable.pointerType = module_.typeIndex(i.type);
-        variable.storage = static_cast<spv::StorageClass>(i.operand(0));
+        variable.storage = enumerant<spv::StorageClass>(i.operand(0));
         if (i.operands.size() > 1) variable.initializer = i.operands[1];
         if (module_.types[variable.pointerType].kind != TypeKind::pointer)
             fail("the type of variable " + name(i.result) + " is no pointer");
@@ -331,16 +327,14 @@ class Parser {
                                 std::to_string(static_cast<uint32_t>(variable.storage)));
         }
         if (variable.initializer != 0) module_.constant(variable.initializer);
-        define(i.result,
-               {IdKind::variable, static_cast<uint32_t>(module_.variables.size()), variable.pointerType, 0});
+        define(i.result, {IdKind::variable, static_cast<uint32_t>(module_.variables.size()), variable.pointerType, 0});
         module_.variables.push_back(variable);
     }
 
     void beginFunction(const Instruction& i) {
         if (function_) fail("function " + name(i.result) + " inside another");
         const Type& type = module_.typeOf(i.operand(1));
-        if (type.kind != TypeKind::function)
-            fail("the type of function " + name(i.result) + " is no function type");
+        if (type.kind != TypeKind::function) fail("the type of function " + name(i.result) + " is no function type");
         const auto index = static_cast<uint32_t>(module_.functions.size());
         define(i.result, {IdKind::function, index, 0, 0});
         module_.functions.emplace_back();
@@ -352,8 +346,7 @@ class Parser {
     }
 
     void defineLocal(Id id, uint32_t type) {
-        define(id, {IdKind::local, function_->slots++, type,
-                    static_cast<uint32_t>(module_.functions.size() - 1)});
+        define(id, {IdKind::local, function_->slots++, type, static_cast<uint32_t>(module_.functions.size() - 1)});
     }
 
     void visitInFunction(const Instruction& i) {
@@ -372,8 +365,7 @@ class Parser {
             case spv::OpLabel: {
                 if (inBlock_) fail("block " + name(function_->blocks.back().label) + " has no terminator");
                 const auto index = static_cast<uint32_t>(function_->blocks.size());
-                if (!function_->blockOf.emplace(i.result, index).second)
-                    fail(name(i.result) + " is defined twice");
+                if (!function_->blockOf.emplace(i.result, index).second) fail(name(i.result) + " is defined twice");
                 function_->blocks.push_back({i.result, function_->instructions.size(), 0});
                 inBlock_ = true;
                 return;

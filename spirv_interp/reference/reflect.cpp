@@ -44,7 +44,7 @@ class InterfaceWalker {
     void apply(InterfaceVariable& place, const Decorations& d) {
         if (d.builtin) {
             place.isBuiltin = true;
-            place.builtin = static_cast<spv::BuiltIn>(*d.builtin);
+            place.builtin = enumerant<spv::BuiltIn>(*d.builtin);
         }
         if (d.location) place.location = *d.location;
         if (d.component) place.component = *d.component;
@@ -126,8 +126,7 @@ void reflectEntryPoint(const ModuleData& module, EntryPointData& entry) {
         const IdInfo& info = module.info(id);
         if (info.kind != IdKind::variable) fail("interface entry " + name(id) + " is no variable");
         const Variable& variable = module.variables[info.index];
-        if (variable.storage != spv::StorageClassInput && variable.storage != spv::StorageClassOutput)
-            continue;
+        if (variable.storage != spv::StorageClassInput && variable.storage != spv::StorageClassOutput) continue;
         InterfaceLayout layout;
         layout.variable = info.index;
         layout.output = variable.storage == spv::StorageClassOutput;
@@ -149,8 +148,7 @@ DescriptorBinding reflectBinding(const ModuleData& module, const Variable& varia
     binding.set = d.set.value_or(0);
     binding.binding = d.binding.value_or(0);
     binding.inputAttachmentIndex = d.inputAttachmentIndex.value_or(0);
-    if (const auto found = module.names.find(variable.id); found != module.names.end())
-        binding.name = found->second;
+    if (const auto found = module.names.find(variable.id); found != module.names.end()) binding.name = found->second;
     const Type* type = &module.types[module.types[variable.pointerType].element];
     if (type->isArray()) {
         binding.count = type->kind == TypeKind::runtimeArray ? 0 : type->count;
@@ -158,10 +156,10 @@ DescriptorBinding reflectBinding(const ModuleData& module, const Variable& varia
     }
     switch (type->kind) {
         case TypeKind::structure:
-            binding.kind = variable.storage == spv::StorageClassStorageBuffer ||
-                                   module.decorationsOf(type->id).bufferBlock
-                               ? DescriptorKind::storageBuffer
-                               : DescriptorKind::uniformBuffer;
+            binding.kind =
+                variable.storage == spv::StorageClassStorageBuffer || module.decorationsOf(type->id).bufferBlock
+                    ? DescriptorKind::storageBuffer
+                    : DescriptorKind::uniformBuffer;
             binding.byteSize = module.byteSize(*type, 0, false);
             break;
         case TypeKind::image:

@@ -78,7 +78,7 @@ struct ImageRequest {
     std::optional<std::array<std::array<int32_t, 2>, 4>> gatherOffsets;  // textureGatherOffsets
     uint32_t component = 0;                                              // gather
     std::optional<Number> dref;                                          // depth comparison, after projection
-    int32_t sample = 0;  // multisampled images and input attachments
+    int32_t sample = 0;                                                  // multisampled images and input attachments
 };
 
 enum class InterpolationPlace : uint8_t { centroid, sample, offset };
@@ -115,9 +115,7 @@ class Resources {
     virtual void write(const ImageRequest<Number>&, const Texel<Number>&) {}
 
     /// Width, height, depth (as many as the dimension has), then array layers.
-    virtual std::array<int32_t, 4> querySize(const Descriptor&, const ImageShape&, int32_t /*lod*/) {
-        return {};
-    }
+    virtual std::array<int32_t, 4> querySize(const Descriptor&, const ImageShape&, int32_t /*lod*/) { return {}; }
     virtual int32_t queryLevels(const Descriptor&, const ImageShape&) { return 0; }
     virtual int32_t querySamples(const Descriptor&, const ImageShape&) { return 0; }
     /// OpImageQueryLod: the mipmap level(s) accessed, and the level of detail relative to the base level.
@@ -125,9 +123,7 @@ class Resources {
 
     /// interpolateAt*: the four components at the location. Without a value the interpreter uses the plain
     /// input.
-    virtual std::optional<Texel<Number>> interpolateAt(const InterpolationRequest<Number>&) {
-        return std::nullopt;
-    }
+    virtual std::optional<Texel<Number>> interpolateAt(const InterpolationRequest<Number>&) { return std::nullopt; }
 };
 
 }  // namespace vernier::reference

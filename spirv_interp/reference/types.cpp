@@ -54,7 +54,7 @@ class TypeParser {
                 break;
             case spv::OpTypePointer:
                 type_.kind = TypeKind::pointer;
-                type_.storage = static_cast<spv::StorageClass>(i_.operand(0));
+                type_.storage = enumerant<spv::StorageClass>(i_.operand(0));
                 element(i_.operand(1));
                 break;
             case spv::OpTypeFunction:
@@ -101,8 +101,7 @@ class TypeParser {
         type_.kind = TypeKind::vector;
         type_.count = i_.operand(1);
         if (!element(i_.operand(0)).isScalar() || type_.count < 2 || type_.count > 4)
-            failUnsupported("vector type " + name(i_.result) + " of " + std::to_string(type_.count) +
-                            " components");
+            failUnsupported("vector type " + name(i_.result) + " of " + std::to_string(type_.count) + " components");
         type_.scalars = type_.count;
         type_.holdable = true;
     }
@@ -134,10 +133,8 @@ class TypeParser {
         type_.holdable = !i_.operands.empty();
         for (const Id id : i_.operands) {
             const uint32_t index = module_.typeIndex(id);
-            const Decorations& d =
-                module_.decorationsOf(i_.result, static_cast<uint32_t>(type_.members.size()));
-            const uint64_t bytes =
-                module_.byteSize(module_.types[index], d.matrixStride.value_or(0), d.rowMajor);
+            const Decorations& d = module_.decorationsOf(i_.result, static_cast<uint32_t>(type_.members.size()));
+            const uint64_t bytes = module_.byteSize(module_.types[index], d.matrixStride.value_or(0), d.rowMajor);
             type_.bytes = std::max(type_.bytes, saturatingAdd(d.offset.value_or(0), bytes));
             type_.holdable = type_.holdable && module_.types[index].holdable;
             type_.members.push_back(index);
@@ -153,15 +150,14 @@ class TypeParser {
         if ((texel.kind != TypeKind::floating && texel.kind != TypeKind::integer) || texel.width != 32)
             failUnsupported("image type " + name(i_.result) + " with texels that are not 32-bit numbers");
         ImageShape& shape = type_.shape;
-        shape.dim = static_cast<spv::Dim>(i_.operand(1));
+        shape.dim = enumerant<spv::Dim>(i_.operand(1));
         shape.depth = i_.operand(2) == 1;
         shape.arrayed = i_.operand(3) != 0;
         shape.multisampled = i_.operand(4) != 0;
         shape.storage = i_.operand(5) == 2;
         shape.floating = texel.kind == TypeKind::floating;
         shape.signedTexels = shape.floating || texel.isSigned;
-        if (i_.operand(1) > spv::DimSubpassData)
-            failUnsupported("image dimension " + std::to_string(i_.operand(1)));
+        if (i_.operand(1) > spv::DimSubpassData) failUnsupported("image dimension " + std::to_string(i_.operand(1)));
     }
 
     const ModuleData& module_;
@@ -182,10 +178,8 @@ const Type& ModuleData::scalarType(const Type& type) const {
 }
 
 uint64_t ModuleData::valueScalars(const Type& type) const {
-    if (!type.holdable)
-        fail("type " + name(type.id) + " has no values that can be held in a variable or result");
-    if (type.scalars > kMaxScalars)
-        failUnsupported("type " + name(type.id) + " is too large to be held in a value");
+    if (!type.holdable) fail("type " + name(type.id) + " has no values that can be held in a variable or result");
+    if (type.scalars > kMaxScalars) failUnsupported("type " + name(type.id) + " is too large to be held in a value");
     return type.scalars;
 }
 
@@ -217,9 +211,8 @@ uint64_t ModuleData::byteSize(const Type& type, uint32_t matrixStride, bool rowM
             return (lines - 1) * matrixStride + along * bytes;
         }
         case TypeKind::array:
-            return saturatingAdd(
-                saturatingMultiply(type.count - 1, decorationsOf(type.id).arrayStride.value_or(0)),
-                byteSize(types[type.element], matrixStride, rowMajor));
+            return saturatingAdd(saturatingMultiply(type.count - 1, decorationsOf(type.id).arrayStride.value_or(0)),
+                                 byteSize(types[type.element], matrixStride, rowMajor));
         case TypeKind::structure:
             return type.bytes;
         default:

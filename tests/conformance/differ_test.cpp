@@ -23,8 +23,7 @@ constexpr uint32_t kWidth = 5, kHeight = 3;
 RenderedImage flat(uint8_t r, uint8_t g, uint8_t b) {
     RenderedImage image{VK_FORMAT_R8G8B8A8_UNORM, {kWidth, kHeight}, {}};
     for (uint32_t i = 0; i < kWidth * kHeight; ++i) {
-        for (const int value : {int{r}, int{g}, int{b}, 255})
-            image.texels.push_back(static_cast<std::byte>(value));
+        for (const int value : {int{r}, int{g}, int{b}, 255}) image.texels.push_back(static_cast<std::byte>(value));
     }
     return image;
 }
@@ -36,8 +35,7 @@ void set(RenderedImage& image, uint32_t x, uint32_t y, size_t component, int cod
 /// An oracle that permits exactly one real value per component.
 OracleImage exactly(double r, double g, double b) {
     const std::array<double, 4> value{r, g, b, 1};
-    return {
-        VK_FORMAT_R8G8B8A8_UNORM, {kWidth, kHeight}, {kWidth * kHeight, OraclePixel{value, value, value, 0}}};
+    return {VK_FORMAT_R8G8B8A8_UNORM, {kWidth, kHeight}, {kWidth * kHeight, OraclePixel{value, value, value, 0}}};
 }
 
 OraclePixel& at(OracleImage& oracle, uint32_t x, uint32_t y) {
@@ -48,8 +46,7 @@ PixelClass classAt(const ImageDiff& diff, uint32_t x, uint32_t y) {
     return diff.pixels[size_t{y} * diff.extent.width + x].pixelClass;
 }
 
-ImageDiff compare(const RenderedImage& ours, const RenderedImage& other,
-                  const OracleImage* oracle = nullptr) {
+ImageDiff compare(const RenderedImage& ours, const RenderedImage& other, const OracleImage* oracle = nullptr) {
     Result<ImageDiff> diff = compareImages(ours, other, oracle);
     EXPECT_TRUE(diff.ok()) << (diff.ok() ? "" : diff.error().message);
     return diff.ok() ? std::move(diff).value() : ImageDiff{};
@@ -124,8 +121,7 @@ TEST(Differ, UndecidedPixelsAreCountedAndFailWhenTheyDiffer) {
     set(other, 0, 2, 0, 128);
     const ImageDiff diff = compare(ours, other, &oracle);
     EXPECT_EQ(diff.unknownPixels, 2u);
-    EXPECT_EQ(classAt(diff, 0, 2), PixelClass::undecided)
-        << "one code is no excuse where nobody knows the value";
+    EXPECT_EQ(classAt(diff, 0, 2), PixelClass::undecided) << "one code is no excuse where nobody knows the value";
     EXPECT_EQ(classAt(diff, 1, 2), PixelClass::equal);
     EXPECT_EQ(diff.failures(), 1u);
 }
@@ -241,30 +237,24 @@ TEST(KnownGaps, AreReadAndChecked) {
     const auto message = [](const char* json) { return parseKnownGaps(json).error().message; };
     EXPECT_THAT(message("{"), HasSubstr("known gaps"));
     EXPECT_THAT(message(R"({"gaps": [{"scene": "srgb"}]})"), HasSubstr("driver"));
-    EXPECT_THAT(
-        message(R"({"gaps": [{"scene": "a", "driver": "b", "class": "edge", "max": 1, "reason": "c"}]})"),
-        HasSubstr("'edge'"));
-    EXPECT_THAT(
-        message(
-            R"({"gaps": [{"scene": "a", "driver": "b", "class": "oursWrong", "max": 0, "reason": "c"}]})"),
-        HasSubstr("max is 0"));
-    EXPECT_THAT(
-        message(R"({"gaps": [{"scene": "a", "driver": "b", "class": "oursWrong", "max": 1, "reason": ""}]})"),
-        HasSubstr("reason is empty"));
+    EXPECT_THAT(message(R"({"gaps": [{"scene": "a", "driver": "b", "class": "edge", "max": 1, "reason": "c"}]})"),
+                HasSubstr("'edge'"));
+    EXPECT_THAT(message(R"({"gaps": [{"scene": "a", "driver": "b", "class": "oursWrong", "max": 0, "reason": "c"}]})"),
+                HasSubstr("max is 0"));
+    EXPECT_THAT(message(R"({"gaps": [{"scene": "a", "driver": "b", "class": "oursWrong", "max": 1, "reason": ""}]})"),
+                HasSubstr("reason is empty"));
 }
 
 TEST(KnownGaps, CoverFindingsUpToTheirSizeAndGoStale) {
     const std::vector<KnownGap> gaps{{"a", "icd", "lavapipe", "unexplained", 5, "why"},
                                      {"b", "api", "", "notRendered", 1, "not yet"}};
     const RunExtent all{{"a", "b"}, {"icd", "api", "lavapipe"}};
-    const std::vector<Finding> known{{"a", "icd", "lavapipe", "unexplained", 5},
-                                     {"b", "api", "", "notRendered", 1}};
+    const std::vector<Finding> known{{"a", "icd", "lavapipe", "unexplained", 5}, {"b", "api", "", "notRendered", 1}};
     GapJudgement judgement = judgeFindings(known, gaps, all);
     EXPECT_TRUE(judgement.passed());
     EXPECT_THAT(judgement.covered, SizeIs(2));
 
-    judgement =
-        judgeFindings(std::vector<Finding>{{"a", "icd", "lavapipe", "unexplained", 6}, known[1]}, gaps, all);
+    judgement = judgeFindings(std::vector<Finding>{{"a", "icd", "lavapipe", "unexplained", 6}, known[1]}, gaps, all);
     EXPECT_THAT(judgement.violations, ElementsAre(HasSubstr("6 unexplained"))) << "grown";
     EXPECT_THAT(judgement.stale, IsEmpty());
 
@@ -275,8 +265,8 @@ TEST(KnownGaps, CoverFindingsUpToTheirSizeAndGoStale) {
     judgement = judgeFindings(std::vector<Finding>{known[0]}, gaps, RunExtent{{"a"}, {"icd", "lavapipe"}});
     EXPECT_TRUE(judgement.passed()) << "scene b was not run";
 
-    judgement = judgeFindings(
-        std::vector<Finding>{{"a", "icd", "swiftshader", "unexplained", 1}, known[0], known[1]}, gaps, all);
+    judgement = judgeFindings(std::vector<Finding>{{"a", "icd", "swiftshader", "unexplained", 1}, known[0], known[1]},
+                              gaps, all);
     EXPECT_THAT(judgement.violations, SizeIs(1)) << "another driver is another finding";
 }
 

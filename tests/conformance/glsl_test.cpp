@@ -87,8 +87,7 @@ TEST(Glsl, EveryStageCompiles) {
         {VK_SHADER_STAGE_GEOMETRY_BIT,
          "#version 450\nlayout(points) in; layout(points, max_vertices = 1) out; void main() { EmitVertex(); "
          "}"},
-        {VK_SHADER_STAGE_FRAGMENT_BIT,
-         "#version 450\nlayout(location = 0) out vec4 c; void main() { c = vec4(1); }"},
+        {VK_SHADER_STAGE_FRAGMENT_BIT, "#version 450\nlayout(location = 0) out vec4 c; void main() { c = vec4(1); }"},
         {VK_SHADER_STAGE_COMPUTE_BIT, "#version 450\nlayout(local_size_x = 8) in; void main() {}"},
     }};
     for (const auto& [stage, source] : sources) {
@@ -182,8 +181,7 @@ TEST(Glsl, ThreadsCompileTheSameWordsWhileOthersStartAndStopTheCompiler) {
                 const bool retain = i % 2 == 0;
                 if (retain && vnRetainGlslCompiler() != VN_GLSL_SUCCESS) ++count;
                 const Compiled compiled = compile(desc);
-                if (compiled.result != VN_GLSL_SUCCESS ||
-                    compiled.output->wordCount != expected.output->wordCount ||
+                if (compiled.result != VN_GLSL_SUCCESS || compiled.output->wordCount != expected.output->wordCount ||
                     std::memcmp(compiled.output->words, expected.output->words,
                                 expected.output->wordCount * sizeof(uint32_t)) != 0) {
                     ++count;

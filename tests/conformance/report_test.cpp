@@ -22,8 +22,7 @@ using ::testing::SizeIs;
 RenderedImage image(uint8_t red) {
     RenderedImage result{VK_FORMAT_R8G8B8A8_UNORM, {4, 2}, {}};
     for (int i = 0; i < 8; ++i) {
-        for (const int value : {int{red}, 10 * i, 30, 255})
-            result.texels.push_back(static_cast<std::byte>(value));
+        for (const int value : {int{red}, 10 * i, 30, 255}) result.texels.push_back(static_cast<std::byte>(value));
     }
     return result;
 }

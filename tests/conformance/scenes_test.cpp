@@ -20,8 +20,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-constexpr const char* kRed =
-    "#version 450\nlayout(location = 0) out vec4 c; void main() { c = vec4(1, 0, 0, 1); }";
+constexpr const char* kRed = "#version 450\nlayout(location = 0) out vec4 c; void main() { c = vec4(1, 0, 0, 1); }";
 
 /// A scene that is right, to be broken.
 Scene smallScene() {
@@ -38,8 +37,8 @@ Scene smallScene() {
 
 TEST(SceneRecorder, FillsInTheObvious) {
     SceneRecorder record("recorded", "For tests.");
-    const uint32_t target = record.colorTarget("color", VK_FORMAT_R8G8B8A8_SRGB, {20, 10},
-                                               VK_SAMPLE_COUNT_1_BIT, VK_IMAGE_USAGE_SAMPLED_BIT);
+    const uint32_t target = record.colorTarget("color", VK_FORMAT_R8G8B8A8_SRGB, {20, 10}, VK_SAMPLE_COUNT_1_BIT,
+                                               VK_IMAGE_USAGE_SAMPLED_BIT);
     const uint32_t vertices = record.vertexBuffer("vertices", std::vector<float>{1, 2, 3});
     const uint32_t fragment = record.fragment(
         "#version 450\nlayout(constant_id = 7) const int n = 1;\n"
@@ -106,18 +105,15 @@ TEST(ValidateScene, NamesWhatIsWrong) {
     EXPECT_THAT(message([](Scene& s) { s.images[0].extent.width = 0; }), HasSubstr("images[0].extent"));
     EXPECT_THAT(message([](Scene& s) { s.images[0].data = {Bytes(5)}; }), HasSubstr("5 bytes, not 128"));
     EXPECT_THAT(message([](Scene& s) { s.images[0].data = {{}, {}}; }), HasSubstr("2 entries"));
-    EXPECT_THAT(message([](Scene& s) { s.images[0].samples = VK_SAMPLE_COUNT_4_BIT; }),
-                HasSubstr("multisampled"));
-    EXPECT_THAT(message([](Scene& s) { s.pipelines[0].vertexShader = kNone; }),
-                HasSubstr("vertexShader is absent"));
+    EXPECT_THAT(message([](Scene& s) { s.images[0].samples = VK_SAMPLE_COUNT_4_BIT; }), HasSubstr("multisampled"));
+    EXPECT_THAT(message([](Scene& s) { s.pipelines[0].vertexShader = kNone; }), HasSubstr("vertexShader is absent"));
     EXPECT_THAT(message([](Scene& s) { s.pipelines[0].blend.clear(); }), HasSubstr("blends 0 targets"));
     EXPECT_THAT(message([](Scene& s) { s.shaders[1].spirv.clear(); }), HasSubstr("shaders[1].spirv"));
     EXPECT_THAT(message([](Scene& s) { std::get<ScenePass>(s.steps[0]).draws[0].pipeline = 9; }),
                 HasSubstr("pipeline is 9"));
     EXPECT_THAT(message([](Scene& s) { std::get<ScenePass>(s.steps[0]).draws[0].pushConstants.resize(4); }),
                 HasSubstr("pushConstants has 4"));
-    EXPECT_THAT(message([](Scene& s) { s.steps.push_back(SceneGenerateMips{4}); }),
-                HasSubstr("SceneGenerateMips"));
+    EXPECT_THAT(message([](Scene& s) { s.steps.push_back(SceneGenerateMips{4}); }), HasSubstr("SceneGenerateMips"));
     EXPECT_THAT(message([](Scene& s) {
                     SceneBinding binding;
                     binding.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
@@ -151,9 +147,8 @@ TEST_F(AllScenes, AreManyAndTheirNamesAreTheirFunctions) {
     for (size_t i = 0; i < scenes_.size(); ++i) {
         EXPECT_EQ(scenes_[i].name, allScenes()[i].name);
         EXPECT_TRUE(names.insert(scenes_[i].name).second) << scenes_[i].name << " twice";
-        EXPECT_TRUE(std::all_of(scenes_[i].name.begin(), scenes_[i].name.end(), [](unsigned char c) {
-            return std::islower(c) || std::isdigit(c) || c == '_';
-        }));
+        EXPECT_TRUE(std::all_of(scenes_[i].name.begin(), scenes_[i].name.end(),
+                                [](unsigned char c) { return std::islower(c) || std::isdigit(c) || c == '_'; }));
         EXPECT_GT(scenes_[i].description.size(), 20u) << scenes_[i].name;
         EXPECT_EQ(findScene(scenes_[i].name), &allScenes()[i]);
     }
@@ -195,8 +190,7 @@ TEST_F(AllScenes, ReadOnlyWhatWasWritten) {
                 }
                 const auto attach = [&](const SceneAttachment& each) {
                     if (each.image == kNone) return;
-                    EXPECT_TRUE(each.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR || written[each.image])
-                        << scene.name;
+                    EXPECT_TRUE(each.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR || written[each.image]) << scene.name;
                     written[each.image] = true;
                     if (each.resolveImage != kNone) written[each.resolveImage] = true;
                 };

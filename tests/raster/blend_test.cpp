@@ -50,8 +50,7 @@ void sourceOver(GraphicsState& state) {
     b.dstColorBlendFactor = b.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
 }
 
-double factorModel(VkBlendFactor f, const double* s, const double* s1, const double* d, const double* k,
-                   int c) {
+double factorModel(VkBlendFactor f, const double* s, const double* s1, const double* d, const double* k, int c) {
     switch (f) {
         case VK_BLEND_FACTOR_ZERO:
             return 0;
@@ -146,8 +145,8 @@ TEST_F(Blend, AllFactorsAndOperations) {
                 for (int c = 0; c < 4; ++c) {
                     const double fs = factorModel(c < 3 ? f : g, s, s1, d, k, c),
                                  fd = factorModel(c < 3 ? g : f, s, s1, d, k, c);
-                    expected[static_cast<size_t>(c)] = static_cast<float>(
-                        opModel(static_cast<VkBlendOp>(c < 3 ? op : 4 - op), s[c], fs, d[c], fd));
+                    expected[static_cast<size_t>(c)] =
+                        static_cast<float>(opModel(static_cast<VkBlendOp>(c < 3 ? op : 4 - op), s[c], fs, d[c], fd));
                 }
                 packTexel(info.color, floats(expected), stored);
                 const VkClearColorValue want = unpackTexel(info.color, stored);
@@ -199,31 +198,27 @@ TEST_F(Blend, TwoHundredFiftyFiveAdditions) {
 
 TEST_F(Blend, FixedPointClampsFloatDoesNot) {
     const auto additive = [](GraphicsState& s) { setAdditive(s); };
-    EXPECT_EQ(draw(VK_FORMAT_R8G8B8A8_UNORM, floats({0.5f, 0.5f, 0.5f, 0.5f}), {{-3, 4, 0, 0}}, additive)
-                  .float32[0],
+    EXPECT_EQ(draw(VK_FORMAT_R8G8B8A8_UNORM, floats({0.5f, 0.5f, 0.5f, 0.5f}), {{-3, 4, 0, 0}}, additive).float32[0],
               128.0f / 255);
-    EXPECT_EQ(draw(VK_FORMAT_R32G32B32A32_SFLOAT, floats({0.5f, 0.5f, 0.5f, 0.5f}), {{-3, 4, 0, 0}}, additive)
-                  .float32[0],
-              -2.5f);
+    EXPECT_EQ(
+        draw(VK_FORMAT_R32G32B32A32_SFLOAT, floats({0.5f, 0.5f, 0.5f, 0.5f}), {{-3, 4, 0, 0}}, additive).float32[0],
+        -2.5f);
     const auto subtract = [](GraphicsState& s) {
         setAdditive(s);
         s.blend[0].colorBlendOp = VK_BLEND_OP_SUBTRACT;
     };
-    EXPECT_EQ(draw(VK_FORMAT_R8G8B8A8_UNORM, floats({0.5f, 0.5f, 0.5f, 0.5f}), {{0.25f, 0, 0, 0}}, subtract)
-                  .float32[0],
+    EXPECT_EQ(draw(VK_FORMAT_R8G8B8A8_UNORM, floats({0.5f, 0.5f, 0.5f, 0.5f}), {{0.25f, 0, 0, 0}}, subtract).float32[0],
               0);
     EXPECT_EQ(
-        draw(VK_FORMAT_R16G16B16A16_SFLOAT, floats({0.5f, 0.5f, 0.5f, 0.5f}), {{0.25f, 0, 0, 0}}, subtract)
-            .float32[0],
+        draw(VK_FORMAT_R16G16B16A16_SFLOAT, floats({0.5f, 0.5f, 0.5f, 0.5f}), {{0.25f, 0, 0, 0}}, subtract).float32[0],
         -0.25f);
 }
 
 TEST_F(Blend, AbsentDestinationAlphaIsOne) {
-    const auto got =
-        draw(VK_FORMAT_R8G8_UNORM, floats({1, 0.4f, 0, 0}), {{1, 1, 1, 1}}, [](GraphicsState& s) {
-            s.blend[0].srcColorBlendFactor = VK_BLEND_FACTOR_DST_ALPHA;
-            s.blend[0].dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_DST_ALPHA;
-        });
+    const auto got = draw(VK_FORMAT_R8G8_UNORM, floats({1, 0.4f, 0, 0}), {{1, 1, 1, 1}}, [](GraphicsState& s) {
+        s.blend[0].srcColorBlendFactor = VK_BLEND_FACTOR_DST_ALPHA;
+        s.blend[0].dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_DST_ALPHA;
+    });
     EXPECT_EQ(got.float32[1], 1);
 }
 
@@ -311,8 +306,7 @@ TEST_F(Blend, LaterPrimitivesOverEarlierOnes) {
 }
 
 TEST_F(Blend, OpaqueReadsNothing) {
-    draw(VK_FORMAT_R8G8B8A8_UNORM, {}, {{1, 1, 1, 1}},
-         [](GraphicsState& s) { s.blend[0].blendEnable = VK_FALSE; });
+    draw(VK_FORMAT_R8G8B8A8_UNORM, {}, {{1, 1, 1, 1}}, [](GraphicsState& s) { s.blend[0].blendEnable = VK_FALSE; });
     EXPECT_EQ(statistics_.destinationReads, 0u);
     draw(VK_FORMAT_R8G8B8A8_UNORM, {}, {{1, 1, 1, 1}}, sourceOver);
     EXPECT_EQ(statistics_.destinationReads, 16u);

@@ -37,8 +37,7 @@ class Clip : public testing::Test {
         return sum;
     }
     static void expectAll(const std::vector<float>& counts, float value) {
-        for (size_t n = 0; n < counts.size(); ++n)
-            ASSERT_EQ(counts[n], value) << n % kSize << "," << n / kSize;
+        for (size_t n = 0; n < counts.size(); ++n) ASSERT_EQ(counts[n], value) << n % kSize << "," << n / kSize;
     }
 
     ThreadPool pool_{2};
@@ -131,9 +130,7 @@ TEST_F(Clip, UserDistanceAndItsOppositeMeet) {
         std::vector<Vertex> both;
         std::vector<Vertex> triangle;
         for (int k = 0; k < 3; ++k) {
-            const auto value = [&] {
-                return static_cast<float>(static_cast<int>(random() % 2001) - 1000) / 900;
-            };
+            const auto value = [&] { return static_cast<float>(static_cast<int>(random() % 2001) - 1000) / 900; };
             const float w = 0.5f + static_cast<float>(random() % 100) / 50;
             // Some distances exactly 0.
             triangle.push_back(vertex(value() * w, value() * w, 0, w, random() % 4 == 0 ? 0.0f : value()));
@@ -160,13 +157,11 @@ TEST_F(Clip, UserDistanceAndItsOppositeMeet) {
 TEST_F(Clip, SixPlanesAndEightOfTheUser) {
     // A triangle far larger than everything, tilted through near and far.
     const auto counts =
-        draw({vertex(-40, -40, -60, 1, 0.5f), vertex(40, -40, 57, 1, 0.5f), vertex(0, 60, 3, 1, 0.5f)},
-             "clip8_vert");
+        draw({vertex(-40, -40, -60, 1, 0.5f), vertex(40, -40, 57, 1, 0.5f), vertex(0, 60, 3, 1, 0.5f)}, "clip8_vert");
     EXPECT_GT(total(counts), 50);
     for (const float count : counts) ASSERT_LE(count, 1);
-    const auto octagon =
-        draw({vertex(-90, -90, 0.5f, 1, 0.5f), vertex(90, -90, 0.5f, 1, 0.5f), vertex(0, 150, 0.5f, 1, 0.5f)},
-             "clip8_vert");
+    const auto octagon = draw(
+        {vertex(-90, -90, 0.5f, 1, 0.5f), vertex(90, -90, 0.5f, 1, 0.5f), vertex(0, 150, 0.5f, 1, 0.5f)}, "clip8_vert");
     for (uint32_t y = 0; y < kSize; ++y) {
         for (uint32_t x = 0; x < kSize; ++x) {
             const double px = (x + 0.5) / 32 - 1, py = (y + 0.5) / 32 - 1;
@@ -189,8 +184,7 @@ TEST_F(Clip, InfiniteUserDistances) {
 }
 
 TEST_F(Clip, CullDistance) {
-    std::vector<Vertex> triangle{vertex(-1, -1, 0, 1, -1), vertex(3, -1, 0, 1, -2),
-                                 vertex(-1, 3, 0, 1, -0.5f)};
+    std::vector<Vertex> triangle{vertex(-1, -1, 0, 1, -1), vertex(3, -1, 0, 1, -2), vertex(-1, 3, 0, 1, -0.5f)};
     expectAll(draw(triangle, "cull_vert"), 0);
     triangle[1].color[0] = 0;
     expectAll(draw(triangle, "cull_vert"), 1);
@@ -212,8 +206,7 @@ TEST_F(Clip, AroundTheGuardBand) {
     for (const double far : {24575.0, 24575.9, 24576.1, 30000.0, -8191.9, -8192.1, -9000.0}) {
         const auto p = [&](double x, double y) { return at(x, y, kSize, kSize); };
         const double near = far > 0 ? -10 : 74;
-        const auto counts =
-            draw({p(near, -10), p(far, -10), p(near, 74), p(far, -10), p(far, 74), p(near, 74)});
+        const auto counts = draw({p(near, -10), p(far, -10), p(near, 74), p(far, -10), p(far, 74), p(near, 74)});
         expectAll(counts, 1);
     }
 }

@@ -46,14 +46,13 @@ Primitive primitiveOf(Point a, Point b, Point c, int32_t tileX, int32_t tileY) {
         p.y[n] = static_cast<int32_t>(v[n].y);
         extent = std::max({extent, std::abs(v[n].x - v[(n + 1) % 3].x), std::abs(v[n].y - v[(n + 1) % 3].y)});
     }
-    p.bounds = {static_cast<int16_t>(tileX), static_cast<int16_t>(tileY),
-                static_cast<int16_t>(tileX + kTileSize - 1), static_cast<int16_t>(tileY + kTileSize - 1)};
+    p.bounds = {static_cast<int16_t>(tileX), static_cast<int16_t>(tileY), static_cast<int16_t>(tileX + kTileSize - 1),
+                static_cast<int16_t>(tileY + kTileSize - 1)};
     p.smallEdges = extent <= int64_t{1} << kSmallEdgeBits;
     return p;
 }
 
-void expectExact(Isa isa, Point a, Point b, Point c, int32_t tileX, int32_t tileY, uint32_t bits,
-                 uint32_t samples) {
+void expectExact(Isa isa, Point a, Point b, Point c, int32_t tileX, int32_t tileY, uint32_t bits, uint32_t samples) {
     const Primitive primitive = primitiveOf(a, b, c, tileX, tileY);
     BlockCoverage blocks[kBlocksPerTile];
     const TileEdges edges = tileEdges(primitive, tileX, tileY, bits, samples);
@@ -63,8 +62,7 @@ void expectExact(Isa isa, Point a, Point b, Point c, int32_t tileX, int32_t tile
         for (uint32_t s = 0; s < samples; ++s)
             for (int bit = 0; bit < 64; ++bit)
                 if ((blocks[n].masks[s] >> bit & 1) != 0)
-                    covered.insert(
-                        {blocks[n].x + (bit & 7), blocks[n].y + (bit >> 3), static_cast<int32_t>(s)});
+                    covered.insert({blocks[n].x + (bit & 7), blocks[n].y + (bit >> 3), static_cast<int32_t>(s)});
     for (int32_t y = 0; y < kTileSize; ++y) {
         for (int32_t x = 0; x < kTileSize; ++x) {
             for (uint32_t s = 0; s < samples; ++s) {
@@ -72,8 +70,8 @@ void expectExact(Isa isa, Point a, Point b, Point c, int32_t tileX, int32_t tile
                 const Point p{(int64_t{tileX + x} << bits) + (int64_t{position.x16} << (bits - 4)),
                               (int64_t{tileY + y} << bits) + (int64_t{position.y16} << (bits - 4))};
                 ASSERT_EQ(covered.count({x, y, static_cast<int32_t>(s)}) == 1, covers(a, b, c, p))
-                    << isaName(isa) << " bits " << bits << " samples " << samples << " pixel " << tileX + x
-                    << "," << tileY + y << " sample " << s;
+                    << isaName(isa) << " bits " << bits << " samples " << samples << " pixel " << tileX + x << ","
+                    << tileY + y << " sample " << s;
             }
         }
     }
@@ -115,8 +113,7 @@ TEST_P(CoverageTest, EdgesThroughCentresAndTileCorners) {
     for (int n = 0; n < 400; ++n) {
         Point v[3];
         for (Point& p : v)
-            p = {static_cast<int64_t>(random() % 129) * 128 + 64 * 256,
-                 static_cast<int64_t>(random() % 129) * 128};
+            p = {static_cast<int64_t>(random() % 129) * 128 + 64 * 256, static_cast<int64_t>(random() % 129) * 128};
         if (edge(v[0], v[1], v[2]) == 0) continue;
         expectExact(GetParam(), v[0], v[1], v[2], 64, 0, 8, 1);
         if (HasFatalFailure()) return;
@@ -125,14 +122,12 @@ TEST_P(CoverageTest, EdgesThroughCentresAndTileCorners) {
 
 TEST_P(CoverageTest, SliverWhoseFloatAreaIsZero) {
     // True area 0.777 square pixels, 24 centres inside; a float evaluation of the area gives 0.
-    const Point v[3] = {
-        {965334 + 128, 9134 + 128}, {1857265 + 128, 1515506 + 128}, {1515249 + 128, 937879 + 128}};
+    const Point v[3] = {{965334 + 128, 9134 + 128}, {1857265 + 128, 1515506 + 128}, {1515249 + 128, 937879 + 128}};
     uint32_t total = 0;
     for (int32_t tileY = 0; tileY < 6000; tileY += kTileSize) {
         for (int32_t tileX = 3712; tileX < 7296; tileX += kTileSize) {
             BlockCoverage blocks[kBlocksPerTile];
-            const TileEdges edges =
-                tileEdges(primitiveOf(v[0], v[1], v[2], tileX, tileY), tileX, tileY, 8, 1);
+            const TileEdges edges = tileEdges(primitiveOf(v[0], v[1], v[2], tileX, tileY), tileX, tileY, 8, 1);
             const uint32_t count = coverTileFunction(GetParam())(edges, blocks);
             for (uint32_t n = 0; n < count; ++n)
                 total += static_cast<uint32_t>(__builtin_popcountll(blocks[n].masks[0]));

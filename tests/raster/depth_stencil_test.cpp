@@ -70,9 +70,8 @@ bool isFloat(VkFormat format) {
 TEST_P(Depth, ConstantDepthIsRoundedToNearest) {
     for (const float z : {0.0f, 1.0f, 0.25f, 0.1f, 0.7f}) {
         run({{triangle(z, z, z), {}, {}}}, GetParam());
-        const double expected = isFloat(GetParam())
-                                    ? double{z}
-                                    : std::nearbyint(double{z} * maxCode(GetParam())) / maxCode(GetParam());
+        const double expected =
+            isFloat(GetParam()) ? double{z} : std::nearbyint(double{z} * maxCode(GetParam())) / maxCode(GetParam());
         for (uint32_t y = 0; y < kSize; ++y)
             for (uint32_t x = 0; x < kSize; ++x) ASSERT_EQ(depth_->depth(x, y), static_cast<float>(expected));
     }
@@ -83,9 +82,7 @@ TEST_P(Depth, AllCompareOperations) {
         for (const auto& [z, relation] : {std::pair{0.25f, 1u}, {0.5f, 2u}, {0.75f, 4u}}) {
             for (const Isa isa : {Isa::sse4, bestIsa()}) {
                 run({{triangle(0.5f, 0.5f, 0.5f), {}, {}},
-                     {triangle(z, z, z),
-                      [&](GraphicsState& s) { s.depthCompare = static_cast<VkCompareOp>(op); },
-                      {}}},
+                     {triangle(z, z, z), [&](GraphicsState& s) { s.depthCompare = static_cast<VkCompareOp>(op); }, {}}},
                     GetParam(), 1, 0, isa);
                 const bool passes = (op & relation) != 0;
                 expectColor(passes ? 2 : 1);
@@ -108,8 +105,7 @@ TEST_P(Depth, DrawnTwiceIsEqualEverywhere) {
             s.depthWrite = false;
         };
         // Early, late through gl_FragDepth, late through a discard, and the other way round the triangle.
-        run({{v, {}, {}}, {v, equal, {}}, {v, equal, {}, "fragdepth_frag"}, {reversed(v), equal, {}}},
-            GetParam());
+        run({{v, {}, {}}, {v, equal, {}}, {v, equal, {}, "fragdepth_frag"}, {reversed(v), equal, {}}}, GetParam());
         for (uint32_t y = 0; y < kSize; ++y)
             for (uint32_t x = 0; x < kSize; ++x)
                 ASSERT_TRUE(color_->red(x, y) == 0 || color_->red(x, y) == 4)
@@ -125,10 +121,9 @@ TEST_P(Depth, EarlyAndLateTestsAgree) {
         for (int n = 0; n < 12; ++n) {
             std::vector<Vertex> v;
             for (int k = 0; k < 9; ++k)
-                v.push_back(at(same() % 40, same() % 40, kSize, kSize, {1, 1, 1, 1},
-                               static_cast<float>(same() % 100) / 100));
-            draws.push_back(
-                {v, [](GraphicsState& s) { s.depthCompare = VK_COMPARE_OP_LESS_OR_EQUAL; }, {}, fragment});
+                v.push_back(
+                    at(same() % 40, same() % 40, kSize, kSize, {1, 1, 1, 1}, static_cast<float>(same() % 100) / 100));
+            draws.push_back({v, [](GraphicsState& s) { s.depthCompare = VK_COMPARE_OP_LESS_OR_EQUAL; }, {}, fragment});
         }
         return draws;
     };
@@ -139,6 +134,49 @@ TEST_P(Depth, EarlyAndLateTestsAgree) {
     EXPECT_EQ(depth_->hash(), depth);
     run(scene("discard_frag"), GetParam());
     EXPECT_EQ(depth_->hash(), depth);
+}
+
+TEST_P(Depth, OverlapInsideOneBatchWithoutBlending) {
+    // Small opaque triangles over each other: one batch holds a pixel several times, and the late test decides in
+    // order.
+    const auto scene = [](const std::string& fragment) {
+        std::mt19937 random(18);
+        std::vector<Vertex> v;
+        for (int n = 0; n < 400; ++n) {
+            const auto x = static_cast<double>(random() % 28), y = static_cast<double>(random() % 28);
+            const float value = 0.5f + static_cast<float>(n) / 1024;  // discard_frag keeps it
+            const float z = static_cast<float>(random() % 1000) / 1000;
+            for (const auto& [dx, dy] : {std::pair{0.0, 0.0}, {3.0, 0.5}, {0.5, 3.0}})
+                v.push_back(at(x + dx, y + dy, kSize, kSize, {value, 0, 0, 1}, z));
+        }
+        const auto state = [](GraphicsState& s) {
+            s.blend[0].blendEnable = VK_FALSE;
+            s.depthCompare = VK_COMPARE_OP_LESS;
+        };
+        return std::vector<Draw>{{v, state, {}, fragment}};
+    };
+    run(scene("color_frag"), GetParam());
+    const uint64_t color = color_->hash(), depth = depth_->hash();
+    run(scene("discard_frag"), GetParam());
+    EXPECT_EQ(color_->hash(), color);
+    EXPECT_EQ(depth_->hash(), depth);
+}
+
+TEST_P(Depth, HiddenBlocksAreDroppedUnread) {
+    const auto with = [](VkCompareOp compare) { return [=](GraphicsState& s) { s.depthCompare = compare; }; };
+    for (const bool greater : {false, true}) {
+        const float nearer = greater ? 0.8f : 0.2f, farther = greater ? 0.3f : 0.7f;
+        const auto test = with(greater ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_LESS);
+        run({{triangle(nearer, nearer, nearer), test, {}}, {triangle(farther, farther, farther), test, {}}}, GetParam(),
+            greater ? 0.0f : 1.0f);
+        EXPECT_EQ(statistics_.coarseDepthRejects, kSize / 8 * kSize / 8);
+        EXPECT_EQ(statistics_.depthReads, kSize * kSize);
+        expectColor(1);
+    }
+    // Equal depths pass "less or equal": one must not be taken for hidden by the other.
+    const auto equal = with(VK_COMPARE_OP_LESS_OR_EQUAL);
+    run({{triangle(0.2f, 0.7f, 0.4f), equal, {}}, {triangle(0.2f, 0.7f, 0.4f), equal, {}}}, GetParam());
+    expectColor(2);
 }
 
 TEST_P(Depth, DiscardedFragmentsLeaveNoDepth) {
@@ -187,8 +225,7 @@ TEST_P(Depth, BiasSlopeAndClamp) {
     EXPECT_NEAR(shifted(-10, -0.02f), -0.02, 3e-5);
     EXPECT_NEAR(shifted(10, -0.02f), slope * 10, 3e-5);
     // An edge-on triangle: no NaN, clamped.
-    run({{{at(0, 0, kSize, kSize, {}, 0), at(kSize, 0.02, kSize, kSize, {}, 1),
-           at(kSize, 0.6, kSize, kSize, {}, 0.5f)},
+    run({{{at(0, 0, kSize, kSize, {}, 0), at(kSize, 0.02, kSize, kSize, {}, 1), at(kSize, 0.6, kSize, kSize, {}, 0.5f)},
           [](GraphicsState& s) { s.depthBiasEnable = true; },
           [](DynamicState& d) { d.depthBiasSlope = 1e30f; }}},
         GetParam());
@@ -217,8 +254,7 @@ TEST_P(Depth, ViewportRangeAndClamp) {
 }
 
 TEST_P(Depth, Bounds) {
-    for (const auto& [low, high, passes] :
-         {std::tuple{0.4f, 0.6f, true}, {0.6f, 0.8f, false}, {0.0f, 0.4f, false}}) {
+    for (const auto& [low, high, passes] : {std::tuple{0.4f, 0.6f, true}, {0.6f, 0.8f, false}, {0.0f, 0.4f, false}}) {
         run({{triangle(0.5f, 0.5f, 0.5f), {}, {}},
              {triangle(0.9f, 0.9f, 0.9f),
               [](GraphicsState& s) {
@@ -282,19 +318,15 @@ TEST_P(Stencil, AllOperationsOnAllValues) {
             options.state = plainState(VK_FORMAT_UNDEFINED, GetParam());
             options.state.stencilTest = true;
             options.state.stencilFront.compareOp = options.state.stencilBack.compareOp = VK_COMPARE_OP_ALWAYS;
-            options.state.stencilFront.passOp = options.state.stencilBack.passOp =
-                static_cast<VkStencilOp>(op);
+            options.state.stencilFront.passOp = options.state.stencilBack.passOp = static_cast<VkStencilOp>(op);
             DynamicState dynamic = dynamicFor(16, 16);
             dynamic.stencilFront = dynamic.stencilBack = {0xFF, writeMask, 0xA7};
-            pass.draw(makePipeline(options), dynamic,
-                      {at(0, 0, 16, 16), at(40, 0, 16, 16), at(0, 40, 16, 16)});
+            pass.draw(makePipeline(options), dynamic, {at(0, 0, 16, 16), at(40, 0, 16, 16), at(0, 40, 16, 16)});
             pass.end();
             for (uint32_t value = 0; value < 256; ++value) {
                 const uint32_t expected =
-                    (value & ~writeMask) |
-                    (stencilModel(static_cast<VkStencilOp>(op), value, 0xA7) & writeMask);
-                ASSERT_EQ(surface.stencil(value % 16, value / 16), expected)
-                    << "op " << op << " value " << value;
+                    (value & ~writeMask) | (stencilModel(static_cast<VkStencilOp>(op), value, 0xA7) & writeMask);
+                ASSERT_EQ(surface.stencil(value % 16, value / 16), expected) << "op " << op << " value " << value;
             }
         }
     }
@@ -314,15 +346,9 @@ TEST_P(Stencil, FailDepthFailPass) {
                           s.depthCompare = depthPasses ? VK_COMPARE_OP_LESS : VK_COMPARE_OP_GREATER;
                           s.stencilTest = true;
                           // reference & mask = 4, stored & mask = 4.
-                          const VkCompareOp compare =
-                              stencilPasses ? VK_COMPARE_OP_EQUAL : VK_COMPARE_OP_NOT_EQUAL;
-                          s.stencilFront = {VK_STENCIL_OP_ZERO,
-                                            VK_STENCIL_OP_REPLACE,
-                                            VK_STENCIL_OP_INVERT,
-                                            compare,
-                                            0,
-                                            0,
-                                            0};
+                          const VkCompareOp compare = stencilPasses ? VK_COMPARE_OP_EQUAL : VK_COMPARE_OP_NOT_EQUAL;
+                          s.stencilFront = {
+                              VK_STENCIL_OP_ZERO, VK_STENCIL_OP_REPLACE, VK_STENCIL_OP_INVERT, compare, 0, 0, 0};
                           s.stencilBack = {VK_STENCIL_OP_INCREMENT_AND_WRAP,
                                            VK_STENCIL_OP_DECREMENT_AND_WRAP,
                                            VK_STENCIL_OP_INVERT,
@@ -355,10 +381,10 @@ TEST_P(Stencil, ParityOfAWatertightMesh) {
     for (int fan = 0; fan < 2; ++fan) {
         const double cx = fan == 0 ? 15.37 : 11.2, cy = fan == 0 ? 14.81 : 17.9;
         for (int k = 0; k < 23; ++k) {
-            for (const auto& p : {std::pair{cx, cy},
-                                  {16 + 14 * std::cos(k * 0.2731821), 16 + 14 * std::sin(k * 0.2731821)},
-                                  {16 + 14 * std::cos((k + 1) % 23 * 0.2731821),
-                                   16 + 14 * std::sin((k + 1) % 23 * 0.2731821)}})
+            for (const auto& p :
+                 {std::pair{cx, cy},
+                  {16 + 14 * std::cos(k * 0.2731821), 16 + 14 * std::sin(k * 0.2731821)},
+                  {16 + 14 * std::cos((k + 1) % 23 * 0.2731821), 16 + 14 * std::sin((k + 1) % 23 * 0.2731821)}})
                 v.push_back(at(p.first, p.second, kSize, kSize));
         }
     }
@@ -377,8 +403,7 @@ TEST_P(Stencil, ParityOfAWatertightMesh) {
 }
 
 INSTANTIATE_TEST_SUITE_P(StencilFormats, Stencil,
-                         testing::Values(VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT_S8_UINT,
-                                         VK_FORMAT_S8_UINT),
+                         testing::Values(VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT_S8_UINT, VK_FORMAT_S8_UINT),
                          [](const auto& format) { return std::string(findFormat(format.param)->name); });
 
 }  // namespace

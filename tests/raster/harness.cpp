@@ -108,8 +108,8 @@ std::shared_ptr<const GraphicsPipeline> makePipeline(const PipelineOptions& opti
     const ir::Program vertex = load(options.vertex, ir::Stage::vertex);
     ir::Program fragment;
     if (!options.fragment.empty()) fragment = load(options.fragment, ir::Stage::fragment);
-    auto program = ShaderProgram::create(
-        {&vertex, options.fragment.empty() ? nullptr : &fragment, options.accuracy, options.isa});
+    auto program =
+        ShaderProgram::create({&vertex, options.fragment.empty() ? nullptr : &fragment, options.accuracy, options.isa});
     if (!program) {
         ADD_FAILURE() << program.error().message;
         std::abort();
@@ -129,8 +129,8 @@ DynamicState dynamicFor(uint32_t width, uint32_t height) {
     return dynamic;
 }
 
-Pass::Pass(ThreadPool& pool, std::vector<RenderTarget> colors, RenderTarget depth, uint32_t width,
-           uint32_t height, uint32_t samples)
+Pass::Pass(ThreadPool& pool, std::vector<RenderTarget> colors, RenderTarget depth, uint32_t width, uint32_t height,
+           uint32_t samples)
     : pass_(pool) {
     targets_.colorCount = static_cast<uint32_t>(colors.size());
     for (size_t n = 0; n < colors.size(); ++n) targets_.colors[n] = colors[n];
@@ -140,8 +140,7 @@ Pass::Pass(ThreadPool& pool, std::vector<RenderTarget> colors, RenderTarget dept
 }
 
 void Pass::draw(std::shared_ptr<const GraphicsPipeline> pipeline, const DynamicState& dynamic,
-                const std::vector<Vertex>& vertices, const std::vector<uint32_t>& indices,
-                uint32_t instances) {
+                const std::vector<Vertex>& vertices, const std::vector<uint32_t>& indices, uint32_t instances) {
     Kept& kept = *kept_.emplace_back(new Kept{std::move(pipeline), dynamic, vertices, indices});
     DrawCall call;
     call.pipeline = kept.pipeline.get();

@@ -52,10 +52,9 @@ TEST_F(Interpolate, ConstantsStayConstant) {
         std::vector<Vertex> vertices;
         for (int k = 0; k < 3; ++k)
             vertices.push_back(perspective(
-                static_cast<double>(random() % 6400) / 50 - 30,
-                static_cast<double>(random() % 6400) / 50 - 30,
-                std::ldexp(1.0f + static_cast<float>(random() % 100) / 100, static_cast<int>(random() % 12)),
-                64, {value, value, value, value}));
+                static_cast<double>(random() % 6400) / 50 - 30, static_cast<double>(random() % 6400) / 50 - 30,
+                std::ldexp(1.0f + static_cast<float>(random() % 100) / 100, static_cast<int>(random() % 12)), 64,
+                {value, value, value, value}));
         const auto surface = draw(64, 64, vertices);
         for (uint32_t y = 0; y < 64; ++y) {
             for (uint32_t x = 0; x < 64; ++x) {
@@ -69,9 +68,7 @@ TEST_F(Interpolate, ConstantsStayConstant) {
 
 TEST_F(Interpolate, ClippedConstantsStayConstant) {
     const float value = 0.7f;
-    const auto v = [&](float x, float y, float w) {
-        return Vertex{{x, y, 0.5f * w, w}, {value, value, value, value}};
-    };
+    const auto v = [&](float x, float y, float w) { return Vertex{{x, y, 0.5f * w, w}, {value, value, value, value}}; };
     const auto surface = draw(64, 64, {v(-3, -1, -0.5f), v(9, -2, 3), v(-2, 8, 2)});
     EXPECT_GT(statistics_.clippedPrimitives, 0u);
     int seen = 0;
@@ -104,8 +101,8 @@ TEST_F(Interpolate, ErrorDoesNotGrowWithTheDistanceFromTheOrigin) {
                 x[k] = origin + static_cast<double>(random() % 512) / 256;
                 y[k] = static_cast<double>(random() % 512) / 256;
                 value[k] = static_cast<double>(random() % 1025) / 1024;
-                vertices.push_back(at(x[k], y[k], 16384, 8,
-                                      {static_cast<float>(value[k]), static_cast<float>(value[k]), 0, 0}));
+                vertices.push_back(
+                    at(x[k], y[k], 16384, 8, {static_cast<float>(value[k]), static_cast<float>(value[k]), 0, 0}));
             }
             const double area = (x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]);
             if (std::fabs(area) < 0.05) continue;
@@ -123,8 +120,8 @@ TEST_F(Interpolate, ErrorDoesNotGrowWithTheDistanceFromTheOrigin) {
                     const double cx = px + 0.5, cy = py + 0.5;
                     const double l1 = ((cx - x[0]) * (y[2] - y[0]) - (cy - y[0]) * (x[2] - x[0])) / area;
                     const double l2 = ((x[1] - x[0]) * (cy - y[0]) - (y[1] - y[0]) * (cx - x[0])) / area;
-                    worst = std::max(worst, std::fabs(got - (value[0] + l1 * (value[1] - value[0]) +
-                                                             l2 * (value[2] - value[0]))));
+                    worst = std::max(
+                        worst, std::fabs(got - (value[0] + l1 * (value[1] - value[0]) + l2 * (value[2] - value[0]))));
                 }
             }
         }
@@ -138,10 +135,10 @@ TEST_F(Interpolate, RotationAndWindingChangeNothing) {
     for (int n = 0; n < 20; ++n) {
         std::vector<Vertex> v;
         for (int k = 0; k < 3; ++k)
-            v.push_back(perspective(
-                static_cast<double>(random() % 6400) / 100, static_cast<double>(random() % 6400) / 100,
-                1 + static_cast<float>(random() % 1000) / 50, 64,
-                {static_cast<float>(random() % 1000) / 7, static_cast<float>(random() % 1000) / 7, 0, 0}));
+            v.push_back(
+                perspective(static_cast<double>(random() % 6400) / 100, static_cast<double>(random() % 6400) / 100,
+                            1 + static_cast<float>(random() % 1000) / 50, 64,
+                            {static_cast<float>(random() % 1000) / 7, static_cast<float>(random() % 1000) / 7, 0, 0}));
         const uint64_t expected = draw(64, 64, v)->hash();
         for (const auto& order : {std::array{1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}) {
             std::vector<Vertex> turned;
@@ -187,14 +184,12 @@ TEST_F(Interpolate, PerspectiveAndLinearFollowTheFormulas) {
                                 perspective(60, 9, 8, 64, {0.7f, 0.2f, 7, 8}),
                                 perspective(20, 62, 3, 64, {0.4f, 0.3f, 9, 1})};
     expectAccuracy(*draw(64, 64, v), v, 4e-7);
-    expectAccuracy(*draw(64, 64, v, "varyings_vert", "varyings_frag", InterpolationArithmetic::doubleFloat),
-                   v, 4e-8);
+    expectAccuracy(*draw(64, 64, v, "varyings_vert", "varyings_frag", InterpolationArithmetic::doubleFloat), v, 4e-8);
     EXPECT_GT(statistics_.perspectiveDivides, 0u);
 }
 
 TEST_F(Interpolate, PerspectiveRatioOfAMillion) {
-    const std::vector<Vertex> v{perspective(2, 3, 1, 64, {0, 0, 0, 0}),
-                                perspective(60, 9, 1e6f, 64, {1, 1, 0, 0}),
+    const std::vector<Vertex> v{perspective(2, 3, 1, 64, {0, 0, 0, 0}), perspective(60, 9, 1e6f, 64, {1, 1, 0, 0}),
                                 perspective(20, 62, 3e5f, 64, {0.5f, 0.5f, 0, 0})};
     expectAccuracy(*draw(64, 64, v), v, 4e-6);
 }
@@ -207,10 +202,9 @@ TEST_F(Interpolate, EqualWNeedsNoDivision) {
 }
 
 TEST_F(Interpolate, LargeOffsetSmallRange) {
-    const auto surface =
-        draw(64, 64,
-             {at(0, 0, 64, 64, {1e6f, 1e6f, 0, 0}), at(128, 0, 64, 64, {1e6f + 1, 1e6f + 1, 0, 0}),
-              at(0, 128, 64, 64, {1e6f, 1e6f, 0, 0})});
+    const auto surface = draw(64, 64,
+                              {at(0, 0, 64, 64, {1e6f, 1e6f, 0, 0}), at(128, 0, 64, 64, {1e6f + 1, 1e6f + 1, 0, 0}),
+                               at(0, 128, 64, 64, {1e6f, 1e6f, 0, 0})});
     for (uint32_t x = 0; x < 64; ++x) EXPECT_NEAR(surface->red(x, 5), 1e6 + (x + 0.5) / 128, 0.0626);
 }
 
@@ -222,8 +216,8 @@ TEST_F(Interpolate, FlatBitsOfTheProvokingVertex) {
                                   at(0, 20, 8, 8, {0, 0, 0, 3})};
             std::memcpy(&v[last ? 2 : 0].color[3], &bits, 4);
             (void)value;
-            const auto surface = draw(8, 8, v, "varyings_vert", "flatbits_frag",
-                                      InterpolationArithmetic::singleFloat, [&](GraphicsState& s) {
+            const auto surface = draw(8, 8, v, "varyings_vert", "flatbits_frag", InterpolationArithmetic::singleFloat,
+                                      [&](GraphicsState& s) {
                                           s.colorFormats[0] = VK_FORMAT_R32G32B32A32_SINT;
                                           s.provokingVertexLast = last;
                                       });

@@ -18,8 +18,8 @@ class Multisample : public testing::Test {
         PassStatistics statistics;
     };
     Result draw(VkFormat format, uint32_t samples, const std::vector<Vertex>& vertices,
-                const std::function<void(GraphicsState&)>& change = {},
-                const std::string& fragment = "one_frag", const std::string& vertex = "color_vert") {
+                const std::function<void(GraphicsState&)>& change = {}, const std::string& fragment = "one_frag",
+                const std::string& vertex = "color_vert") {
         PipelineOptions options;
         options.vertex = vertex;
         options.fragment = fragment;
@@ -40,8 +40,7 @@ class Multisample : public testing::Test {
     ThreadPool pool_{2};
 };
 
-const std::vector<Vertex> kWhole{at(-5, -5, kSize, kSize), at(200, -5, kSize, kSize),
-                                 at(-5, 200, kSize, kSize)};
+const std::vector<Vertex> kWhole{at(-5, -5, kSize, kSize), at(200, -5, kSize, kSize), at(-5, 200, kSize, kSize)};
 
 TEST_F(Multisample, PartitionPerSample) {
     for (const uint32_t samples : {2u, 4u}) {
@@ -87,8 +86,7 @@ TEST_F(Multisample, SamplesEqualSupersampling) {
                          y = static_cast<double>(random() % (kSize * 16)) / 16;
             v.push_back(at(x, y, kSize, kSize));
             // Moved so that sample positions in sixteenths fall on centres: by 1/16 of a pixel.
-            big.push_back(
-                at((x + 1.0 / 16) * kScale, (y + 1.0 / 16) * kScale, kSize * kScale, kSize * kScale));
+            big.push_back(at((x + 1.0 / 16) * kScale, (y + 1.0 / 16) * kScale, kSize * kScale, kSize * kScale));
         }
         const Result result = draw(VK_FORMAT_R32_SFLOAT, 4, v);
         PipelineOptions options;
@@ -103,8 +101,7 @@ TEST_F(Multisample, SamplesEqualSupersampling) {
             const SamplePosition p = kSamplePositions4[s];
             for (uint32_t y = 0; y < kSize; ++y)
                 for (uint32_t x = 0; x < kSize; ++x)
-                    ASSERT_EQ(result.color->red(x, y, s),
-                              surface.red(x * kScale + p.x16 / 2u, y * kScale + p.y16 / 2u))
+                    ASSERT_EQ(result.color->red(x, y, s), surface.red(x * kScale + p.x16 / 2u, y * kScale + p.y16 / 2u))
                         << x << "," << y << " sample " << s;
         }
     }
@@ -128,9 +125,8 @@ TEST_F(Multisample, PerSampleRuns) {
 }
 
 TEST_F(Multisample, ResolveAverages) {
-    std::vector<Vertex> half{at(0, 0, kSize, kSize),        at(20.5, 0, kSize, kSize),
-                             at(0, kSize, kSize, kSize),    at(20.5, 0, kSize, kSize),
-                             at(20.5, kSize, kSize, kSize), at(0, kSize, kSize, kSize)};
+    std::vector<Vertex> half{at(0, 0, kSize, kSize),    at(20.5, 0, kSize, kSize),     at(0, kSize, kSize, kSize),
+                             at(20.5, 0, kSize, kSize), at(20.5, kSize, kSize, kSize), at(0, kSize, kSize, kSize)};
     const Result result = draw(VK_FORMAT_R8G8B8A8_UNORM, 4, half);
     // Samples at x = 2/16 and 6/16 are left of the edge.
     EXPECT_EQ(result.resolved->red(20, 5), 128.0f / 255);
@@ -140,8 +136,7 @@ TEST_F(Multisample, ResolveAverages) {
 
 TEST_F(Multisample, ResolveOfTheLargestFloatIsFinite) {
     const float big = 3.4e38f;
-    const std::vector<Vertex> v{at(-5, -5, kSize, kSize, {big, 0, 0, 0}),
-                                at(200, -5, kSize, kSize, {big, 0, 0, 0}),
+    const std::vector<Vertex> v{at(-5, -5, kSize, kSize, {big, 0, 0, 0}), at(200, -5, kSize, kSize, {big, 0, 0, 0}),
                                 at(-5, 200, kSize, kSize, {big, 0, 0, 0})};
     EXPECT_EQ(draw(VK_FORMAT_R32G32B32A32_SFLOAT, 4, v, {}, "color_frag").resolved->red(3, 3), big);
 }

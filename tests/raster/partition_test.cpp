@@ -65,9 +65,8 @@ TEST(Partition, AllRotationsAndWindings) {
     int variants = 0;
     do {
         for (int rotation = 0; rotation < 3; ++rotation, ++variants) {
-            const auto counts =
-                counter.count({first[order[0]], first[order[1]], first[order[2]], second[rotation],
-                               second[(rotation + 1) % 3], second[(rotation + 2) % 3]});
+            const auto counts = counter.count({first[order[0]], first[order[1]], first[order[2]], second[rotation],
+                                               second[(rotation + 1) % 3], second[(rotation + 2) % 3]});
             EXPECT_EQ(counts, expected);
         }
     } while (std::next_permutation(order.begin(), order.end()));
@@ -76,8 +75,7 @@ TEST(Partition, AllRotationsAndWindings) {
 
 TEST(Partition, TopAndLeftEdgesOwnTheirCentres) {
     Counter counter(8, 8);
-    const auto counts =
-        counter.count({{1.5, 1.5}, {5.5, 1.5}, {1.5, 5.5}, {5.5, 1.5}, {5.5, 5.5}, {1.5, 5.5}});
+    const auto counts = counter.count({{1.5, 1.5}, {5.5, 1.5}, {1.5, 5.5}, {5.5, 1.5}, {5.5, 5.5}, {1.5, 5.5}});
     for (uint32_t y = 0; y < 8; ++y)
         for (uint32_t x = 0; x < 8; ++x)
             EXPECT_EQ(counts[y * 8 + x], x >= 1 && x < 5 && y >= 1 && y < 5 ? 1.0f : 0.0f) << x << "," << y;
@@ -102,8 +100,8 @@ TEST(Partition, FanAroundACentre) {
 
 /// A triangulation of a rectangle: a jittered grid with diagonals either way. `grid`: vertices on the
 /// sub-pixel grid.
-std::vector<std::array<double, 2>> triangulation(std::mt19937& random, double x0, double y0, double x1,
-                                                 double y1, int cells, double jitter, bool grid) {
+std::vector<std::array<double, 2>> triangulation(std::mt19937& random, double x0, double y0, double x1, double y1,
+                                                 int cells, double jitter, bool grid) {
     std::vector<std::array<double, 2>> nodes;
     for (int j = 0; j <= cells; ++j) {
         for (int i = 0; i <= cells; ++i) {
@@ -150,8 +148,7 @@ TEST(Partition, RandomTriangulations) {
         Counter counter(100, 75, bits);
         for (const bool grid : {true, false}) {
             for (const int cells : {2, 7, 40, 150}) {
-                const auto counts =
-                    counter.count(triangulation(random, 4, 4, 96, 71, cells, 10.0 / cells, grid));
+                const auto counts = counter.count(triangulation(random, 4, 4, 96, 71, cells, 10.0 / cells, grid));
                 for (uint32_t y = 0; y < 75; ++y)
                     for (uint32_t x = 0; x < 100; ++x)
                         ASSERT_EQ(counts[y * 100 + x], x >= 4 && x < 96 && y >= 4 && y < 71 ? 1.0f : 0.0f)
@@ -188,8 +185,7 @@ TEST(Partition, SliversAndTheirNeighbours) {
                                            {2, 63}});
         for (uint32_t y = 0; y < 64; ++y)
             for (uint32_t x = 0; x < 600; ++x)
-                ASSERT_EQ(counts[y * 600 + x], x >= 2 && x < 598 && y >= 1 && y < 63 ? 1.0f : 0.0f)
-                    << x << "," << y;
+                ASSERT_EQ(counts[y * 600 + x], x >= 2 && x < 598 && y >= 1 && y < 63 ? 1.0f : 0.0f) << x << "," << y;
     }
 }
 
@@ -218,8 +214,7 @@ TEST(Partition, ScissorOnlyCutsAway) {
     std::mt19937 random(5);
     Counter counter(80, 72);
     std::vector<Vertex> vertices;
-    for (const auto& p : triangulation(random, 1, 1, 79, 71, 9, 2.5, false))
-        vertices.push_back(at(p[0], p[1], 80, 72));
+    for (const auto& p : triangulation(random, 1, 1, 79, 71, 9, 2.5, false)) vertices.push_back(at(p[0], p[1], 80, 72));
     vertices.resize(vertices.size() - 60);  // with some holes
     const auto full = counter.draw(vertices, dynamicFor(80, 72));
     for (int step = 0; step < 70; ++step) {

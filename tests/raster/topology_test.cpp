@@ -79,8 +79,8 @@ TEST_F(Topology, ProvokingVertices) {
     const auto flat = [&](VkPrimitiveTopology topology, bool last, double x, double y) {
         std::vector<Vertex> v = ribbon();
         if (topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN) {
-            v = {at(16, 16, kSize, kSize), at(30, 16, kSize, kSize), at(16, 30, kSize, kSize),
-                 at(2, 16, kSize, kSize), at(16, 2, kSize, kSize)};
+            v = {at(16, 16, kSize, kSize), at(30, 16, kSize, kSize), at(16, 30, kSize, kSize), at(2, 16, kSize, kSize),
+                 at(16, 2, kSize, kSize)};
         }
         for (size_t n = 0; n < v.size(); ++n) v[n].color[2] = static_cast<float>(n);
         const auto surface = draw(
@@ -117,14 +117,12 @@ TEST_F(Topology, VerticesAreSharedInsideAChunk) {
 }
 
 TEST_F(Topology, IndicesOutsideTheirBuffersAreHarmless) {
-    const auto surface =
-        draw(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST, ribbon(), {0, 1, 0x7FFFFFFF, 0xFFFFFFFE, 2, 3});
+    const auto surface = draw(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST, ribbon(), {0, 1, 0x7FFFFFFF, 0xFFFFFFFE, 2, 3});
     EXPECT_LE(covered(*surface), 1024);
 }
 
 TEST_F(Topology, FacingAndCulling) {
-    const std::vector<Vertex> clockwise{at(2, 2, kSize, kSize), at(30, 2, kSize, kSize),
-                                        at(2, 30, kSize, kSize)};
+    const std::vector<Vertex> clockwise{at(2, 2, kSize, kSize), at(30, 2, kSize, kSize), at(2, 30, kSize, kSize)};
     for (const VkFrontFace face : {VK_FRONT_FACE_CLOCKWISE, VK_FRONT_FACE_COUNTER_CLOCKWISE}) {
         const bool front = face == VK_FRONT_FACE_CLOCKWISE;
         for (uint32_t mode = 0; mode < 4; ++mode) {
@@ -148,8 +146,7 @@ TEST_F(Topology, PrimitiveIdsCountPerInstance) {
     std::vector<Vertex> v;
     for (int n = 0; n < 3000; ++n) {
         const double x = n % 30, y = n / 30 % 30;
-        v.insert(v.end(),
-                 {at(x, y, kSize, kSize), at(x + 1, y, kSize, kSize), at(x + 0.5, y + 2, kSize, kSize)});
+        v.insert(v.end(), {at(x, y, kSize, kSize), at(x + 1, y, kSize, kSize), at(x + 0.5, y + 2, kSize, kSize)});
     }
     const auto surface = draw(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST, v, {}, {}, "ids_frag");
     EXPECT_EQ(surface->red(4, 3),
@@ -157,8 +154,8 @@ TEST_F(Topology, PrimitiveIdsCountPerInstance) {
 }
 
 TEST_F(Topology, Points) {
-    const auto surface = draw(VK_PRIMITIVE_TOPOLOGY_POINT_LIST,
-                              {at(5.5, 7.5, kSize, kSize), at(20, 21, kSize, kSize)}, {}, {}, "ids_frag");
+    const auto surface = draw(VK_PRIMITIVE_TOPOLOGY_POINT_LIST, {at(5.5, 7.5, kSize, kSize), at(20, 21, kSize, kSize)},
+                              {}, {}, "ids_frag");
     EXPECT_EQ(covered(*surface), 2);
     EXPECT_EQ(surface->red(5, 7), 0);
     const VkClearColorValue c = surface->color(5, 7);
@@ -169,28 +166,25 @@ TEST_F(Topology, Points) {
 TEST_F(Topology, LinesAreRectangles) {
     for (const float width : {1.0f, 3.0f}) {
         const auto horizontal =
-            draw(VK_PRIMITIVE_TOPOLOGY_LINE_LIST, {at(4, 10.5, kSize, kSize), at(20, 10.5, kSize, kSize)}, {},
-                 {}, "color_frag", width);
-        EXPECT_EQ(covered(*horizontal), static_cast<int>(16 * width));
-        const auto strip =
-            draw(VK_PRIMITIVE_TOPOLOGY_LINE_STRIP,
-                 {at(4.5, 4, kSize, kSize), at(4.5, 12, kSize, kSize), at(4.5, 20, kSize, kSize)}, {}, {},
+            draw(VK_PRIMITIVE_TOPOLOGY_LINE_LIST, {at(4, 10.5, kSize, kSize), at(20, 10.5, kSize, kSize)}, {}, {},
                  "color_frag", width);
+        EXPECT_EQ(covered(*horizontal), static_cast<int>(16 * width));
+        const auto strip = draw(VK_PRIMITIVE_TOPOLOGY_LINE_STRIP,
+                                {at(4.5, 4, kSize, kSize), at(4.5, 12, kSize, kSize), at(4.5, 20, kSize, kSize)}, {},
+                                {}, "color_frag", width);
         EXPECT_EQ(covered(*strip), static_cast<int>(16 * width));
     }
-    EXPECT_EQ(
-        covered(*draw(VK_PRIMITIVE_TOPOLOGY_LINE_LIST, {at(4, 4, kSize, kSize), at(4, 4, kSize, kSize)})), 0);
+    EXPECT_EQ(covered(*draw(VK_PRIMITIVE_TOPOLOGY_LINE_LIST, {at(4, 4, kSize, kSize), at(4, 4, kSize, kSize)})), 0);
 }
 
 TEST_F(Topology, LineAttributesAlongTheLine) {
-    const auto surface = draw(VK_PRIMITIVE_TOPOLOGY_LINE_LIST, {at(4, 10.5, kSize, kSize, {0, 0, 0, 0}),
-                                                                at(20, 10.5, kSize, kSize, {1, 1, 1, 1})});
+    const auto surface = draw(VK_PRIMITIVE_TOPOLOGY_LINE_LIST,
+                              {at(4, 10.5, kSize, kSize, {0, 0, 0, 0}), at(20, 10.5, kSize, kSize, {1, 1, 1, 1})});
     for (uint32_t x = 4; x < 20; ++x) EXPECT_NEAR(surface->red(x, 10), (x + 0.5 - 4) / 16, 1e-6);
 }
 
 TEST_F(Topology, PolygonModes) {
-    const std::vector<Vertex> v{at(4.5, 4.5, kSize, kSize), at(26.5, 4.5, kSize, kSize),
-                                at(4.5, 26.5, kSize, kSize)};
+    const std::vector<Vertex> v{at(4.5, 4.5, kSize, kSize), at(26.5, 4.5, kSize, kSize), at(4.5, 26.5, kSize, kSize)};
     const auto lines = draw(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST, v, {},
                             [](GraphicsState& s) { s.polygonMode = VK_POLYGON_MODE_LINE; });
     EXPECT_NE(lines->red(15, 4), -1);
@@ -219,12 +213,9 @@ TEST_F(Topology, RefusedStates) {
     refused([](GraphicsState& s) { s.topology = VK_PRIMITIVE_TOPOLOGY_PATCH_LIST; }, ErrorCode::unsupported,
             "topology");
     refused([](GraphicsState& s) { s.samples = 16; }, ErrorCode::unsupported, "16 samples");
-    refused([](GraphicsState& s) { s.colorFormats[0] = VK_FORMAT_D16_UNORM; }, ErrorCode::unsupported,
-            "D16_UNORM");
-    refused([](GraphicsState& s) { s.vertexAttributes[0].binding = 3; }, ErrorCode::invalidArgument,
-            "binding 3");
-    refused([](GraphicsState& s) { s.vertexAttributes.pop_back(); }, ErrorCode::invalidArgument,
-            "location 1");
+    refused([](GraphicsState& s) { s.colorFormats[0] = VK_FORMAT_D16_UNORM; }, ErrorCode::unsupported, "D16_UNORM");
+    refused([](GraphicsState& s) { s.vertexAttributes[0].binding = 3; }, ErrorCode::invalidArgument, "binding 3");
+    refused([](GraphicsState& s) { s.vertexAttributes.pop_back(); }, ErrorCode::invalidArgument, "location 1");
     EXPECT_NE(pipeline->explain(dynamicFor(4, 4)).find("left out"), std::string::npos);
 }
 

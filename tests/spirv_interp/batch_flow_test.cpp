@@ -42,13 +42,11 @@ void checkAgainstEvaluator(const ir::Program& program, const std::vector<std::ve
         for (const auto& words : inputs) own.push_back(words[lane]);
         const test::Evaluation expected = test::evaluateInvocation(program, own, uniform);
         const bool stored = setup.store.empty() || setup.store[lane] != 0;
-        ASSERT_EQ(run.live[lane], stored && !expected.killed && !expected.demoted ? ~0u : 0u)
-            << "lane " << lane;
+        ASSERT_EQ(run.live[lane], stored && !expected.killed && !expected.demoted ? ~0u : 0u) << "lane " << lane;
         if (expected.killed) continue;
         for (uint32_t slot = 0; slot < program.outputs.size(); ++slot) {
             ASSERT_EQ(run.outputs[slot][lane], expected.outputs[slot])
-                << "lane " << lane << " output " << slot << " of " << setup.lanes << " lanes on "
-                << isaName(setup.isa);
+                << "lane " << lane << " output " << slot << " of " << setup.lanes << " lanes on " << isaName(setup.isa);
         }
     }
 }
@@ -86,8 +84,7 @@ TEST(BatchFlow, RandomStructuredPrograms) {
             if (HasFatalFailure()) {
                 FAIL() << "seed " << seed << "\n"
                        << ir::print(program)
-                       << (*BatchProgram::compile(program, {isa, MathTier::standard, setup.capacity}))
-                              ->disassemble();
+                       << (*BatchProgram::compile(program, {isa, MathTier::standard, setup.capacity}))->disassemble();
             }
         }
     }

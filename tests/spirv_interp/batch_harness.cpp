@@ -23,8 +23,7 @@ std::vector<Isa> isas() {
 
 bool sameBits(const std::vector<float>& a, const std::vector<float>& b) {
     return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](float x, float y) {
-               return std::bit_cast<uint32_t>(x) == std::bit_cast<uint32_t>(y) ||
-                      (std::isnan(x) && std::isnan(y));
+               return std::bit_cast<uint32_t>(x) == std::bit_cast<uint32_t>(y) || (std::isnan(x) && std::isnan(y));
            });
 }
 
@@ -50,8 +49,7 @@ std::shared_ptr<const BatchProgram> compileOrDie(const ir::Program& program, con
 
 }  // namespace
 
-std::vector<float> evaluate(ir::Op op, const std::vector<std::vector<float>>& operands, Isa isa,
-                            MathTier tier) {
+std::vector<float> evaluate(ir::Op op, const std::vector<std::vector<float>>& operands, Isa isa, MathTier tier) {
     ir::Program program;
     program.stage = ir::Stage::fragment;
     ir::Builder builder(program);
@@ -94,8 +92,7 @@ RunResult runBatch(const ir::Program& program, const std::vector<std::vector<uin
         if (row != nullptr) std::memcpy(row, inputs[slot].data(), setup.lanes * sizeof(uint32_t));
     }
     const std::vector<uint32_t> all(compiled->lanes(), ~0u);
-    std::vector<uint32_t> exec = setup.exec.empty() ? all : setup.exec,
-                          store = setup.store.empty() ? all : setup.store;
+    std::vector<uint32_t> exec = setup.exec.empty() ? all : setup.exec, store = setup.store.empty() ? all : setup.store;
     exec.resize(compiled->lanes());
     store.resize(compiled->lanes());
     RunResult result;

@@ -20,8 +20,7 @@ bool sameBits(const std::vector<float>& a, const std::vector<float>& b);
 ir::Program parseProgram(const std::string& text);
 
 /// `op` on f32 rows, through a program of its own.
-std::vector<float> evaluate(ir::Op op, const std::vector<std::vector<float>>& operands, Isa isa,
-                            MathTier tier);
+std::vector<float> evaluate(ir::Op op, const std::vector<std::vector<float>>& operands, Isa isa, MathTier tier);
 
 /// What a run gave: words of every output by slot, and the live mask.
 struct RunResult {
@@ -42,7 +41,6 @@ struct RunSetup {
 };
 
 /// Runs once; inputs[slot][lane] are words.
-RunResult runBatch(const ir::Program& program, const std::vector<std::vector<uint32_t>>& inputs,
-                   const RunSetup& setup);
+RunResult runBatch(const ir::Program& program, const std::vector<std::vector<uint32_t>>& inputs, const RunSetup& setup);
 
 }  // namespace vernier::test

@@ -66,8 +66,8 @@ std::vector<float> samples(float low, float high) {
     }
     std::mt19937 random(7);
     for (int k = 0; k < kCount; ++k) {
-        const float tiny = std::ldexp(1.0f + static_cast<float>(random() % 8388608) * 0x1p-23f, -(k % 40)) *
-                           (k & 1 ? 1.0f : -1.0f);
+        const float tiny =
+            std::ldexp(1.0f + static_cast<float>(random() % 8388608) * 0x1p-23f, -(k % 40)) * (k & 1 ? 1.0f : -1.0f);
         if (tiny >= low && tiny <= high) values.push_back(tiny);
         const float near = low + tiny;
         if (near >= low && near <= high) values.push_back(near);
@@ -76,8 +76,7 @@ std::vector<float> samples(float low, float high) {
 }
 
 TEST(BatchMath, AccuracyByTier) {
-    std::printf("%-8s %12s %12s  %-4s %12s %12s %12s\n", "function", "from", "to", "in", "fast", "standard",
-                "fine");
+    std::printf("%-8s %12s %12s  %-4s %12s %12s %12s\n", "function", "from", "to", "in", "fast", "standard", "fine");
     for (const Case& c : kCases) {
         const std::vector<float> xs = samples(c.low, c.high);
         double errors[3];
@@ -87,14 +86,13 @@ TEST(BatchMath, AccuracyByTier) {
             for (size_t k = 0; k < xs.size(); ++k) {
                 const long double exact = c.exact(xs[k]);
                 if (!std::isfinite(exact)) continue;
-                const double error =
-                    std::fabs(static_cast<double>(ys[k] - exact)) / (c.absolute ? 1.0 : ulpOf(exact));
+                const double error = std::fabs(static_cast<double>(ys[k] - exact)) / (c.absolute ? 1.0 : ulpOf(exact));
                 if (!(error <= errors[tier])) errors[tier] = error;
             }
             EXPECT_LE(errors[tier], c.limits[tier]) << ir::opInfo(c.op).name << " tier " << tier;
         }
-        std::printf("%-8s %12g %12g  %-4s %12.4g %12.4g %12.4g\n", std::string(ir::opInfo(c.op).name).c_str(),
-                    c.low, c.high, c.absolute ? "abs" : "ulp", errors[0], errors[1], errors[2]);
+        std::printf("%-8s %12g %12g  %-4s %12.4g %12.4g %12.4g\n", std::string(ir::opInfo(c.op).name).c_str(), c.low,
+                    c.high, c.absolute ? "abs" : "ulp", errors[0], errors[1], errors[2]);
     }
 }
 
@@ -112,18 +110,16 @@ TEST(BatchMath, PowAndAtan2) {
         const std::vector<float> angle = test::evaluate(ir::Op::fatan2, {ys, xs}, bestIsa(), kTiers[tier]);
         double worst = 0, worstAngle = 0;
         for (size_t k = 0; k < xs.size(); ++k) {
-            const long double exact =
-                std::pow(static_cast<long double>(xs[k]), static_cast<long double>(ys[k]));
+            const long double exact = std::pow(static_cast<long double>(xs[k]), static_cast<long double>(ys[k]));
             const double error = std::fabs(static_cast<double>((power[k] - exact) / exact));
             const double product = std::fabs(ys[k] * std::log2(static_cast<double>(xs[k])));
             const double allowed = 0x1p-24 + tierError[tier] * (1 + product + std::fabs(ys[k]) * 0.25);
             EXPECT_LE(error, allowed * 1.01) << xs[k] << " ^ " << ys[k] << " tier " << tier;
             worst = std::max(worst, error * 0x1p24);
-            const long double exactAngle =
-                std::atan2(static_cast<long double>(ys[k]), static_cast<long double>(xs[k]));
+            const long double exactAngle = std::atan2(static_cast<long double>(ys[k]), static_cast<long double>(xs[k]));
             if (exactAngle == 0) continue;
-            worstAngle = std::max(worstAngle,
-                                  std::fabs(static_cast<double>(angle[k] - exactAngle)) / ulpOf(exactAngle));
+            worstAngle =
+                std::max(worstAngle, std::fabs(static_cast<double>(angle[k] - exactAngle)) / ulpOf(exactAngle));
         }
         std::printf("tier %zu: pow %.4g units of 2^-24, atan2 %.4g ulp\n", tier, worst, worstAngle);
         EXPECT_LE(worstAngle, tier == 0 ? 4096 : tier == 1 ? 4 : 0.51);
@@ -217,8 +213,7 @@ TEST(BatchMath, SameBitsOnEveryInstructionSet) {
     for (float& x : xs) x = std::bit_cast<float>(static_cast<uint32_t>(random()));
     for (float& y : ys) y = std::bit_cast<float>(static_cast<uint32_t>(random()));
     for (const MathTier tier : kTiers) {
-        for (uint32_t op = static_cast<uint32_t>(ir::Op::fsin); op <= static_cast<uint32_t>(ir::Op::fpow);
-             ++op) {
+        for (uint32_t op = static_cast<uint32_t>(ir::Op::fsin); op <= static_cast<uint32_t>(ir::Op::fpow); ++op) {
             const auto irOp = static_cast<ir::Op>(op);
             std::vector<std::vector<float>> operands{xs};
             if (ir::opInfo(irOp).operands == 2) operands.push_back(ys);

@@ -123,8 +123,8 @@ TEST_P(BatchMeaning, IsWhatTheIrSays) {
                     ASSERT_EQ(result.live[lane], discarded ? 0u : ~0u);
                     if (discarded) continue;
                     for (size_t slot = 0; slot < program.outputs.size(); ++slot) {
-                        ASSERT_TRUE(close(program.outputs[slot].type, machine.outputs[slot],
-                                          result.outputs[slot][lane], 2e-5))
+                        ASSERT_TRUE(
+                            close(program.outputs[slot].type, machine.outputs[slot], result.outputs[slot][lane], 2e-5))
                             << isaName(isa) << " lane " << lane << " output " << slot << ": "
                             << result.outputs[slot][lane] << " instead of " << machine.outputs[slot] << "\n"
                             << ir::print(program);

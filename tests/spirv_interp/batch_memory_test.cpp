@@ -18,8 +18,7 @@ class Buffers {
     explicit Buffers(const std::vector<uint32_t>& sizes) {
         for (const uint32_t words : sizes) {
             storage_.emplace_back(new uint32_t[words]);
-            for (uint32_t k = 0; k < words; ++k)
-                storage_.back()[k] = 1000 * static_cast<uint32_t>(storage_.size()) + k;
+            for (uint32_t k = 0; k < words; ++k) storage_.back()[k] = 1000 * static_cast<uint32_t>(storage_.size()) + k;
             bindings_.push_back({reinterpret_cast<std::byte*>(storage_.back().get()), words * 4});
         }
         count_ = static_cast<uint32_t>(sizes.size());
@@ -78,8 +77,7 @@ b0:
             if (round % 5 == 2) buffers.setBytes(0, 3);
             if (round % 5 == 3) buffers.setBytes(1, 11);
             std::vector<uint32_t> offsets(kLanes), descriptors(kLanes);
-            for (uint32_t& o : offsets)
-                o = random() % 3 == 0 ? odd[random() % std::size(odd)] : random() % 48;
+            for (uint32_t& o : offsets) o = random() % 3 == 0 ? odd[random() % std::size(odd)] : random() % 48;
             for (uint32_t& d : descriptors) d = random() % 5;
             if (round % 2 == 0) descriptors.assign(kLanes, random() % 4);
             test::RunSetup setup;
@@ -119,8 +117,7 @@ b0:
         for (int round = 0; round < 30; ++round) {
             Buffers buffers({16});
             std::vector<uint32_t> offsets(kLanes), expected(buffers.words(0), buffers.words(0) + 16);
-            for (uint32_t& o : offsets)
-                o = random() % 8 == 0 ? static_cast<uint32_t>(random()) : (random() % 20) * 4;
+            for (uint32_t& o : offsets) o = random() % 8 == 0 ? static_cast<uint32_t>(random()) : (random() % 20) * 4;
             const std::vector<uint32_t> values = ramp(7, 3);
             test::RunSetup setup;
             setup.isa = isa;
@@ -176,8 +173,7 @@ TEST(BatchMemory, AtomicsWorkInLaneOrder) {
     std::mt19937 random(3);
     for (uint32_t op = 0; op <= static_cast<uint32_t>(ir::AtomicOp::store); ++op) {
         const auto atomicOp = static_cast<ir::AtomicOp>(op);
-        const bool compares = atomicOp == ir::AtomicOp::compareExchange,
-                   loads = atomicOp == ir::AtomicOp::load;
+        const bool compares = atomicOp == ir::AtomicOp::compareExchange, loads = atomicOp == ir::AtomicOp::load;
         const ir::Program program = test::parseProgram(
             "program fragment \"main\"\ninput 0 i32 user 0.0 flat center\ninput 1 i32 user 0.1 flat center\n"
             "input 2 i32 user 0.2 flat center\noutput 0 i32 user 0.0\nresource 0 storageBuffer 0.0 x1\nb0:\n"
@@ -204,8 +200,7 @@ TEST(BatchMemory, AtomicsWorkInLaneOrder) {
             const test::RunResult run = test::runBatch(program, {offsets, values, comparators}, setup);
             for (uint32_t k = 0; k < 4; ++k) ASSERT_EQ(buffers.words(0)[k], memory[k]) << op;
             if (atomicOp == ir::AtomicOp::store) continue;
-            for (uint32_t lane = 0; lane < kLanes; ++lane)
-                ASSERT_EQ(run.outputs[0][lane], expected[lane]) << op;
+            for (uint32_t lane = 0; lane < kLanes; ++lane) ASSERT_EQ(run.outputs[0][lane], expected[lane]) << op;
         }
     }
 }
@@ -253,8 +248,7 @@ b0:
         setup.isa = isa;
         std::vector<uint32_t> index(kLanes);
         for (uint32_t k = 0; k < kLanes; ++k) index[k] = k - 2;
-        const test::RunResult run =
-            test::runBatch(program, {index, ramp(100, 1), ramp(200, 1), ramp(300, 1)}, setup);
+        const test::RunResult run = test::runBatch(program, {index, ramp(100, 1), ramp(200, 1), ramp(300, 1)}, setup);
         for (uint32_t k = 0; k < kLanes; ++k) {
             const uint32_t wanted = k < 2 ? 0 : std::min(k - 2, 2u);
             EXPECT_EQ(run.outputs[0][k], 100 * (wanted + 1) + k);
@@ -295,10 +289,8 @@ b0:
   ret
 )");
     const auto image = [](uintptr_t number) { return reinterpret_cast<const void*>(number); };
-    const ImageBinding images[] = {{image(1), nullptr, sampleTest},
-                                   {image(2), nullptr, sampleTest},
-                                   {},
-                                   {image(4), nullptr, sampleTest}};
+    const ImageBinding images[] = {
+        {image(1), nullptr, sampleTest}, {image(2), nullptr, sampleTest}, {}, {image(4), nullptr, sampleTest}};
     const uint32_t base = 0, count = 4;
     ResourceBindings resources;
     resources.images = images;
@@ -380,8 +372,7 @@ b0:
     BatchContext::Interpolator interpolator;
     interpolator.at = [](void*, uint32_t slot, uint32_t where, uint32_t lanes, const float* a, const float* b,
                          float* result) {
-        for (uint32_t k = 0; k < lanes; ++k)
-            result[k] = static_cast<float>(slot) + (where == 2 ? a[k] + b[k] : -1.0f);
+        for (uint32_t k = 0; k < lanes; ++k) result[k] = static_cast<float>(slot) + (where == 2 ? a[k] + b[k] : -1.0f);
     };
     test::RunSetup setup;
     setup.interpolator = interpolator;

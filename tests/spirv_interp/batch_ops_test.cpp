@@ -24,10 +24,9 @@ constexpr uint32_t kLanes = 64;
 /// Values that arithmetic stumbles over, and random ones.
 uint64_t interesting(Type type, std::mt19937_64& random) {
     static const float kFloats[] = {
-        0.0f,           -0.0f,         1.0f,          -1.0f,           0.5f,      -0.5f,
-        1.5f,           2.5f,          -2.5f,         INFINITY,        -INFINITY, NAN,
-        1e-40f,         -1e-42f,       0x1p-126f,     0x1.fffffep127f, 3.0f,      2147483648.0f,
-        -2147483648.0f, 4294967296.0f, 4294967040.0f, 0.99999994f,     -1e-9f,    8388609.0f};
+        0.0f,  -0.0f,         1.0f,           -1.0f,         0.5f,          -0.5f,       1.5f,      2.5f,
+        -2.5f, INFINITY,      -INFINITY,      NAN,           1e-40f,        -1e-42f,     0x1p-126f, 0x1.fffffep127f,
+        3.0f,  2147483648.0f, -2147483648.0f, 4294967296.0f, 4294967040.0f, 0.99999994f, -1e-9f,    8388609.0f};
     static const int64_t kIntegers[] = {0,  1,   -1,        2,         31,        32,        33, 63, 64,
                                         65, 127, INT32_MIN, INT32_MAX, INT64_MIN, INT64_MAX, 7,  -7};
     const uint64_t raw = random();
@@ -40,13 +39,11 @@ uint64_t interesting(Type type, std::mt19937_64& random) {
             if (kind == 1) return static_cast<uint32_t>(raw);
             return std::bit_cast<uint32_t>(static_cast<float>(static_cast<int64_t>(raw)) * 0x1p-58f);
         case Type::f64:
-            if (kind == 0)
-                return std::bit_cast<uint64_t>(static_cast<double>(kFloats[raw % std::size(kFloats)]));
+            if (kind == 0) return std::bit_cast<uint64_t>(static_cast<double>(kFloats[raw % std::size(kFloats)]));
             if (kind == 1) return raw;
             return std::bit_cast<uint64_t>(static_cast<double>(static_cast<int64_t>(raw)) * 0x1p-58);
         case Type::i32:
-            return static_cast<uint32_t>(kind < 2 ? kIntegers[raw % std::size(kIntegers)]
-                                                  : static_cast<int64_t>(raw));
+            return static_cast<uint32_t>(kind < 2 ? kIntegers[raw % std::size(kIntegers)] : static_cast<int64_t>(raw));
         default:
             return kind < 2 ? static_cast<uint64_t>(kIntegers[raw % std::size(kIntegers)]) : raw;
     }
@@ -78,8 +75,7 @@ class OpRun {
             std::vector<uint64_t> bits(kLanes);
             for (uint64_t& b : bits) b = interesting(type, random);
             if (constants >> k & 1) bits.assign(kLanes, bits[0]);
-            operands.push_back(constants >> k & 1 ? builder.constant(type, bits[0])
-                                                  : input(builder, type, bits));
+            operands.push_back(constants >> k & 1 ? builder.constant(type, bits[0]) : input(builder, type, bits));
             values_.push_back(std::move(bits));
         }
         uint64_t imm = 0;
@@ -106,15 +102,13 @@ class OpRun {
             std::vector<uint64_t> bits;
             for (const auto& operand : values_) bits.push_back(operand[lane]);
             const size_t typed = case_.op == Op::select ? 1 : 0;
-            const uint64_t expected =
-                test::evaluateOp(case_.op, case_.result, case_.operands[typed], bits, 0);
+            const uint64_t expected = test::evaluateOp(case_.op, case_.result, case_.operands[typed], bits, 0);
             uint64_t actual = run.outputs[0][lane];
             if (ir::isWide(case_.result)) actual |= uint64_t{run.outputs[1][lane]} << 32;
             if (isNan(case_.result, expected) && isNan(case_.result, actual)) continue;
-            ASSERT_EQ(actual, expected)
-                << ir::print(program_) << isaName(isa) << " lane " << lane << " operands " << std::hex
-                << bits[0] << " " << (bits.size() > 1 ? bits[1] : 0) << " "
-                << (bits.size() > 2 ? bits[2] : 0);
+            ASSERT_EQ(actual, expected) << ir::print(program_) << isaName(isa) << " lane " << lane << " operands "
+                                        << std::hex << bits[0] << " " << (bits.size() > 1 ? bits[1] : 0) << " "
+                                        << (bits.size() > 2 ? bits[2] : 0);
         }
     }
 

@@ -1,12 +1,9 @@
-// What small shaders become: the text of whole programs, interfaces, resources and image operations, and modules written in
-// assembly that no GLSL compiler produces.
+// What small shaders become: the text of whole programs, interfaces, resources and image operations, and modules
+// written in assembly that no GLSL compiler produces.
 #include <gtest/gtest.h>
 #include <vernier/vernier_glsl.h>
 
-#include <bit>
-
 #include "spirv_interp/ir/print.h"
-#include "spirv_interp/ir/verify.h"
 #include "spirv_interp/program.h"
 #include "tests/spirv_interp/front_support.h"
 
@@ -51,10 +48,11 @@ std::string linesOf(const ir::Program& program, const std::string& word) {
 }
 
 TEST_F(Lowering, CarriesLinesAndDecorations) {
-    EXPECT_EQ(ir::print(fragment("layout(location=0) in vec2 a;\nlayout(location=0) out float o;\nvoid main() {\n"
-                                 "  precise float t = a.x * a.y;\n  mediump float m = a.x + 2.0;\n  o = t + m * m;\n}\n",
-                                 true)),
-              R"(program fragment "main"
+    EXPECT_EQ(
+        ir::print(fragment("layout(location=0) in vec2 a;\nlayout(location=0) out float o;\nvoid main() {\n"
+                           "  precise float t = a.x * a.y;\n  mediump float m = a.x + 2.0;\n  o = t + m * m;\n}\n",
+                           true)),
+        R"(program fragment "main"
 input 0 f32 user 0.0 smooth center
 input 1 f32 user 0.1 smooth center
 output 0 f32 user 0.0
@@ -214,7 +212,8 @@ TEST_F(Lowering, ImageOperations) {
     EXPECT_EQ(one("o = texture(tex, c.xy, 0.5);"), "sampleImplicit d2 image 0 sampler 0 coords 2 bias");
     EXPECT_EQ(one("o = textureLod(tex, c.xy, 2.0);"), "sampleLod d2 image 0 sampler 0 coords 2 lod");
     EXPECT_EQ(one("o = textureGrad(tex, c.xy, c.yz, c.zx);"), "sampleGrad d2 image 0 sampler 0 coords 2 gradients 4");
-    EXPECT_EQ(one("o = textureOffset(tex, c.xy, ivec2(1, -2));"), "sampleImplicit d2 image 0 sampler 0 coords 2 offsets 2");
+    EXPECT_EQ(one("o = textureOffset(tex, c.xy, ivec2(1, -2));"),
+              "sampleImplicit d2 image 0 sampler 0 coords 2 offsets 2");
     EXPECT_EQ(one("o = textureProj(tex, c);"), "sampleImplicit d2 image 0 sampler 0 coords 2");
     EXPECT_EQ(one("o = vec4(texture(sh, c));"), "sampleImplicit d2 image 0 sampler 0 coords 2 depthCompare");
     EXPECT_EQ(one("o = texture(ca, c.xyzx);"), "sampleImplicit cube image 0 sampler 0 coords 4 arrayed");
@@ -292,19 +291,22 @@ resource 3 storageBuffer 2.3 x1
 }
 
 TEST_F(Lowering, ContractsOnlyWhenAsked) {
-    const std::string text = "layout(location=0) in vec3 a; layout(location=0) out float o; void main() { o = a.x * a.y + a.z; }";
+    const std::string text =
+        "layout(location=0) in vec3 a; layout(location=0) out float o; void main() { o = a.x * a.y + a.z; }";
     EXPECT_EQ(linesOf(fragment(text), "  %4"), "  %4 f32 = fadd %2 %3\n");
     EXPECT_EQ(linesOf(fragment(text, false, true), "  %3"), "  %3 f32 = ffma %0 %1 %2\n");
 }
 
 TEST_F(Lowering, SmallTablesStayOutOfMemory) {
     const ir::Program program = vertex(
-        "vec2 t[3] = vec2[](vec2(0, -1), vec2(1, 1), vec2(-1, 1)); void main() { gl_Position = vec4(t[gl_VertexIndex], 0, 1); }");
+        "vec2 t[3] = vec2[](vec2(0, -1), vec2(1, 1), vec2(-1, 1)); void main() { gl_Position = vec4(t[gl_VertexIndex], "
+        "0, 1); }");
     EXPECT_EQ(program.localWords, 0u);
     EXPECT_EQ(linesOf(program, "  storeLocal"), "");
 }
 
-// --- assembly -----------------------------------------------------------------------------------------------------------
+// --- assembly
+// -----------------------------------------------------------------------------------------------------------
 
 constexpr const char* kAssemblyHead = R"(
 OpCapability Shader
@@ -341,47 +343,6 @@ int32_t evaluate(const std::string& body, int32_t input) {
     machine.inputs.assign(program.inputs.size(), static_cast<uint32_t>(input));
     EXPECT_TRUE(machine.run(program));
     return machine.outputs.empty() ? 0 : static_cast<int32_t>(machine.outputs[0]);
-}
-
-TEST_F(Lowering, LoopMergeIsOuterContinueTarget) {
-    // The sum over n < x of the first multiple of n + 1 above 9, for odd n only.
-    const std::string body = R"(
-%x = OpLoad %int %a
-OpBranch %outer
-%outer = OpLabel
-%n = OpPhi %int %c0 %entry %n1 %latch
-%sum = OpPhi %int %c0 %entry %sum2 %latch
-%n1 = OpIAdd %int %n %c1
-OpLoopMerge %done %latch None
-OpBranch %test
-%test = OpLabel
-%go = OpSLessThan %bool %n %x
-OpBranchConditional %go %choose %done
-%choose = OpLabel
-%bit = OpBitwiseAnd %int %n %c1
-%odd = OpINotEqual %bool %bit %c0
-OpBranchConditional %odd %inner %latch
-%inner = OpLabel
-%m = OpPhi %int %c0 %choose %m2 %again
-%m2 = OpIAdd %int %m %n1
-%big = OpSGreaterThan %bool %m2 %c9
-OpLoopMerge %latch %again None
-OpBranchConditional %big %latch %again
-%again = OpLabel
-OpBranch %inner
-%latch = OpLabel
-%add = OpPhi %int %c0 %choose %m2 %inner
-%sum2 = OpIAdd %int %sum %add
-OpBranch %outer
-%done = OpLabel
-OpStore %o %sum
-OpReturn
-)";
-    for (int32_t x = 0; x < 8; ++x) {
-        int32_t sum = 0;
-        for (int32_t n = 1; n < x; n += 2) sum += 9 / (n + 1) * (n + 1) + n + 1;
-        EXPECT_EQ(evaluate(body, x), sum) << x;
-    }
 }
 
 TEST_F(Lowering, PhisThatSwap) {

@@ -31,8 +31,12 @@ int32_t someInt(uint32_t key) {
     return bits % 3 == 0 ? static_cast<int32_t>(bits) : static_cast<int32_t>(bits >> 16 & 63) - 16;
 }
 
-uint32_t inputKey(uint32_t location, uint32_t component, uint32_t seed) { return seed * 4096 + location * 16 + component; }
-bool isIntLocation(uint32_t location) { return location == 2 || location == 3; }
+uint32_t inputKey(uint32_t location, uint32_t component, uint32_t seed) {
+    return seed * 4096 + location * 16 + component;
+}
+bool isIntLocation(uint32_t location) {
+    return location == 2 || location == 3;
+}
 
 uint32_t inputBits(uint32_t location, uint32_t component, uint32_t seed) {
     const uint32_t key = inputKey(location, component, seed);
@@ -113,7 +117,8 @@ Ending runReference(const Words& words, uint32_t seed) {
     // In double, so that a module's own doubles keep their bits; a float result rounded from it is the float result.
     reference::Options options;
     options.roundToFloat = true;
-    const auto interpreter = reference::Interpreter<double>::create(*module, spv::ExecutionModelFragment, "main", options);
+    const auto interpreter =
+        reference::Interpreter<double>::create(*module, spv::ExecutionModelFragment, "main", options);
     if (!interpreter) {
         ADD_FAILURE() << "reference: " << interpreter.error().message;
         return ending;
@@ -156,7 +161,8 @@ void compare(const Ending& expected, const Ending& got, double tolerance, const 
             const auto found = got.floats.find(at);
             const uint32_t other = found != got.floats.end() ? found->second : 0;
             EXPECT_TRUE(sameFloat(bits, other, tolerance))
-                << what << ": o[" << at << "] is " << std::bit_cast<float>(other) << " instead of " << std::bit_cast<float>(bits);
+                << what << ": o[" << at << "] is " << std::bit_cast<float>(other) << " instead of "
+                << std::bit_cast<float>(bits);
         }
         for (const auto& [at, bits] : expected.ints) {
             const auto found = got.ints.find(at);
@@ -165,7 +171,8 @@ void compare(const Ending& expected, const Ending& got, double tolerance, const 
     }
     for (size_t word = 0; word < expected.storage.size(); ++word) {
         EXPECT_TRUE(sameFloat(expected.storage[word], got.storage[word], tolerance))
-            << what << ": storage word " << word << " is " << got.storage[word] << " instead of " << expected.storage[word];
+            << what << ": storage word " << word << " is " << got.storage[word] << " instead of "
+            << expected.storage[word];
     }
 }
 

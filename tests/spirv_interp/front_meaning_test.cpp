@@ -1,5 +1,5 @@
-// The sharpest test of the lowering and the passes: what a shader means must not depend on the way it is run. Each snippet is
-// run for random inputs as lowered, as optimised, and both again for the module that spirv-opt makes of it.
+// The sharpest test of the lowering and the passes: what a shader means must not depend on the way it is run. Each
+// snippet is run for random inputs as lowered, as optimised, and both again for the module that spirv-opt makes of it.
 #include <gtest/gtest.h>
 #include <vernier/vernier_glsl.h>
 

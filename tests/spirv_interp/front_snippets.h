@@ -1,5 +1,5 @@
-// Bodies of main() of fragment shaders that between them use the whole language; front_meaning_test.cpp runs each in four
-// ways and compares.
+// Bodies of main() of fragment shaders that between them use the whole language; front_meaning_test.cpp runs each in
+// four ways and compares.
 #pragma once
 
 #include <string>

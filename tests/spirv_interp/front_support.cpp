@@ -18,32 +18,55 @@ namespace {
 
 using ir::Op;
 
-float asFloat(uint64_t bits) { return std::bit_cast<float>(static_cast<uint32_t>(bits)); }
-uint32_t asBits(double value) { return std::bit_cast<uint32_t>(static_cast<float>(value)); }
+float asFloat(uint64_t bits) {
+    return std::bit_cast<float>(static_cast<uint32_t>(bits));
+}
+uint32_t asBits(double value) {
+    return std::bit_cast<uint32_t>(static_cast<float>(value));
+}
 
 /// In double and rounded once, as the reference interpreter does it.
 uint32_t transcendental(Op op, const std::vector<uint64_t>& v) {
     const double x = asFloat(v[0]), y = v.size() > 1 ? asFloat(v[1]) : 0;
     switch (op) {
-        case Op::fsin: return asBits(std::sin(x));
-        case Op::fcos: return asBits(std::cos(x));
-        case Op::ftan: return asBits(std::tan(x));
-        case Op::fasin: return asBits(std::asin(x));
-        case Op::facos: return asBits(std::acos(x));
-        case Op::fatan: return asBits(std::atan(x));
-        case Op::fatan2: return asBits(std::atan2(x, y));
-        case Op::fsinh: return asBits(std::sinh(x));
-        case Op::fcosh: return asBits(std::cosh(x));
-        case Op::ftanh: return asBits(std::tanh(x));
-        case Op::fasinh: return asBits(std::asinh(x));
-        case Op::facosh: return asBits(std::acosh(x));
-        case Op::fatanh: return asBits(std::atanh(x));
-        case Op::fexp: return asBits(std::exp(x));
-        case Op::fexp2: return asBits(std::exp2(x));
-        case Op::flog: return asBits(std::log(x));
-        case Op::flog2: return asBits(std::log2(x));
-        case Op::fpow: return asBits(std::pow(x, y));
-        default: std::abort();
+        case Op::fsin:
+            return asBits(std::sin(x));
+        case Op::fcos:
+            return asBits(std::cos(x));
+        case Op::ftan:
+            return asBits(std::tan(x));
+        case Op::fasin:
+            return asBits(std::asin(x));
+        case Op::facos:
+            return asBits(std::acos(x));
+        case Op::fatan:
+            return asBits(std::atan(x));
+        case Op::fatan2:
+            return asBits(std::atan2(x, y));
+        case Op::fsinh:
+            return asBits(std::sinh(x));
+        case Op::fcosh:
+            return asBits(std::cosh(x));
+        case Op::ftanh:
+            return asBits(std::tanh(x));
+        case Op::fasinh:
+            return asBits(std::asinh(x));
+        case Op::facosh:
+            return asBits(std::acosh(x));
+        case Op::fatanh:
+            return asBits(std::atanh(x));
+        case Op::fexp:
+            return asBits(std::exp(x));
+        case Op::fexp2:
+            return asBits(std::exp2(x));
+        case Op::flog:
+            return asBits(std::log(x));
+        case Op::flog2:
+            return asBits(std::log2(x));
+        case Op::fpow:
+            return asBits(std::pow(x, y));
+        default:
+            std::abort();
     }
 }
 
@@ -71,25 +94,38 @@ float floatOfHalf(uint32_t half) {
 }
 
 uint32_t* wordAt(std::vector<std::byte>& buffer, uint64_t offset) {
-    return offset % 4 == 0 && offset + 4 <= buffer.size() ? reinterpret_cast<uint32_t*>(buffer.data() + offset) : nullptr;
+    return offset % 4 == 0 && offset + 4 <= buffer.size() ? reinterpret_cast<uint32_t*>(buffer.data() + offset)
+                                                          : nullptr;
 }
 
 uint32_t atomicResult(ir::AtomicOp op, uint32_t old, uint32_t value, uint32_t comparator) {
     const auto s = [](uint32_t x) { return static_cast<int32_t>(x); };
     switch (op) {
-        case ir::AtomicOp::add: return old + value;
-        case ir::AtomicOp::sub: return old - value;
-        case ir::AtomicOp::smin: return s(old) < s(value) ? old : value;
-        case ir::AtomicOp::smax: return s(old) > s(value) ? old : value;
-        case ir::AtomicOp::umin: return std::min(old, value);
-        case ir::AtomicOp::umax: return std::max(old, value);
-        case ir::AtomicOp::iand: return old & value;
-        case ir::AtomicOp::ior: return old | value;
-        case ir::AtomicOp::ixor: return old ^ value;
+        case ir::AtomicOp::add:
+            return old + value;
+        case ir::AtomicOp::sub:
+            return old - value;
+        case ir::AtomicOp::smin:
+            return s(old) < s(value) ? old : value;
+        case ir::AtomicOp::smax:
+            return s(old) > s(value) ? old : value;
+        case ir::AtomicOp::umin:
+            return std::min(old, value);
+        case ir::AtomicOp::umax:
+            return std::max(old, value);
+        case ir::AtomicOp::iand:
+            return old & value;
+        case ir::AtomicOp::ior:
+            return old | value;
+        case ir::AtomicOp::ixor:
+            return old ^ value;
         case ir::AtomicOp::exchange:
-        case ir::AtomicOp::store: return value;
-        case ir::AtomicOp::compareExchange: return old == comparator ? value : old;
-        case ir::AtomicOp::load: return old;
+        case ir::AtomicOp::store:
+            return value;
+        case ir::AtomicOp::compareExchange:
+            return old == comparator ? value : old;
+        case ir::AtomicOp::load:
+            return old;
     }
     return old;
 }
@@ -159,9 +195,15 @@ bool Machine::run(const ir::Program& program) {
             for (const ir::ValueId operand : operands) v.push_back(values[operand]);
             uint64_t* result = inst.result != ir::kNoValue ? &values[inst.result] : nullptr;
             switch (inst.op) {
-                case Op::constant: *result = inst.imm; break;
-                case Op::undef: *result = 0; break;
-                case Op::input: *result = inputs.at(inst.imm); break;
+                case Op::constant:
+                    *result = inst.imm;
+                    break;
+                case Op::undef:
+                    *result = 0;
+                    break;
+                case Op::input:
+                    *result = inputs.at(inst.imm);
+                    break;
                 case Op::inputIndexed:
                     *result = inputs.at(ir::immLow(inst) + std::min<uint64_t>(v[0], ir::immHigh(inst) - 1));
                     break;
@@ -169,9 +211,15 @@ bool Machine::run(const ir::Program& program) {
                     outputs[inst.imm] = static_cast<uint32_t>(v[0]);
                     written[inst.imm] = true;
                     break;
-                case Op::demote: demoted = true; break;
-                case Op::isHelper: *result = demoted ? ir::kTrueBits : 0; break;
-                case Op::loadLocal: *result = v[0] < ir::immHigh(inst) ? local[ir::immLow(inst) + v[0]] : 0; break;
+                case Op::demote:
+                    demoted = true;
+                    break;
+                case Op::isHelper:
+                    *result = demoted ? ir::kTrueBits : 0;
+                    break;
+                case Op::loadLocal:
+                    *result = v[0] < ir::immHigh(inst) ? local[ir::immLow(inst) + v[0]] : 0;
+                    break;
                 case Op::storeLocal:
                     if (v[0] < ir::immHigh(inst)) local[ir::immLow(inst) + v[0]] = static_cast<uint32_t>(v[1]);
                     break;
@@ -185,7 +233,9 @@ bool Machine::run(const ir::Program& program) {
                         *word = static_cast<uint32_t>(v[2]);
                     }
                     break;
-                case Op::bufferSize: *result = buffers[inst.imm].size(); break;
+                case Op::bufferSize:
+                    *result = buffers[inst.imm].size();
+                    break;
                 case Op::atomicBuffer: {
                     uint32_t* word = wordAt(buffers[ir::immLow(inst)], v[1]);
                     *result = word != nullptr ? *word : 0;
@@ -208,16 +258,32 @@ bool Machine::run(const ir::Program& program) {
                 case Op::ddxFine:
                 case Op::ddyFine:
                 case Op::ddxCoarse:
-                case Op::ddyCoarse: *result = 0; break;
+                case Op::ddyCoarse:
+                    *result = 0;
+                    break;
                 case Op::interpolateAtCentroid:
                 case Op::interpolateAtSample:
-                case Op::interpolateAtOffset: *result = inputs.at(inst.imm); break;
-                case Op::packHalf: *result = halfOf(asFloat(v[0])) | halfOf(asFloat(v[1])) << 16; break;
-                case Op::unpackHalfLow: *result = asBits(floatOfHalf(static_cast<uint32_t>(v[0] & 0xFFFF))); break;
-                case Op::unpackHalfHigh: *result = asBits(floatOfHalf(static_cast<uint32_t>(v[0] >> 16 & 0xFFFF))); break;
-                case Op::quantizeF16: *result = asBits(floatOfHalf(halfOf(asFloat(v[0])))); break;
-                case Op::jump: next = code.successors[0]; break;
-                case Op::branch: next = code.successors[v[0] != 0 ? 0 : 1]; break;
+                case Op::interpolateAtOffset:
+                    *result = inputs.at(inst.imm);
+                    break;
+                case Op::packHalf:
+                    *result = halfOf(asFloat(v[0])) | halfOf(asFloat(v[1])) << 16;
+                    break;
+                case Op::unpackHalfLow:
+                    *result = asBits(floatOfHalf(static_cast<uint32_t>(v[0] & 0xFFFF)));
+                    break;
+                case Op::unpackHalfHigh:
+                    *result = asBits(floatOfHalf(static_cast<uint32_t>(v[0] >> 16 & 0xFFFF)));
+                    break;
+                case Op::quantizeF16:
+                    *result = asBits(floatOfHalf(halfOf(asFloat(v[0]))));
+                    break;
+                case Op::jump:
+                    next = code.successors[0];
+                    break;
+                case Op::branch:
+                    next = code.successors[v[0] != 0 ? 0 : 1];
+                    break;
                 case Op::switchOn: {
                     next = code.successors[0];
                     for (size_t k = 0; k < code.cases.size(); ++k) {
@@ -225,8 +291,11 @@ bool Machine::run(const ir::Program& program) {
                     }
                     break;
                 }
-                case Op::ret: return true;
-                case Op::kill: killed = true; return true;
+                case Op::ret:
+                    return true;
+                case Op::kill:
+                    killed = true;
+                    return true;
                 default:
                     if (isEvaluated(inst.op)) {
                         const size_t typed = inst.op == Op::select ? 1 : 0;

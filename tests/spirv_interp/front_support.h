@@ -1,5 +1,5 @@
-// What the tests of spirv_interp/front and spirv_interp/ir share: shaders from text, and a machine that runs a program for
-// one invocation.
+// What the tests of spirv_interp/front and spirv_interp/ir share: shaders from text, and a machine that runs a program
+// for one invocation.
 #pragma once
 
 #include <array>
@@ -29,8 +29,8 @@ Words optimised(const Words& words);
 
 /// One invocation's surroundings and what becomes of it.
 struct Machine {
-    std::vector<uint32_t> inputs;                // by slot of the program
-    std::vector<std::vector<std::byte>> buffers; // by resource
+    std::vector<uint32_t> inputs;                 // by slot of the program
+    std::vector<std::vector<std::byte>> buffers;  // by resource
     /// Four words for an image operation with its operands' bits.
     std::function<std::array<uint32_t, 4>(const ir::ImageOp&, std::span<const uint64_t>)> image;
     // Results.

@@ -38,8 +38,7 @@ F maximum(F a, F b) {
 
 template <class F>
 uint64_t floatOp(Op op, const std::vector<uint64_t>& v) {
-    const F a = floatOf<F>(v[0]), b = v.size() > 1 ? floatOf<F>(v[1]) : F{},
-            c = v.size() > 2 ? floatOf<F>(v[2]) : F{};
+    const F a = floatOf<F>(v[0]), b = v.size() > 1 ? floatOf<F>(v[1]) : F{}, c = v.size() > 2 ? floatOf<F>(v[2]) : F{};
     const F one = 1, zero = 0;
     switch (op) {
         case Op::fadd:
@@ -393,8 +392,7 @@ Evaluation evaluateInvocation(const ir::Program& program, const std::vector<uint
                     values[inst.result] = at(0) < ir::immHigh(inst) ? local[ir::immLow(inst) + at(0)] : 0;
                     continue;
                 case Op::storeLocal:
-                    if (at(0) < ir::immHigh(inst))
-                        local[ir::immLow(inst) + at(0)] = static_cast<uint32_t>(at(1));
+                    if (at(0) < ir::immHigh(inst)) local[ir::immLow(inst) + at(0)] = static_cast<uint32_t>(at(1));
                     continue;
                 case Op::jump:
                     follow(here, 0);
@@ -405,8 +403,7 @@ Evaluation evaluateInvocation(const ir::Program& program, const std::vector<uint
                 case Op::switchOn: {
                     size_t taken = 0;
                     for (size_t k = 0; k < code.cases.size(); ++k) {
-                        if (static_cast<uint32_t>(code.cases[k]) == static_cast<uint32_t>(at(0)))
-                            taken = k + 1;
+                        if (static_cast<uint32_t>(code.cases[k]) == static_cast<uint32_t>(at(0))) taken = k + 1;
                     }
                     follow(here, taken);
                     continue;
@@ -422,8 +419,7 @@ Evaluation evaluateInvocation(const ir::Program& program, const std::vector<uint
             std::vector<uint64_t> bits;
             for (size_t k = 0; k < operands.size(); ++k) bits.push_back(at(k));
             const size_t typed = inst.op == Op::select ? 1 : 0;
-            values[inst.result] =
-                evaluateOp(inst.op, inst.type, program.valueTypes[operands[typed]], bits, inst.imm);
+            values[inst.result] = evaluateOp(inst.op, inst.type, program.valueTypes[operands[typed]], bits, inst.imm);
         }
     }
 }

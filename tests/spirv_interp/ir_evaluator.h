@@ -20,8 +20,7 @@ Evaluation evaluateInvocation(const ir::Program& program, const std::vector<uint
                               const std::vector<uint32_t>& buffer = {});
 
 /// One pure operation on bits.
-uint64_t evaluateOp(ir::Op op, ir::Type result, ir::Type operand, const std::vector<uint64_t>& a,
-                    uint64_t imm);
+uint64_t evaluateOp(ir::Op op, ir::Type result, ir::Type operand, const std::vector<uint64_t>& a, uint64_t imm);
 
 /// Whether evaluateOp knows the operation.
 bool isEvaluated(ir::Op op);

@@ -106,9 +106,15 @@ TEST(Text, SurvivesDamage) {
         for (int k = 0; k < 3; ++k) {
             const size_t at = random() % broken.size();
             switch (random() % 3) {
-                case 0: broken[at] = static_cast<char>(' ' + random() % 95); break;
-                case 1: broken.erase(at, random() % 8); break;
-                default: broken.insert(at, text, random() % text.size(), random() % 12); break;
+                case 0:
+                    broken[at] = static_cast<char>(' ' + random() % 95);
+                    break;
+                case 1:
+                    broken.erase(at, random() % 8);
+                    break;
+                default:
+                    broken.insert(at, text, random() % text.size(), random() % 12);
+                    break;
             }
         }
         const Result<Program> program = parse(broken);
@@ -127,7 +133,8 @@ TEST(Builder, BuildsWhatVerifies) {
     program.name = "main";
     program.outputs.push_back({.builtin = Builtin::position});
     Builder builder(program);
-    const BlockId entry = builder.newBlock(), header = builder.newBlock(), body = builder.newBlock(), end = builder.newBlock();
+    const BlockId entry = builder.newBlock(), header = builder.newBlock(), body = builder.newBlock(),
+                  end = builder.newBlock();
     builder.setBlock(entry);
     const ValueId zero = builder.constant(Type::f32, 0), one = builder.constant(Type::f32, 0x3F800000);
     builder.jump(header);

@@ -39,9 +39,11 @@ const Case kCases[] = {
     {"b0 loop b1 <- b0:\n  jump b0\n", "block 0: the entry has predecessors"},
     {"b0:\n  ret\nb1:\n  ret\n", "block 1: unreachable"},
     {"b0:\n  jump b1\nb1 <- b0 b1:\n  jump b1\n", "block 1: a back edge to a block that is no loop header"},
-    {"b0:\n  jump b1\nb1 loop b2 <- b0 b2:\n  jump b2\nb2 <- b1:\n  jump b1\n", "block 1: a back edge from outside the loop"},
+    {"b0:\n  jump b1\nb1 loop b2 <- b0 b2:\n  jump b2\nb2 <- b1:\n  jump b1\n",
+     "block 1: a back edge from outside the loop"},
     {"b0:\n  jump b1\nb1 loop b9 <- b0 b1:\n  jump b1\n", "block 1: the loop ends before it begins"},
-    {"b0:\n  jump b1\nb1 loop b3 <- b0 b2:\n  jump b2\nb2 loop b4 <- b1 b3:\n  %0 b1 = constant 0x0\n  branch %0 b1 b3\n"
+    {"b0:\n  jump b1\nb1 loop b3 <- b0 b2:\n  jump b2\nb2 loop b4 <- b1 b3:\n  %0 b1 = constant 0x0\n  branch %0 b1 "
+     "b3\n"
      "b3 <- b2:\n  jump b2\n",
      "block 2: the loop reaches out of the loop around it"},
     {"b0:\n  %0 b1 = constant 0x0\n  branch %0 b1 b2\nb1 loop b3 <- b0 b2:\n  jump b2\nb2 <- b0 b1:\n  jump b1\n",
@@ -49,7 +51,8 @@ const Case kCases[] = {
     {"b0:\n  %0 f32 = undef\n  %0 f32 = undef\n  ret\n", "block 0: undef (instruction 1): value %0 is defined twice"},
     {"b0:\n  storeOutput #0 %0\n  %0 f32 = undef\n  ret\n",
      "block 0: storeOutput (instruction 0): the definition of %0 does not dominate the use"},
-    {"b0:\n  storeOutput #0 %5\n  ret\n", "block 0: storeOutput (instruction 0): an operand is no value of the program"},
+    {"b0:\n  storeOutput #0 %5\n  ret\n",
+     "block 0: storeOutput (instruction 0): an operand is no value of the program"},
     {"b0:\n  %0 b1 = constant 0x0\n  branch %0 b1 b2\nb1 <- b0:\n  %1 f32 = undef\n  jump b2\nb2 <- b0 b1:\n"
      "  storeOutput #0 %1\n  ret\n",
      "block 2: storeOutput (instruction 0): the definition of %1 does not dominate the use"},
@@ -66,10 +69,12 @@ const Case kCases[] = {
     {"b0:\n  %0 i32 = undef\n  %1 i32 = fneg %0\n  ret\n", "block 0: fneg (instruction 1): a result of type i32"},
     {"b0:\n  %0 i32 = undef\n  %1 b1 = folt.i32 %0 %0\n  ret\n",
      "block 0: folt (instruction 1): the operand type is not a float"},
-    {"b0:\n  %0 f32 = undef\n  %1 i64 = bitcast.f32 %0\n  ret\n", "block 0: bitcast (instruction 1): the widths differ"},
+    {"b0:\n  %0 f32 = undef\n  %1 i64 = bitcast.f32 %0\n  ret\n",
+     "block 0: bitcast (instruction 1): the widths differ"},
     {"b0:\n  %0 b1 = constant 0x1\n  ret\n",
      "block 0: constant (instruction 0): a boolean constant that is neither all zeros nor all ones"},
-    {"b0:\n  %0 f32 = constant 0x100000000\n  ret\n", "block 0: constant (instruction 0): a 32-bit constant with more bits"},
+    {"b0:\n  %0 f32 = constant 0x100000000\n  ret\n",
+     "block 0: constant (instruction 0): a 32-bit constant with more bits"},
     {"b0:\n  %0 f32 = input #1\n  ret\n", "block 0: input (instruction 0): an input that does not exist"},
     {"b0:\n  %0 i32 = input #0\n  ret\n", "block 0: input (instruction 0): the input has another type"},
     {"b0:\n  %0 f32 = undef\n  storeOutput #1 %0\n  ret\n",

@@ -86,8 +86,7 @@ class Generator {
     /// Records what an edge that was just added carries.
     void carry(BlockId to, const State& state, ValueId counter = 0) {
         auto& phis = facts_[to].phis;
-        for (size_t k = 0; k < phis.size(); ++k)
-            phis[k].incoming.push_back(k < kVariables ? state[k] : counter);
+        for (size_t k = 0; k < phis.size(); ++k) phis[k].incoming.push_back(k < kVariables ? state[k] : counter);
     }
     void jump(BlockId to, const State& state, ValueId counter = 0) {
         builder_.jump(to);
@@ -101,9 +100,7 @@ class Generator {
     }
     ValueId operand(const State& state) {
         const uint32_t kind = chance(8);
-        return kind == 0   ? integer(static_cast<uint32_t>(random_() % 100))
-               : kind == 1 ? uniform()
-                           : any(state);
+        return kind == 0 ? integer(static_cast<uint32_t>(random_() % 100)) : kind == 1 ? uniform() : any(state);
     }
     ValueId condition(const State& state) {
         const ValueId a = chance(4) == 0 ? uniform() : operand(state), b = operand(state);
@@ -119,8 +116,7 @@ class Generator {
                                       Op::ior,  Op::shl,  Op::lshr, Op::smin};
         switch (chance(7)) {
             case 0:
-                return builder_.append(Op::select, Type::i32,
-                                       {condition(state), operand(state), operand(state)});
+                return builder_.append(Op::select, Type::i32, {condition(state), operand(state), operand(state)});
             case 1: {  // a sum of products in float
                 ValueId sum = 0;
                 const uint32_t terms = 1 + chance(5);
@@ -133,8 +129,7 @@ class Generator {
             }
             case 2: {
                 const ValueId index = builder_.append(Op::iand, Type::i32, {operand(state), integer(15)});
-                if (chance(2) == 0)
-                    return builder_.append(Op::loadLocal, Type::i32, {index}, uint64_t{8} << 32);
+                if (chance(2) == 0) return builder_.append(Op::loadLocal, Type::i32, {index}, uint64_t{8} << 32);
                 builder_.append(Op::storeLocal, Type::none, {index, operand(state)}, uint64_t{8} << 32);
                 return operand(state);
             }
@@ -219,8 +214,7 @@ class Generator {
         State inside = facts_[header].state;
         const ValueId counter = facts_[header].phis.back().result;
         const ValueId limit = builder_.append(Op::iand, Type::i32, {operand(inside), integer(3)});
-        const ValueId going =
-            builder_.append(Op::ult, Type::b1, {counter, limit}, static_cast<uint64_t>(Type::i32));
+        const ValueId going = builder_.append(Op::ult, Type::b1, {counter, limit}, static_cast<uint64_t>(Type::i32));
         builder_.branch(going, body, exit);
         carry(exit, inside);
         loops_.push_back({header, exit, counter});
