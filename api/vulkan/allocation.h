@@ -56,8 +56,8 @@ void deleteObject(const VkAllocationCallbacks* callbacks, T* object) {
 template <class Handle, class... Args>
 VkResult createHandle(const VkAllocationCallbacks* callbacks, Handle* out, Args&&... args) {
     return guarded([&] {
-        auto* made = newObject<ObjectOf<Handle>>(callbacks, VK_SYSTEM_ALLOCATION_SCOPE_OBJECT,
-                                                 std::forward<Args>(args)...);
+        auto* made =
+            newObject<ObjectOf<Handle>>(callbacks, VK_SYSTEM_ALLOCATION_SCOPE_OBJECT, std::forward<Args>(args)...);
         if (made == nullptr) return VK_ERROR_OUT_OF_HOST_MEMORY;
         *out = handleOf<Handle>(made);
         return VK_SUCCESS;

@@ -28,8 +28,7 @@ VKAPI_ATTR void VKAPI_CALL GetBufferMemoryRequirements(VkDevice, VkBuffer buffer
     *pMemoryRequirements = memoryRequirements(object(buffer)->size());
 }
 
-VKAPI_ATTR void VKAPI_CALL GetBufferMemoryRequirements2(VkDevice,
-                                                        const VkBufferMemoryRequirementsInfo2* pInfo,
+VKAPI_ATTR void VKAPI_CALL GetBufferMemoryRequirements2(VkDevice, const VkBufferMemoryRequirementsInfo2* pInfo,
                                                         VkMemoryRequirements2* pMemoryRequirements) {
     pMemoryRequirements->memoryRequirements = memoryRequirements(object(pInfo->buffer)->size());
     fillRequirementChain(pMemoryRequirements->pNext);

@@ -13,8 +13,7 @@ namespace vernier::vulkan {
 struct Device;
 
 struct CommandBuffer : Dispatchable {
-    CommandBuffer(Device& owner, CommandPool& from, VkCommandBufferLevel of)
-        : device(owner), pool(from), level(of) {}
+    CommandBuffer(Device& owner, CommandPool& from, VkCommandBufferLevel of) : device(owner), pool(from), level(of) {}
 
     enum class State : uint8_t { initial, recording, executable };
 

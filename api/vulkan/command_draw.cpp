@@ -13,8 +13,7 @@ template <class Command>
 void recordDraw(VkCommandBuffer handle, const char* name, const Command& command) {
     recording(handle, [&](CommandBuffer& buffer) {
         if (!buffer.pipelineFits) {
-            return buffer.fail(
-                name, "no pipeline is bound that was made for the attachments of the current subpass");
+            return buffer.fail(name, "no pipeline is bound that was made for the attachments of the current subpass");
         }
         buffer.stream.record(command);
     });
@@ -26,33 +25,31 @@ bool clears(const SubpassFormats& formats, const VkClearAttachment& attachment) 
         return attachment.colorAttachment < formats.colorCount &&
                formats.colors[attachment.colorAttachment] != VK_FORMAT_UNDEFINED;
     }
-    return (attachment.aspectMask & VK_IMAGE_ASPECT_COLOR_BIT) == 0 &&
-           formats.depthStencil != VK_FORMAT_UNDEFINED;
+    return (attachment.aspectMask & VK_IMAGE_ASPECT_COLOR_BIT) == 0 && formats.depthStencil != VK_FORMAT_UNDEFINED;
 }
 
 }  // namespace
 
-VKAPI_ATTR void VKAPI_CALL CmdDraw(VkCommandBuffer commandBuffer, uint32_t vertexCount,
-                                   uint32_t instanceCount, uint32_t firstVertex, uint32_t firstInstance) {
+VKAPI_ATTR void VKAPI_CALL CmdDraw(VkCommandBuffer commandBuffer, uint32_t vertexCount, uint32_t instanceCount,
+                                   uint32_t firstVertex, uint32_t firstInstance) {
     recordDraw(commandBuffer, "vkCmdDraw",
                command::Draw{false, vertexCount, instanceCount, firstVertex, firstInstance, 0});
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdDrawIndexed(VkCommandBuffer commandBuffer, uint32_t indexCount,
-                                          uint32_t instanceCount, uint32_t firstIndex, int32_t vertexOffset,
-                                          uint32_t firstInstance) {
+VKAPI_ATTR void VKAPI_CALL CmdDrawIndexed(VkCommandBuffer commandBuffer, uint32_t indexCount, uint32_t instanceCount,
+                                          uint32_t firstIndex, int32_t vertexOffset, uint32_t firstInstance) {
     recordDraw(commandBuffer, "vkCmdDrawIndexed",
                command::Draw{true, indexCount, instanceCount, firstIndex, firstInstance, vertexOffset});
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdDrawIndirect(VkCommandBuffer commandBuffer, VkBuffer buffer,
-                                           VkDeviceSize offset, uint32_t drawCount, uint32_t stride) {
+VKAPI_ATTR void VKAPI_CALL CmdDrawIndirect(VkCommandBuffer commandBuffer, VkBuffer buffer, VkDeviceSize offset,
+                                           uint32_t drawCount, uint32_t stride) {
     recordDraw(commandBuffer, "vkCmdDrawIndirect",
                command::DrawIndirect{false, {object(buffer), offset}, drawCount, stride, {}});
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdDrawIndexedIndirect(VkCommandBuffer commandBuffer, VkBuffer buffer,
-                                                  VkDeviceSize offset, uint32_t drawCount, uint32_t stride) {
+VKAPI_ATTR void VKAPI_CALL CmdDrawIndexedIndirect(VkCommandBuffer commandBuffer, VkBuffer buffer, VkDeviceSize offset,
+                                                  uint32_t drawCount, uint32_t stride) {
     recordDraw(commandBuffer, "vkCmdDrawIndexedIndirect",
                command::DrawIndirect{true, {object(buffer), offset}, drawCount, stride, {}});
 }
@@ -61,8 +58,7 @@ VKAPI_ATTR void VKAPI_CALL CmdClearAttachments(VkCommandBuffer commandBuffer, ui
                                                const VkClearAttachment* pAttachments, uint32_t rectCount,
                                                const VkClearRect* pRects) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
-        if (buffer.pass.pass == nullptr)
-            return buffer.fail("vkCmdClearAttachments", "not inside a render pass");
+        if (buffer.pass.pass == nullptr) return buffer.fail("vkCmdClearAttachments", "not inside a render pass");
         std::vector<VkClearAttachment> existing;
         for (uint32_t i = 0; i < attachmentCount; ++i) {
             if (clears(buffer.pass.formats, pAttachments[i])) existing.push_back(pAttachments[i]);
@@ -75,18 +71,15 @@ VKAPI_ATTR void VKAPI_CALL CmdClearAttachments(VkCommandBuffer commandBuffer, ui
 VKAPI_ATTR void VKAPI_CALL CmdExecuteCommands(VkCommandBuffer commandBuffer, uint32_t commandBufferCount,
                                               const VkCommandBuffer* pCommandBuffers) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
-        const std::span streams =
-            buffer.stream.arena().array<const vernier::CommandBuffer*>(commandBufferCount);
+        const std::span streams = buffer.stream.arena().array<const vernier::CommandBuffer*>(commandBufferCount);
         for (uint32_t i = 0; i < commandBufferCount; ++i) {
             const CommandBuffer& secondary = *object(pCommandBuffers[i]);
             if (!secondary.executable() || secondary.level != VK_COMMAND_BUFFER_LEVEL_SECONDARY) {
-                return buffer.fail("vkCmdExecuteCommands",
-                                   "a command buffer is not an executable secondary one");
+                return buffer.fail("vkCmdExecuteCommands", "a command buffer is not an executable secondary one");
             }
             if (secondary.pass.pass != nullptr &&
                 (buffer.pass.pass == nullptr || !(secondary.pass.formats == buffer.pass.formats))) {
-                return buffer.fail("vkCmdExecuteCommands",
-                                   "a command buffer was recorded for another render pass");
+                return buffer.fail("vkCmdExecuteCommands", "a command buffer was recorded for another render pass");
             }
             streams[i] = &secondary.stream;
         }

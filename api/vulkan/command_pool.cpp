@@ -33,8 +33,7 @@ CommandPool::~CommandPool() {
 
 VkResult CommandPool::allocate(VkCommandBufferLevel level, VkCommandBuffer* out) {
     buffers_.reserve(buffers_.size() + 1);
-    auto* buffer =
-        newObject<CommandBuffer>(callbacks(), VK_SYSTEM_ALLOCATION_SCOPE_OBJECT, device_, *this, level);
+    auto* buffer = newObject<CommandBuffer>(callbacks(), VK_SYSTEM_ALLOCATION_SCOPE_OBJECT, device_, *this, level);
     if (buffer == nullptr) return VK_ERROR_OUT_OF_HOST_MEMORY;
     buffers_.push_back(buffer);
     *out = handleOf<VkCommandBuffer>(buffer);
@@ -54,8 +53,7 @@ void CommandPool::reset() {
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateCommandPool(VkDevice device, const VkCommandPoolCreateInfo*,
-                                                 const VkAllocationCallbacks* pAllocator,
-                                                 VkCommandPool* pCommandPool) {
+                                                 const VkAllocationCallbacks* pAllocator, VkCommandPool* pCommandPool) {
     return createHandle(pAllocator, pCommandPool, *object(device), pAllocator);
 }
 
@@ -64,8 +62,7 @@ VKAPI_ATTR void VKAPI_CALL DestroyCommandPool(VkDevice, VkCommandPool commandPoo
     destroyHandle(pAllocator, commandPool);
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL ResetCommandPool(VkDevice, VkCommandPool commandPool,
-                                                VkCommandPoolResetFlags) {
+VKAPI_ATTR VkResult VKAPI_CALL ResetCommandPool(VkDevice, VkCommandPool commandPool, VkCommandPoolResetFlags) {
     object(commandPool)->reset();
     return VK_SUCCESS;
 }
@@ -73,8 +70,7 @@ VKAPI_ATTR VkResult VKAPI_CALL ResetCommandPool(VkDevice, VkCommandPool commandP
 // Command buffers hold their own memory; a pool has none to give back.
 VKAPI_ATTR void VKAPI_CALL TrimCommandPool(VkDevice, VkCommandPool, VkCommandPoolTrimFlags) {}
 
-VKAPI_ATTR VkResult VKAPI_CALL AllocateCommandBuffers(VkDevice,
-                                                      const VkCommandBufferAllocateInfo* pAllocateInfo,
+VKAPI_ATTR VkResult VKAPI_CALL AllocateCommandBuffers(VkDevice, const VkCommandBufferAllocateInfo* pAllocateInfo,
                                                       VkCommandBuffer* pCommandBuffers) {
     CommandPool& pool = *object(pAllocateInfo->commandPool);
     const uint32_t count = pAllocateInfo->commandBufferCount;
@@ -96,8 +92,7 @@ VKAPI_ATTR VkResult VKAPI_CALL AllocateCommandBuffers(VkDevice,
     return result;
 }
 
-VKAPI_ATTR void VKAPI_CALL FreeCommandBuffers(VkDevice, VkCommandPool commandPool,
-                                              uint32_t commandBufferCount,
+VKAPI_ATTR void VKAPI_CALL FreeCommandBuffers(VkDevice, VkCommandPool commandPool, uint32_t commandBufferCount,
                                               const VkCommandBuffer* pCommandBuffers) {
     for (uint32_t i = 0; i < commandBufferCount; ++i) {
         if (pCommandBuffers[i] != nullptr) object(commandPool)->free(object(pCommandBuffers[i]));

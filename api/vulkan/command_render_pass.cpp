@@ -32,14 +32,12 @@ void beginSubpass(CommandBuffer& buffer, uint32_t subpass) {
 }  // namespace
 
 VKAPI_ATTR void VKAPI_CALL CmdBeginRenderPass(VkCommandBuffer commandBuffer,
-                                              const VkRenderPassBeginInfo* pRenderPassBegin,
-                                              VkSubpassContents) {
+                                              const VkRenderPassBeginInfo* pRenderPassBegin, VkSubpassContents) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
         const RenderPassObject* pass = object(pRenderPassBegin->renderPass);
         const Framebuffer* framebuffer = object(pRenderPassBegin->framebuffer);
         if (buffer.level != VK_COMMAND_BUFFER_LEVEL_PRIMARY || buffer.pass.pass != nullptr) {
-            return buffer.fail("vkCmdBeginRenderPass",
-                               "needs a primary command buffer outside a render pass");
+            return buffer.fail("vkCmdBeginRenderPass", "needs a primary command buffer outside a render pass");
         }
         if (framebuffer->views.size() != pass->attachments.size() || pass->subpasses.empty()) {
             return buffer.fail("vkCmdBeginRenderPass", "the framebuffer does not fit the render pass");
@@ -56,8 +54,7 @@ VKAPI_ATTR void VKAPI_CALL CmdBeginRenderPass(VkCommandBuffer commandBuffer,
 
 VKAPI_ATTR void VKAPI_CALL CmdNextSubpass(VkCommandBuffer commandBuffer, VkSubpassContents) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
-        if (buffer.pass.framebuffer == nullptr ||
-            buffer.pass.subpass + 1 >= buffer.pass.pass->subpasses.size()) {
+        if (buffer.pass.framebuffer == nullptr || buffer.pass.subpass + 1 >= buffer.pass.pass->subpasses.size()) {
             return buffer.fail("vkCmdNextSubpass", "there is no next subpass");
         }
         buffer.stream.record(command::EndRendering{});

@@ -12,8 +12,7 @@ namespace {
 /// Whether a pipeline's state was made for these attachments. Drawing with another would write texels of one
 /// size into images of another.
 bool fits(const GraphicsState& state, const SubpassFormats& formats) {
-    if (state.colorCount != formats.colorCount || state.depthStencilFormat != formats.depthStencil)
-        return false;
+    if (state.colorCount != formats.colorCount || state.depthStencilFormat != formats.depthStencil) return false;
     if (formats.samples != 0 && state.samples != formats.samples) return false;
     return std::equal(formats.colors, formats.colors + formats.colorCount, state.colorFormats.begin());
 }
@@ -26,12 +25,11 @@ void record(VkCommandBuffer handle, const Command& command) {
 }  // namespace
 
 void CommandBuffer::checkPipeline() {
-    pipelineFits =
-        pipeline != nullptr && pass.pass != nullptr && fits(pipeline->graphics->state(), pass.formats);
+    pipelineFits = pipeline != nullptr && pass.pass != nullptr && fits(pipeline->graphics->state(), pass.formats);
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdBindPipeline(VkCommandBuffer commandBuffer,
-                                           VkPipelineBindPoint pipelineBindPoint, VkPipeline pipeline) {
+VKAPI_ATTR void VKAPI_CALL CmdBindPipeline(VkCommandBuffer commandBuffer, VkPipelineBindPoint pipelineBindPoint,
+                                           VkPipeline pipeline) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
         if (pipelineBindPoint != VK_PIPELINE_BIND_POINT_GRAPHICS) {
             return buffer.fail("vkCmdBindPipeline", "pipelineBindPoint must be GRAPHICS");
@@ -43,11 +41,9 @@ VKAPI_ATTR void VKAPI_CALL CmdBindPipeline(VkCommandBuffer commandBuffer,
     });
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdBindDescriptorSets(VkCommandBuffer commandBuffer,
-                                                 VkPipelineBindPoint pipelineBindPoint, VkPipelineLayout,
-                                                 uint32_t firstSet, uint32_t descriptorSetCount,
-                                                 const VkDescriptorSet* pDescriptorSets,
-                                                 uint32_t dynamicOffsetCount,
+VKAPI_ATTR void VKAPI_CALL CmdBindDescriptorSets(VkCommandBuffer commandBuffer, VkPipelineBindPoint pipelineBindPoint,
+                                                 VkPipelineLayout, uint32_t firstSet, uint32_t descriptorSetCount,
+                                                 const VkDescriptorSet* pDescriptorSets, uint32_t dynamicOffsetCount,
                                                  const uint32_t* pDynamicOffsets) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
         if (pipelineBindPoint != VK_PIPELINE_BIND_POINT_GRAPHICS) return;  // nothing can use them
@@ -66,9 +62,8 @@ VKAPI_ATTR void VKAPI_CALL CmdBindDescriptorSets(VkCommandBuffer commandBuffer,
     });
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdPushConstants(VkCommandBuffer commandBuffer, VkPipelineLayout,
-                                            VkShaderStageFlags, uint32_t offset, uint32_t size,
-                                            const void* pValues) {
+VKAPI_ATTR void VKAPI_CALL CmdPushConstants(VkCommandBuffer commandBuffer, VkPipelineLayout, VkShaderStageFlags,
+                                            uint32_t offset, uint32_t size, const void* pValues) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
         const auto bytes = copyArray(buffer, size, static_cast<const std::byte*>(pValues));
         buffer.stream.record(command::PushConstants{offset, bytes});
@@ -85,8 +80,8 @@ VKAPI_ATTR void VKAPI_CALL CmdBindVertexBuffers(VkCommandBuffer commandBuffer, u
     });
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdBindIndexBuffer(VkCommandBuffer commandBuffer, VkBuffer buffer,
-                                              VkDeviceSize offset, VkIndexType indexType) {
+VKAPI_ATTR void VKAPI_CALL CmdBindIndexBuffer(VkCommandBuffer commandBuffer, VkBuffer buffer, VkDeviceSize offset,
+                                              VkIndexType indexType) {
     recording(commandBuffer, [&](CommandBuffer& into) {
         if (indexType != VK_INDEX_TYPE_UINT16 && indexType != VK_INDEX_TYPE_UINT32) {
             return into.fail("vkCmdBindIndexBuffer", "indexType must be UINT16 or UINT32");
@@ -95,16 +90,15 @@ VKAPI_ATTR void VKAPI_CALL CmdBindIndexBuffer(VkCommandBuffer commandBuffer, VkB
     });
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdSetViewport(VkCommandBuffer commandBuffer, uint32_t firstViewport,
-                                          uint32_t viewportCount, const VkViewport* pViewports) {
+VKAPI_ATTR void VKAPI_CALL CmdSetViewport(VkCommandBuffer commandBuffer, uint32_t firstViewport, uint32_t viewportCount,
+                                          const VkViewport* pViewports) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
-        buffer.stream.record(
-            command::SetViewports{firstViewport, copyArray(buffer, viewportCount, pViewports)});
+        buffer.stream.record(command::SetViewports{firstViewport, copyArray(buffer, viewportCount, pViewports)});
     });
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdSetScissor(VkCommandBuffer commandBuffer, uint32_t firstScissor,
-                                         uint32_t scissorCount, const VkRect2D* pScissors) {
+VKAPI_ATTR void VKAPI_CALL CmdSetScissor(VkCommandBuffer commandBuffer, uint32_t firstScissor, uint32_t scissorCount,
+                                         const VkRect2D* pScissors) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
         buffer.stream.record(command::SetScissors{firstScissor, copyArray(buffer, scissorCount, pScissors)});
     });
@@ -116,14 +110,12 @@ VKAPI_ATTR void VKAPI_CALL CmdSetLineWidth(VkCommandBuffer commandBuffer, float 
 
 VKAPI_ATTR void VKAPI_CALL CmdSetDepthBias(VkCommandBuffer commandBuffer, float depthBiasConstantFactor,
                                            float depthBiasClamp, float depthBiasSlopeFactor) {
-    record(commandBuffer,
-           command::SetDepthBias{depthBiasConstantFactor, depthBiasClamp, depthBiasSlopeFactor});
+    record(commandBuffer, command::SetDepthBias{depthBiasConstantFactor, depthBiasClamp, depthBiasSlopeFactor});
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdSetBlendConstants(VkCommandBuffer commandBuffer,
-                                                const float blendConstants[4]) {
-    record(commandBuffer, command::SetBlendConstants{
-                              {blendConstants[0], blendConstants[1], blendConstants[2], blendConstants[3]}});
+VKAPI_ATTR void VKAPI_CALL CmdSetBlendConstants(VkCommandBuffer commandBuffer, const float blendConstants[4]) {
+    record(commandBuffer,
+           command::SetBlendConstants{{blendConstants[0], blendConstants[1], blendConstants[2], blendConstants[3]}});
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdSetDepthBounds(VkCommandBuffer commandBuffer, float minDepthBounds,
@@ -131,10 +123,9 @@ VKAPI_ATTR void VKAPI_CALL CmdSetDepthBounds(VkCommandBuffer commandBuffer, floa
     record(commandBuffer, command::SetDepthBounds{minDepthBounds, maxDepthBounds});
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdSetStencilCompareMask(VkCommandBuffer commandBuffer,
-                                                    VkStencilFaceFlags faceMask, uint32_t compareMask) {
-    record(commandBuffer,
-           command::SetStencil{faceMask, command::SetStencil::Field::compareMask, compareMask});
+VKAPI_ATTR void VKAPI_CALL CmdSetStencilCompareMask(VkCommandBuffer commandBuffer, VkStencilFaceFlags faceMask,
+                                                    uint32_t compareMask) {
+    record(commandBuffer, command::SetStencil{faceMask, command::SetStencil::Field::compareMask, compareMask});
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdSetStencilWriteMask(VkCommandBuffer commandBuffer, VkStencilFaceFlags faceMask,

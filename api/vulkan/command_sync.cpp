@@ -20,21 +20,18 @@ bool inRange(const QueryPool& pool, uint32_t first, uint32_t count) {
 
 /// Records a command about queries, unless they are outside the pool.
 template <class Command>
-void recordQueries(VkCommandBuffer handle, const char* name, uint32_t first, uint32_t count,
-                   const Command& command) {
+void recordQueries(VkCommandBuffer handle, const char* name, uint32_t first, uint32_t count, const Command& command) {
     recording(handle, [&](CommandBuffer& buffer) {
-        if (!inRange(*command.pool, first, count))
-            return buffer.fail(name, "the queries are outside the pool");
+        if (!inRange(*command.pool, first, count)) return buffer.fail(name, "the queries are outside the pool");
         buffer.stream.record(command);
     });
 }
 
 }  // namespace
 
-VKAPI_ATTR void VKAPI_CALL CmdPipelineBarrier(VkCommandBuffer commandBuffer, VkPipelineStageFlags,
-                                              VkPipelineStageFlags, VkDependencyFlags, uint32_t,
-                                              const VkMemoryBarrier*, uint32_t, const VkBufferMemoryBarrier*,
-                                              uint32_t, const VkImageMemoryBarrier*) {
+VKAPI_ATTR void VKAPI_CALL CmdPipelineBarrier(VkCommandBuffer commandBuffer, VkPipelineStageFlags, VkPipelineStageFlags,
+                                              VkDependencyFlags, uint32_t, const VkMemoryBarrier*, uint32_t,
+                                              const VkBufferMemoryBarrier*, uint32_t, const VkImageMemoryBarrier*) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
         if (buffer.pass.pass != nullptr) buffer.stream.record(command::Flush{});
     });
@@ -48,10 +45,9 @@ VKAPI_ATTR void VKAPI_CALL CmdResetEvent(VkCommandBuffer commandBuffer, VkEvent 
     record(commandBuffer, command::SetEvent{&object(event)->set, false});
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdWaitEvents(VkCommandBuffer commandBuffer, uint32_t eventCount,
-                                         const VkEvent* pEvents, VkPipelineStageFlags, VkPipelineStageFlags,
-                                         uint32_t, const VkMemoryBarrier*, uint32_t,
-                                         const VkBufferMemoryBarrier*, uint32_t,
+VKAPI_ATTR void VKAPI_CALL CmdWaitEvents(VkCommandBuffer commandBuffer, uint32_t eventCount, const VkEvent* pEvents,
+                                         VkPipelineStageFlags, VkPipelineStageFlags, uint32_t, const VkMemoryBarrier*,
+                                         uint32_t, const VkBufferMemoryBarrier*, uint32_t,
                                          const VkImageMemoryBarrier*) {
     for (uint32_t i = 0; i < eventCount; ++i) {
         record(commandBuffer, command::WaitEvent{&object(pEvents[i])->set});
@@ -67,25 +63,24 @@ VKAPI_ATTR void VKAPI_CALL CmdEndQuery(VkCommandBuffer commandBuffer, VkQueryPoo
     recordQueries(commandBuffer, "vkCmdEndQuery", query, 1, command::EndQuery{object(queryPool), query});
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdResetQueryPool(VkCommandBuffer commandBuffer, VkQueryPool queryPool,
-                                             uint32_t firstQuery, uint32_t queryCount) {
+VKAPI_ATTR void VKAPI_CALL CmdResetQueryPool(VkCommandBuffer commandBuffer, VkQueryPool queryPool, uint32_t firstQuery,
+                                             uint32_t queryCount) {
     recordQueries(commandBuffer, "vkCmdResetQueryPool", firstQuery, queryCount,
                   command::ResetQueries{object(queryPool), firstQuery, queryCount});
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdWriteTimestamp(VkCommandBuffer commandBuffer, VkPipelineStageFlagBits,
                                              VkQueryPool queryPool, uint32_t query) {
-    recordQueries(commandBuffer, "vkCmdWriteTimestamp", query, 1,
-                  command::WriteTimestamp{object(queryPool), query});
+    recordQueries(commandBuffer, "vkCmdWriteTimestamp", query, 1, command::WriteTimestamp{object(queryPool), query});
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdCopyQueryPoolResults(VkCommandBuffer commandBuffer, VkQueryPool queryPool,
-                                                   uint32_t firstQuery, uint32_t queryCount,
-                                                   VkBuffer dstBuffer, VkDeviceSize dstOffset,
-                                                   VkDeviceSize stride, VkQueryResultFlags flags) {
+                                                   uint32_t firstQuery, uint32_t queryCount, VkBuffer dstBuffer,
+                                                   VkDeviceSize dstOffset, VkDeviceSize stride,
+                                                   VkQueryResultFlags flags) {
     recordQueries(commandBuffer, "vkCmdCopyQueryPoolResults", firstQuery, queryCount,
-                  command::CopyQueryResults{object(queryPool), firstQuery, queryCount, object(dstBuffer),
-                                            dstOffset, stride, flags});
+                  command::CopyQueryResults{object(queryPool), firstQuery, queryCount, object(dstBuffer), dstOffset,
+                                            stride, flags});
 }
 
 }  // namespace vernier::vulkan

@@ -12,8 +12,8 @@ namespace {
 
 /// Records Command{source, destination, regions}.
 template <class Command, class Source, class Destination, class Region, class... More>
-void recordRegions(VkCommandBuffer handle, const Source* source, const Destination* destination,
-                   uint32_t count, const Region* regions, More... more) {
+void recordRegions(VkCommandBuffer handle, const Source* source, const Destination* destination, uint32_t count,
+                   const Region* regions, More... more) {
     recording(handle, [&](CommandBuffer& buffer) {
         buffer.stream.record(Command{source, destination, copyArray(buffer, count, regions), more...});
     });
@@ -47,36 +47,32 @@ void recordClear(VkCommandBuffer handle, const Image& image, const Value& value,
 
 }  // namespace
 
-VKAPI_ATTR void VKAPI_CALL CmdCopyBuffer(VkCommandBuffer commandBuffer, VkBuffer srcBuffer,
-                                         VkBuffer dstBuffer, uint32_t regionCount,
-                                         const VkBufferCopy* pRegions) {
-    recordRegions<command::CopyBuffer>(commandBuffer, object(srcBuffer), object(dstBuffer), regionCount,
-                                       pRegions);
+VKAPI_ATTR void VKAPI_CALL CmdCopyBuffer(VkCommandBuffer commandBuffer, VkBuffer srcBuffer, VkBuffer dstBuffer,
+                                         uint32_t regionCount, const VkBufferCopy* pRegions) {
+    recordRegions<command::CopyBuffer>(commandBuffer, object(srcBuffer), object(dstBuffer), regionCount, pRegions);
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdCopyImage(VkCommandBuffer commandBuffer, VkImage srcImage, VkImageLayout,
                                         VkImage dstImage, VkImageLayout, uint32_t regionCount,
                                         const VkImageCopy* pRegions) {
-    recordRegions<command::CopyImage>(commandBuffer, object(srcImage), object(dstImage), regionCount,
-                                      pRegions);
+    recordRegions<command::CopyImage>(commandBuffer, object(srcImage), object(dstImage), regionCount, pRegions);
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdBlitImage(VkCommandBuffer commandBuffer, VkImage srcImage, VkImageLayout,
                                         VkImage dstImage, VkImageLayout, uint32_t regionCount,
                                         const VkImageBlit* pRegions, VkFilter filter) {
-    recordRegions<command::BlitImage>(commandBuffer, object(srcImage), object(dstImage), regionCount,
-                                      pRegions, filter);
+    recordRegions<command::BlitImage>(commandBuffer, object(srcImage), object(dstImage), regionCount, pRegions, filter);
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdCopyBufferToImage(VkCommandBuffer commandBuffer, VkBuffer srcBuffer,
-                                                VkImage dstImage, VkImageLayout, uint32_t regionCount,
+VKAPI_ATTR void VKAPI_CALL CmdCopyBufferToImage(VkCommandBuffer commandBuffer, VkBuffer srcBuffer, VkImage dstImage,
+                                                VkImageLayout, uint32_t regionCount,
                                                 const VkBufferImageCopy* pRegions) {
     recordRegions<command::CopyBufferToImage>(commandBuffer, object(srcBuffer), object(dstImage), regionCount,
                                               pRegions);
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdCopyImageToBuffer(VkCommandBuffer commandBuffer, VkImage srcImage,
-                                                VkImageLayout, VkBuffer dstBuffer, uint32_t regionCount,
+VKAPI_ATTR void VKAPI_CALL CmdCopyImageToBuffer(VkCommandBuffer commandBuffer, VkImage srcImage, VkImageLayout,
+                                                VkBuffer dstBuffer, uint32_t regionCount,
                                                 const VkBufferImageCopy* pRegions) {
     recordRegions<command::CopyImageToBuffer>(commandBuffer, object(srcImage), object(dstBuffer), regionCount,
                                               pRegions);
@@ -85,8 +81,7 @@ VKAPI_ATTR void VKAPI_CALL CmdCopyImageToBuffer(VkCommandBuffer commandBuffer, V
 VKAPI_ATTR void VKAPI_CALL CmdResolveImage(VkCommandBuffer commandBuffer, VkImage srcImage, VkImageLayout,
                                            VkImage dstImage, VkImageLayout, uint32_t regionCount,
                                            const VkImageResolve* pRegions) {
-    recordRegions<command::ResolveImage>(commandBuffer, object(srcImage), object(dstImage), regionCount,
-                                         pRegions);
+    recordRegions<command::ResolveImage>(commandBuffer, object(srcImage), object(dstImage), regionCount, pRegions);
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdClearColorImage(VkCommandBuffer commandBuffer, VkImage image, VkImageLayout,
@@ -95,24 +90,21 @@ VKAPI_ATTR void VKAPI_CALL CmdClearColorImage(VkCommandBuffer commandBuffer, VkI
     recordClear<command::ClearColorImage>(commandBuffer, *object(image), *pColor, rangeCount, pRanges);
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdClearDepthStencilImage(VkCommandBuffer commandBuffer, VkImage image,
-                                                     VkImageLayout,
-                                                     const VkClearDepthStencilValue* pDepthStencil,
-                                                     uint32_t rangeCount,
+VKAPI_ATTR void VKAPI_CALL CmdClearDepthStencilImage(VkCommandBuffer commandBuffer, VkImage image, VkImageLayout,
+                                                     const VkClearDepthStencilValue* pDepthStencil, uint32_t rangeCount,
                                                      const VkImageSubresourceRange* pRanges) {
-    recordClear<command::ClearDepthStencilImage>(commandBuffer, *object(image), *pDepthStencil, rangeCount,
-                                                 pRanges);
+    recordClear<command::ClearDepthStencilImage>(commandBuffer, *object(image), *pDepthStencil, rangeCount, pRanges);
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdFillBuffer(VkCommandBuffer commandBuffer, VkBuffer dstBuffer,
-                                         VkDeviceSize dstOffset, VkDeviceSize size, uint32_t data) {
+VKAPI_ATTR void VKAPI_CALL CmdFillBuffer(VkCommandBuffer commandBuffer, VkBuffer dstBuffer, VkDeviceSize dstOffset,
+                                         VkDeviceSize size, uint32_t data) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
         buffer.stream.record(command::FillBuffer{object(dstBuffer), dstOffset, size, data});
     });
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdUpdateBuffer(VkCommandBuffer commandBuffer, VkBuffer dstBuffer,
-                                           VkDeviceSize dstOffset, VkDeviceSize dataSize, const void* pData) {
+VKAPI_ATTR void VKAPI_CALL CmdUpdateBuffer(VkCommandBuffer commandBuffer, VkBuffer dstBuffer, VkDeviceSize dstOffset,
+                                           VkDeviceSize dataSize, const void* pData) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
         const std::span bytes(static_cast<const std::byte*>(pData), dataSize);
         buffer.stream.record(command::UpdateBuffer{object(dstBuffer), dstOffset, buffer.stream.copy(bytes)});

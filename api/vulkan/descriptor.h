@@ -13,8 +13,7 @@ namespace vernier::vulkan {
 
 /// Shared with the sets made from it: a layout may be destroyed before them.
 struct DescriptorSetLayoutObject {
-    explicit DescriptorSetLayoutObject(std::shared_ptr<const DescriptorSetLayout> made)
-        : layout(std::move(made)) {}
+    explicit DescriptorSetLayoutObject(std::shared_ptr<const DescriptorSetLayout> made) : layout(std::move(made)) {}
     std::shared_ptr<const DescriptorSetLayout> layout;
 };
 
@@ -22,8 +21,7 @@ struct DescriptorSetLayoutObject {
 struct PipelineLayout {};
 
 struct DescriptorSetObject {
-    explicit DescriptorSetObject(std::shared_ptr<const DescriptorSetLayout> of)
-        : layout(std::move(of)), set(*layout) {}
+    explicit DescriptorSetObject(std::shared_ptr<const DescriptorSetLayout> of) : layout(std::move(of)), set(*layout) {}
     std::shared_ptr<const DescriptorSetLayout> layout;
     DescriptorSet set;
 };
@@ -50,8 +48,7 @@ struct DescriptorPool {
 };
 
 struct DescriptorUpdateTemplate {
-    explicit DescriptorUpdateTemplate(std::vector<VkDescriptorUpdateTemplateEntry> given)
-        : entries(std::move(given)) {}
+    explicit DescriptorUpdateTemplate(std::vector<VkDescriptorUpdateTemplateEntry> given) : entries(std::move(given)) {}
     std::vector<VkDescriptorUpdateTemplateEntry> entries;
 };
 

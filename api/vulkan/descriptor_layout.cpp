@@ -12,8 +12,8 @@ namespace vernier::vulkan {
 namespace {
 
 bool supportedType(VkDescriptorType type) {
-    return static_cast<uint32_t>(type) < kDescriptorTypeCount &&
-           type != VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER && type != VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
+    return static_cast<uint32_t>(type) < kDescriptorTypeCount && type != VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER &&
+           type != VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
 }
 
 bool hasSampler(VkDescriptorType type) {
@@ -26,13 +26,12 @@ Status checkBindings(const VkDescriptorSetLayoutCreateInfo& info) {
         const VkDescriptorSetLayoutBinding& binding = info.pBindings[i];
         if (binding.descriptorCount == 0) continue;  // a reserved number: its type does not count
         if (!supportedType(binding.descriptorType)) {
-            return unsupported("binding " + std::to_string(binding.binding) + ": " +
-                               nameOf(binding.descriptorType) + " is not supported");
+            return unsupported("binding " + std::to_string(binding.binding) + ": " + nameOf(binding.descriptorType) +
+                               " is not supported");
         }
         total += binding.descriptorCount;
     }
-    if (total > kMaxDescriptorsPerSet)
-        return unsupported(std::to_string(total) + " descriptors are too many");
+    if (total > kMaxDescriptorsPerSet) return unsupported(std::to_string(total) + " descriptors are too many");
     return {};
 }
 
@@ -58,8 +57,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateDescriptorSetLayout(VkDevice device,
                 to.immutableSamplers.push_back(object(from.pImmutableSamplers[j]));
             }
         }
-        auto layout =
-            std::make_shared<const DescriptorSetLayout>(DescriptorSetLayout::create(std::move(bindings)));
+        auto layout = std::make_shared<const DescriptorSetLayout>(DescriptorSetLayout::create(std::move(bindings)));
         return createHandle(pAllocator, pSetLayout, std::move(layout));
     });
 }
@@ -69,8 +67,7 @@ VKAPI_ATTR void VKAPI_CALL DestroyDescriptorSetLayout(VkDevice, VkDescriptorSetL
     destroyHandle(pAllocator, descriptorSetLayout);
 }
 
-VKAPI_ATTR void VKAPI_CALL GetDescriptorSetLayoutSupport(VkDevice,
-                                                         const VkDescriptorSetLayoutCreateInfo* pCreateInfo,
+VKAPI_ATTR void VKAPI_CALL GetDescriptorSetLayoutSupport(VkDevice, const VkDescriptorSetLayoutCreateInfo* pCreateInfo,
                                                          VkDescriptorSetLayoutSupport* pSupport) {
     pSupport->supported = VK_FALSE;
     (void)guarded([&] {
@@ -79,8 +76,7 @@ VKAPI_ATTR void VKAPI_CALL GetDescriptorSetLayoutSupport(VkDevice,
     });
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL CreatePipelineLayout(VkDevice device,
-                                                    const VkPipelineLayoutCreateInfo* pCreateInfo,
+VKAPI_ATTR VkResult VKAPI_CALL CreatePipelineLayout(VkDevice device, const VkPipelineLayoutCreateInfo* pCreateInfo,
                                                     const VkAllocationCallbacks* pAllocator,
                                                     VkPipelineLayout* pPipelineLayout) {
     return guarded([&] {

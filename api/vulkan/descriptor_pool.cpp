@@ -20,8 +20,7 @@ DescriptorPool::~DescriptorPool() {
     reset();
 }
 
-VkResult DescriptorPool::allocate(const std::shared_ptr<const DescriptorSetLayout>& layout,
-                                  VkDescriptorSet* out) {
+VkResult DescriptorPool::allocate(const std::shared_ptr<const DescriptorSetLayout>& layout, VkDescriptorSet* out) {
     if (setsLeft_ == 0) return VK_ERROR_OUT_OF_POOL_MEMORY;
     std::array<uint32_t, kDescriptorTypeCount> left = left_;
     for (const DescriptorBinding& binding : layout->bindings) {
@@ -73,16 +72,14 @@ VKAPI_ATTR VkResult VKAPI_CALL ResetDescriptorPool(VkDevice, VkDescriptorPool de
     return VK_SUCCESS;
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL AllocateDescriptorSets(VkDevice,
-                                                      const VkDescriptorSetAllocateInfo* pAllocateInfo,
+VKAPI_ATTR VkResult VKAPI_CALL AllocateDescriptorSets(VkDevice, const VkDescriptorSetAllocateInfo* pAllocateInfo,
                                                       VkDescriptorSet* pDescriptorSets) {
     DescriptorPool& pool = *object(pAllocateInfo->descriptorPool);
     const uint32_t count = pAllocateInfo->descriptorSetCount;
     std::fill_n(pDescriptorSets, count, VkDescriptorSet{VK_NULL_HANDLE});
     const VkResult result = guarded([&] {
         for (uint32_t i = 0; i < count; ++i) {
-            const VkResult one =
-                pool.allocate(object(pAllocateInfo->pSetLayouts[i])->layout, &pDescriptorSets[i]);
+            const VkResult one = pool.allocate(object(pAllocateInfo->pSetLayouts[i])->layout, &pDescriptorSets[i]);
             if (one != VK_SUCCESS) return one;
         }
         return VK_SUCCESS;
@@ -98,8 +95,7 @@ VKAPI_ATTR VkResult VKAPI_CALL AllocateDescriptorSets(VkDevice,
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL FreeDescriptorSets(VkDevice, VkDescriptorPool descriptorPool,
-                                                  uint32_t descriptorSetCount,
-                                                  const VkDescriptorSet* pDescriptorSets) {
+                                                  uint32_t descriptorSetCount, const VkDescriptorSet* pDescriptorSets) {
     for (uint32_t i = 0; i < descriptorSetCount; ++i) {
         if (pDescriptorSets[i] != VK_NULL_HANDLE) object(descriptorPool)->free(object(pDescriptorSets[i]));
     }

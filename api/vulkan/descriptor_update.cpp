@@ -56,8 +56,8 @@ void writeOne(const Device& device, DescriptorSet& set, const SlotCursor& cursor
     Status status;
     switch (cursor.type()) {
         case VK_DESCRIPTOR_TYPE_SAMPLER:
-            status = set.writeImage(cursor.slot(), nullptr,
-                                    immutable != nullptr ? immutable : object(image.sampler), isa);
+            status =
+                set.writeImage(cursor.slot(), nullptr, immutable != nullptr ? immutable : object(image.sampler), isa);
             break;
         case VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER:
             status = set.writeImage(cursor.slot(), textureOf(image.imageView),
@@ -88,8 +88,7 @@ bool matches(const SlotCursor& cursor, VkDescriptorType type) {
 void write(const Device& device, const VkWriteDescriptorSet& info) {
     DescriptorSet& set = object(info.dstSet)->set;
     SlotCursor cursor(set.layout(), info.dstBinding, info.dstArrayElement);
-    for (uint32_t i = 0; i < info.descriptorCount && matches(cursor, info.descriptorType);
-         ++i, cursor.next()) {
+    for (uint32_t i = 0; i < info.descriptorCount && matches(cursor, info.descriptorType); ++i, cursor.next()) {
         const void* image = info.pImageInfo != nullptr ? info.pImageInfo + i : nullptr;
         const void* buffer = info.pBufferInfo != nullptr ? info.pBufferInfo + i : nullptr;
         const bool isBuffer = cursor.type() >= VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER &&
@@ -131,9 +130,10 @@ VKAPI_ATTR void VKAPI_CALL UpdateDescriptorSets(VkDevice device, uint32_t descri
     });
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL CreateDescriptorUpdateTemplate(
-    VkDevice device, const VkDescriptorUpdateTemplateCreateInfo* pCreateInfo,
-    const VkAllocationCallbacks* pAllocator, VkDescriptorUpdateTemplate* pDescriptorUpdateTemplate) {
+VKAPI_ATTR VkResult VKAPI_CALL CreateDescriptorUpdateTemplate(VkDevice device,
+                                                              const VkDescriptorUpdateTemplateCreateInfo* pCreateInfo,
+                                                              const VkAllocationCallbacks* pAllocator,
+                                                              VkDescriptorUpdateTemplate* pDescriptorUpdateTemplate) {
     return guarded([&] {
         if (pCreateInfo->templateType != VK_DESCRIPTOR_UPDATE_TEMPLATE_TYPE_DESCRIPTOR_SET) {
             return object(device)->report("vkCreateDescriptorUpdateTemplate", VK_ERROR_FEATURE_NOT_PRESENT,
@@ -145,14 +145,15 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateDescriptorUpdateTemplate(
     });
 }
 
-VKAPI_ATTR void VKAPI_CALL DestroyDescriptorUpdateTemplate(
-    VkDevice, VkDescriptorUpdateTemplate descriptorUpdateTemplate, const VkAllocationCallbacks* pAllocator) {
+VKAPI_ATTR void VKAPI_CALL DestroyDescriptorUpdateTemplate(VkDevice,
+                                                           VkDescriptorUpdateTemplate descriptorUpdateTemplate,
+                                                           const VkAllocationCallbacks* pAllocator) {
     destroyHandle(pAllocator, descriptorUpdateTemplate);
 }
 
-VKAPI_ATTR void VKAPI_CALL
-UpdateDescriptorSetWithTemplate(VkDevice device, VkDescriptorSet descriptorSet,
-                                VkDescriptorUpdateTemplate descriptorUpdateTemplate, const void* pData) {
+VKAPI_ATTR void VKAPI_CALL UpdateDescriptorSetWithTemplate(VkDevice device, VkDescriptorSet descriptorSet,
+                                                           VkDescriptorUpdateTemplate descriptorUpdateTemplate,
+                                                           const void* pData) {
     (void)guarded([&] {
         DescriptorSet& set = object(descriptorSet)->set;
         for (const VkDescriptorUpdateTemplateEntry& entry : object(descriptorUpdateTemplate)->entries) {

@@ -22,22 +22,20 @@ VkResult Device::report(const char* command, const Error& error) const {
     return report(command, resultOf(error), error.message);
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL CreateDevice(VkPhysicalDevice physicalDevice,
-                                            const VkDeviceCreateInfo* pCreateInfo,
+VKAPI_ATTR VkResult VKAPI_CALL CreateDevice(VkPhysicalDevice physicalDevice, const VkDeviceCreateInfo* pCreateInfo,
                                             const VkAllocationCallbacks* pAllocator, VkDevice* pDevice) {
     return guarded([&] {
         PhysicalDevice& parent = *object(physicalDevice);
         const auto refuse = [&](VkResult result, const std::string& text) {
-            parent.instance.messages.error(
-                "vkCreateDevice", {VK_OBJECT_TYPE_PHYSICAL_DEVICE, reinterpret_cast<uint64_t>(&parent)},
-                text);
+            parent.instance.messages.error("vkCreateDevice",
+                                           {VK_OBJECT_TYPE_PHYSICAL_DEVICE, reinterpret_cast<uint64_t>(&parent)}, text);
             return result;
         };
         ExtensionSet extensions = parent.instance.extensions;
         const char* missing = nullptr;
         if (selectExtensions(ExtensionScope::device,
-                             {pCreateInfo->ppEnabledExtensionNames, pCreateInfo->enabledExtensionCount},
-                             extensions, missing) != VK_SUCCESS) {
+                             {pCreateInfo->ppEnabledExtensionNames, pCreateInfo->enabledExtensionCount}, extensions,
+                             missing) != VK_SUCCESS) {
             return refuse(VK_ERROR_EXTENSION_NOT_PRESENT, std::string("no device extension ") + missing);
         }
         if (checkFeatures(*pCreateInfo, missing) != VK_SUCCESS) {
@@ -46,8 +44,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateDevice(VkPhysicalDevice physicalDevice,
         for (uint32_t i = 0; i < pCreateInfo->queueCreateInfoCount; ++i) {
             const VkDeviceQueueCreateInfo& queue = pCreateInfo->pQueueCreateInfos[i];
             if (queue.queueFamilyIndex != 0 || queue.queueCount > 1 || queue.flags != 0) {
-                return refuse(VK_ERROR_INITIALIZATION_FAILED,
-                              "there is one queue family with one unprotected queue");
+                return refuse(VK_ERROR_INITIALIZATION_FAILED, "there is one queue family with one unprotected queue");
             }
         }
         DeviceDesc desc;

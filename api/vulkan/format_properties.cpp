@@ -37,9 +37,8 @@ constexpr VkImageUsageFlags kKnownUsages = [] {
     return all;
 }();
 
-constexpr VkImageCreateFlags kKnownFlags = VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT |
-                                           VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT |
-                                           VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT;
+constexpr VkImageCreateFlags kKnownFlags =
+    VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT | VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT;
 
 bool flagsFit(VkImageType type, VkImageCreateFlags flags) {
     if ((flags & ~kKnownFlags) != 0) return false;
@@ -52,8 +51,8 @@ VkSampleCountFlags sampleCounts(VkFormatFeatureFlags features, VkImageType type,
     constexpr VkFormatFeatureFlags kAttachment =
         VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT | VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT;
     const bool multisampled = tiling == VK_IMAGE_TILING_OPTIMAL && type == VK_IMAGE_TYPE_2D &&
-                              (flags & VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT) == 0 &&
-                              (features & kAttachment) != 0 && (usage & VK_IMAGE_USAGE_STORAGE_BIT) == 0;
+                              (flags & VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT) == 0 && (features & kAttachment) != 0 &&
+                              (usage & VK_IMAGE_USAGE_STORAGE_BIT) == 0;
     return multisampled ? VK_SAMPLE_COUNT_1_BIT | VK_SAMPLE_COUNT_4_BIT : VK_SAMPLE_COUNT_1_BIT;
 }
 
@@ -73,21 +72,17 @@ VkExtent3D maxExtent(VkImageType type) {
 VkFormatProperties formatProperties(VkFormat format) {
     const FormatInfo* info = findFormat(format);
     if (info == nullptr) return {};
-    return {info->linearTilingFeatures, info->optimalTilingFeatures,
-            info->bufferFeatures & kUsedBufferFeatures};
+    return {info->linearTilingFeatures, info->optimalTilingFeatures, info->bufferFeatures & kUsedBufferFeatures};
 }
 
-VkResult imageFormatProperties(const PhysicalDevice& device, VkFormat format, VkImageType type,
-                               VkImageTiling tiling, VkImageUsageFlags usage, VkImageCreateFlags flags,
-                               VkImageFormatProperties& properties) {
+VkResult imageFormatProperties(const PhysicalDevice& device, VkFormat format, VkImageType type, VkImageTiling tiling,
+                               VkImageUsageFlags usage, VkImageCreateFlags flags, VkImageFormatProperties& properties) {
     properties = {};
     const VkFormatProperties formats = formatProperties(format);
     const bool linear = tiling == VK_IMAGE_TILING_LINEAR;
-    const VkFormatFeatureFlags features =
-        linear ? formats.linearTilingFeatures : formats.optimalTilingFeatures;
+    const VkFormatFeatureFlags features = linear ? formats.linearTilingFeatures : formats.optimalTilingFeatures;
     const bool knownType = type == VK_IMAGE_TYPE_1D || type == VK_IMAGE_TYPE_2D || type == VK_IMAGE_TYPE_3D;
-    if (features == 0 || !knownType || (!linear && tiling != VK_IMAGE_TILING_OPTIMAL) ||
-        !flagsFit(type, flags)) {
+    if (features == 0 || !knownType || (!linear && tiling != VK_IMAGE_TILING_OPTIMAL) || !flagsFit(type, flags)) {
         return VK_ERROR_FORMAT_NOT_SUPPORTED;
     }
     if ((usage & ~kKnownUsages) != 0) return VK_ERROR_FORMAT_NOT_SUPPORTED;
@@ -118,11 +113,11 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceFormatProperties2(VkPhysicalDevice, 
     pFormatProperties->formatProperties = formatProperties(format);
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties(
-    VkPhysicalDevice physicalDevice, VkFormat format, VkImageType type, VkImageTiling tiling,
-    VkImageUsageFlags usage, VkImageCreateFlags flags, VkImageFormatProperties* pImageFormatProperties) {
-    return imageFormatProperties(*object(physicalDevice), format, type, tiling, usage, flags,
-                                 *pImageFormatProperties);
+VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties(VkPhysicalDevice physicalDevice, VkFormat format,
+                                                                      VkImageType type, VkImageTiling tiling,
+                                                                      VkImageUsageFlags usage, VkImageCreateFlags flags,
+                                                                      VkImageFormatProperties* pImageFormatProperties) {
+    return imageFormatProperties(*object(physicalDevice), format, type, tiling, usage, flags, *pImageFormatProperties);
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties2(
@@ -135,17 +130,17 @@ VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties2(
 
 // Sparse resources are not supported: nothing to list.
 
-VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceSparseImageFormatProperties(VkPhysicalDevice, VkFormat,
-                                                                        VkImageType, VkSampleCountFlagBits,
-                                                                        VkImageUsageFlags, VkImageTiling,
-                                                                        uint32_t* pPropertyCount,
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceSparseImageFormatProperties(VkPhysicalDevice, VkFormat, VkImageType,
+                                                                        VkSampleCountFlagBits, VkImageUsageFlags,
+                                                                        VkImageTiling, uint32_t* pPropertyCount,
                                                                         VkSparseImageFormatProperties*) {
     *pPropertyCount = 0;
 }
 
-VKAPI_ATTR void VKAPI_CALL
-GetPhysicalDeviceSparseImageFormatProperties2(VkPhysicalDevice, const VkPhysicalDeviceSparseImageFormatInfo2*,
-                                              uint32_t* pPropertyCount, VkSparseImageFormatProperties2*) {
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceSparseImageFormatProperties2(VkPhysicalDevice,
+                                                                         const VkPhysicalDeviceSparseImageFormatInfo2*,
+                                                                         uint32_t* pPropertyCount,
+                                                                         VkSparseImageFormatProperties2*) {
     *pPropertyCount = 0;
 }
 

@@ -12,8 +12,7 @@ namespace vernier::vulkan {
 VkFormatProperties formatProperties(VkFormat format);
 
 /// vkGetPhysicalDeviceImageFormatProperties.
-VkResult imageFormatProperties(const PhysicalDevice& device, VkFormat format, VkImageType type,
-                               VkImageTiling tiling, VkImageUsageFlags usage, VkImageCreateFlags flags,
-                               VkImageFormatProperties& properties);
+VkResult imageFormatProperties(const PhysicalDevice& device, VkFormat format, VkImageType type, VkImageTiling tiling,
+                               VkImageUsageFlags usage, VkImageCreateFlags flags, VkImageFormatProperties& properties);
 
 }  // namespace vernier::vulkan

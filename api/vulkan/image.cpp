@@ -14,28 +14,24 @@ namespace {
 /// The creation parameters against what vkGetPhysicalDeviceImageFormatProperties promises.
 Status checkCreateInfo(const PhysicalDevice& device, const VkImageCreateInfo& info) {
     VkImageFormatProperties limits{};
-    const VkResult supported = imageFormatProperties(device, info.format, info.imageType, info.tiling,
-                                                     info.usage, info.flags, limits);
+    const VkResult supported =
+        imageFormatProperties(device, info.format, info.imageType, info.tiling, info.usage, info.flags, limits);
     if (supported != VK_SUCCESS) {
-        return unsupported("images of " + nameOf(info.format) + " with imageType " +
-                           std::to_string(info.imageType) + ", tiling " + std::to_string(info.tiling) +
-                           ", usage " + std::to_string(info.usage) + ", flags " + std::to_string(info.flags) +
-                           " are not supported");
+        return unsupported("images of " + nameOf(info.format) + " with imageType " + std::to_string(info.imageType) +
+                           ", tiling " + std::to_string(info.tiling) + ", usage " + std::to_string(info.usage) +
+                           ", flags " + std::to_string(info.flags) + " are not supported");
     }
     const auto bad = [](const char* field, uint64_t value, uint64_t limit) {
         return invalidArgument(std::string(field) + " is " + std::to_string(value) + ", allowed are 1 to " +
                                std::to_string(limit));
     };
     const VkExtent3D& extent = info.extent;
-    if (extent.width - 1 >= limits.maxExtent.width)
-        return bad("extent.width", extent.width, limits.maxExtent.width);
+    if (extent.width - 1 >= limits.maxExtent.width) return bad("extent.width", extent.width, limits.maxExtent.width);
     if (extent.height - 1 >= limits.maxExtent.height) {
         return bad("extent.height", extent.height, limits.maxExtent.height);
     }
-    if (extent.depth - 1 >= limits.maxExtent.depth)
-        return bad("extent.depth", extent.depth, limits.maxExtent.depth);
-    if (info.mipLevels - 1 >= limits.maxMipLevels)
-        return bad("mipLevels", info.mipLevels, limits.maxMipLevels);
+    if (extent.depth - 1 >= limits.maxExtent.depth) return bad("extent.depth", extent.depth, limits.maxExtent.depth);
+    if (info.mipLevels - 1 >= limits.maxMipLevels) return bad("mipLevels", info.mipLevels, limits.maxMipLevels);
     if (info.arrayLayers - 1 >= limits.maxArrayLayers) {
         return bad("arrayLayers", info.arrayLayers, limits.maxArrayLayers);
     }
@@ -86,14 +82,12 @@ VKAPI_ATTR void VKAPI_CALL GetImageMemoryRequirements2(VkDevice, const VkImageMe
     fillRequirementChain(pMemoryRequirements->pNext);
 }
 
-VKAPI_ATTR void VKAPI_CALL GetImageSparseMemoryRequirements(VkDevice, VkImage,
-                                                            uint32_t* pSparseMemoryRequirementCount,
+VKAPI_ATTR void VKAPI_CALL GetImageSparseMemoryRequirements(VkDevice, VkImage, uint32_t* pSparseMemoryRequirementCount,
                                                             VkSparseImageMemoryRequirements*) {
     *pSparseMemoryRequirementCount = 0;
 }
 
-VKAPI_ATTR void VKAPI_CALL GetImageSparseMemoryRequirements2(VkDevice,
-                                                             const VkImageSparseMemoryRequirementsInfo2*,
+VKAPI_ATTR void VKAPI_CALL GetImageSparseMemoryRequirements2(VkDevice, const VkImageSparseMemoryRequirementsInfo2*,
                                                              uint32_t* pSparseMemoryRequirementCount,
                                                              VkSparseImageMemoryRequirements2*) {
     *pSparseMemoryRequirementCount = 0;
@@ -102,8 +96,7 @@ VKAPI_ATTR void VKAPI_CALL GetImageSparseMemoryRequirements2(VkDevice,
 VKAPI_ATTR VkResult VKAPI_CALL BindImageMemory(VkDevice device, VkImage image, VkDeviceMemory memory,
                                                VkDeviceSize memoryOffset) {
     return guarded([&] {
-        if (const Status fits = checkBinding(object(memory), memoryOffset, object(image)->memorySize());
-            !fits) {
+        if (const Status fits = checkBinding(object(memory), memoryOffset, object(image)->memorySize()); !fits) {
             return object(device)->report("vkBindImageMemory", fits.error());
         }
         object(image)->bind(*object(memory)->memory, memoryOffset);
@@ -122,8 +115,7 @@ VKAPI_ATTR VkResult VKAPI_CALL BindImageMemory2(VkDevice device, uint32_t bindIn
     return result;
 }
 
-VKAPI_ATTR void VKAPI_CALL GetImageSubresourceLayout(VkDevice, VkImage image,
-                                                     const VkImageSubresource* pSubresource,
+VKAPI_ATTR void VKAPI_CALL GetImageSubresourceLayout(VkDevice, VkImage image, const VkImageSubresource* pSubresource,
                                                      VkSubresourceLayout* pLayout) {
     const Image& of = *object(image);
     const LevelLayout& level = of.level(std::min(pSubresource->mipLevel, of.info().mipLevels - 1));
@@ -145,10 +137,8 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateImageView(VkDevice device, const VkImageVie
         info.components = pCreateInfo->components;
         info.range = pCreateInfo->subresourceRange;
         const uint32_t mip = std::min(info.range.baseMipLevel, image.info().mipLevels - 1);
-        const uint32_t layers =
-            seesSlices(image, info.type) ? image.level(mip).extent.depth : image.info().arrayLayers;
-        if (info.range.levelCount == VK_REMAINING_MIP_LEVELS &&
-            info.range.baseMipLevel < image.info().mipLevels) {
+        const uint32_t layers = seesSlices(image, info.type) ? image.level(mip).extent.depth : image.info().arrayLayers;
+        if (info.range.levelCount == VK_REMAINING_MIP_LEVELS && info.range.baseMipLevel < image.info().mipLevels) {
             info.range.levelCount = image.info().mipLevels - info.range.baseMipLevel;
         }
         if (info.range.layerCount == VK_REMAINING_ARRAY_LAYERS && info.range.baseArrayLayer < layers) {
@@ -160,8 +150,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateImageView(VkDevice device, const VkImageVie
     });
 }
 
-VKAPI_ATTR void VKAPI_CALL DestroyImageView(VkDevice, VkImageView imageView,
-                                            const VkAllocationCallbacks* pAllocator) {
+VKAPI_ATTR void VKAPI_CALL DestroyImageView(VkDevice, VkImageView imageView, const VkAllocationCallbacks* pAllocator) {
     destroyHandle(pAllocator, imageView);
 }
 
@@ -176,8 +165,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateSampler(VkDevice device, const VkSamplerCre
     });
 }
 
-VKAPI_ATTR void VKAPI_CALL DestroySampler(VkDevice, VkSampler sampler,
-                                          const VkAllocationCallbacks* pAllocator) {
+VKAPI_ATTR void VKAPI_CALL DestroySampler(VkDevice, VkSampler sampler, const VkAllocationCallbacks* pAllocator) {
     destroyHandle(pAllocator, sampler);
 }
 

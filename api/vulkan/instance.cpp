@@ -8,22 +8,19 @@
 
 namespace vernier::vulkan {
 
-VKAPI_ATTR VkResult VKAPI_CALL EnumerateInstanceExtensionProperties(const char* pLayerName,
-                                                                    uint32_t* pPropertyCount,
+VKAPI_ATTR VkResult VKAPI_CALL EnumerateInstanceExtensionProperties(const char* pLayerName, uint32_t* pPropertyCount,
                                                                     VkExtensionProperties* pProperties) {
     if (pLayerName != nullptr) return VK_ERROR_LAYER_NOT_PRESENT;
     return enumerateExtensions(ExtensionScope::instance, pPropertyCount, pProperties);
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL EnumerateInstanceLayerProperties(uint32_t* pPropertyCount,
-                                                                VkLayerProperties*) {
+VKAPI_ATTR VkResult VKAPI_CALL EnumerateInstanceLayerProperties(uint32_t* pPropertyCount, VkLayerProperties*) {
     *pPropertyCount = 0;
     return VK_SUCCESS;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateInstance(const VkInstanceCreateInfo* pCreateInfo,
-                                              const VkAllocationCallbacks* pAllocator,
-                                              VkInstance* pInstance) {
+                                              const VkAllocationCallbacks* pAllocator, VkInstance* pInstance) {
     return guarded([&] {
         const Result<Configuration> configuration = readConfiguration();
         if (!configuration) {
@@ -34,8 +31,8 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateInstance(const VkInstanceCreateInfo* pCreat
         ExtensionSet extensions = 0;
         const char* missing = nullptr;
         const VkResult selected = selectExtensions(
-            ExtensionScope::instance,
-            {pCreateInfo->ppEnabledExtensionNames, pCreateInfo->enabledExtensionCount}, extensions, missing);
+            ExtensionScope::instance, {pCreateInfo->ppEnabledExtensionNames, pCreateInfo->enabledExtensionCount},
+            extensions, missing);
         if (selected != VK_SUCCESS) {
             if (configuration->log) {
                 std::fprintf(stderr, "vernier: vkCreateInstance: no instance extension %s\n", missing);

@@ -10,8 +10,7 @@
 namespace vernier::vulkan {
 
 struct Instance : Dispatchable {
-    explicit Instance(const Configuration& settings)
-        : configuration(settings), physicalDevice(*this, settings) {}
+    explicit Instance(const Configuration& settings) : configuration(settings), physicalDevice(*this, settings) {}
 
     Configuration configuration;
     ExtensionSet extensions = 0;

@@ -125,8 +125,7 @@ VkPhysicalDeviceLimits deviceLimits(const VkPhysicalDeviceFeatures& features, co
     limits.pointSizeRange[1] = kMaxPointSize;
     limits.lineWidthRange[0] = 1;
     limits.lineWidthRange[1] = kMaxLineWidth;
-    limits.pointSizeGranularity = limits.lineWidthGranularity =
-        1.0f / static_cast<float>(1u << accuracy.subPixelBits);
+    limits.pointSizeGranularity = limits.lineWidthGranularity = 1.0f / static_cast<float>(1u << accuracy.subPixelBits);
     limits.strictLines = VK_TRUE;
     limits.standardSampleLocations = VK_TRUE;
     return limits;

@@ -48,8 +48,7 @@ Status checkBinding(const DeviceMemory* memory, VkDeviceSize offset, VkDeviceSiz
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL AllocateMemory(VkDevice device, const VkMemoryAllocateInfo* pAllocateInfo,
-                                              const VkAllocationCallbacks* pAllocator,
-                                              VkDeviceMemory* pMemory) {
+                                              const VkAllocationCallbacks* pAllocator, VkDeviceMemory* pMemory) {
     return guarded([&] {
         Device& owner = *object(device);
         const VkDeviceSize size = pAllocateInfo->allocationSize;
@@ -65,20 +64,18 @@ VKAPI_ATTR VkResult VKAPI_CALL AllocateMemory(VkDevice device, const VkMemoryAll
     });
 }
 
-VKAPI_ATTR void VKAPI_CALL FreeMemory(VkDevice device, VkDeviceMemory memory,
-                                      const VkAllocationCallbacks* pAllocator) {
+VKAPI_ATTR void VKAPI_CALL FreeMemory(VkDevice device, VkDeviceMemory memory, const VkAllocationCallbacks* pAllocator) {
     if (memory != VK_NULL_HANDLE) object(device)->allocated -= object(memory)->memory->size();
     destroyHandle(pAllocator, memory);
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL MapMemory(VkDevice device, VkDeviceMemory memory, VkDeviceSize offset,
-                                         VkDeviceSize size, VkMemoryMapFlags, void** ppData) {
+VKAPI_ATTR VkResult VKAPI_CALL MapMemory(VkDevice device, VkDeviceMemory memory, VkDeviceSize offset, VkDeviceSize size,
+                                         VkMemoryMapFlags, void** ppData) {
     return guarded([&] {
         const Memory& mapped = *object(memory)->memory;
         const bool whole = size == VK_WHOLE_SIZE;
         if (offset > mapped.size() || (!whole && size > mapped.size() - offset)) {
-            return object(device)->report("vkMapMemory", VK_ERROR_MEMORY_MAP_FAILED,
-                                          "the range is outside the memory");
+            return object(device)->report("vkMapMemory", VK_ERROR_MEMORY_MAP_FAILED, "the range is outside the memory");
         }
         *ppData = mapped.data() + offset;
         return VK_SUCCESS;

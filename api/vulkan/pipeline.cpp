@@ -51,15 +51,13 @@ Status checkResources(const ir::Program* program) {
             default:
                 continue;
         }
-        return unsupported("set " + std::to_string(resource.set) + ", binding " +
-                           std::to_string(resource.binding) + ": the shader reads " + what +
-                           ", which is not supported");
+        return unsupported("set " + std::to_string(resource.set) + ", binding " + std::to_string(resource.binding) +
+                           ": the shader reads " + what + ", which is not supported");
     }
     return {};
 }
 
-Result<std::shared_ptr<const ShaderProgram>> loadProgram(const Device& device,
-                                                         const VkGraphicsPipelineCreateInfo& info,
+Result<std::shared_ptr<const ShaderProgram>> loadProgram(const Device& device, const VkGraphicsPipelineCreateInfo& info,
                                                          bool rasterizerDiscard) {
     const VkPipelineShaderStageCreateInfo* vertexStage = nullptr;
     const VkPipelineShaderStageCreateInfo* fragmentStage = nullptr;
@@ -112,13 +110,11 @@ VkResult createOne(const Device& device, const VkGraphicsPipelineCreateInfo& inf
 
 }  // namespace
 
-VKAPI_ATTR VkResult VKAPI_CALL CreateShaderModule(VkDevice device,
-                                                  const VkShaderModuleCreateInfo* pCreateInfo,
+VKAPI_ATTR VkResult VKAPI_CALL CreateShaderModule(VkDevice device, const VkShaderModuleCreateInfo* pCreateInfo,
                                                   const VkAllocationCallbacks* pAllocator,
                                                   VkShaderModule* pShaderModule) {
     return guarded([&] {
-        std::vector<uint32_t> words(pCreateInfo->pCode,
-                                    pCreateInfo->pCode + pCreateInfo->codeSize / sizeof(uint32_t));
+        std::vector<uint32_t> words(pCreateInfo->pCode, pCreateInfo->pCode + pCreateInfo->codeSize / sizeof(uint32_t));
         if (const Status status = checkModule(words); !status) {
             return object(device)->report("vkCreateShaderModule", status.error());
         }
@@ -142,8 +138,7 @@ VKAPI_ATTR void VKAPI_CALL DestroyPipelineCache(VkDevice, VkPipelineCache pipeli
     destroyHandle(pAllocator, pipelineCache);
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL GetPipelineCacheData(VkDevice device, VkPipelineCache, size_t* pDataSize,
-                                                    void* pData) {
+VKAPI_ATTR VkResult VKAPI_CALL GetPipelineCacheData(VkDevice device, VkPipelineCache, size_t* pDataSize, void* pData) {
     const VkPhysicalDeviceProperties& properties = object(device)->physicalDevice.properties;
     VkPipelineCacheHeaderVersionOne header{};
     header.headerSize = sizeof header;
@@ -164,13 +159,11 @@ VKAPI_ATTR VkResult VKAPI_CALL GetPipelineCacheData(VkDevice device, VkPipelineC
     return VK_SUCCESS;
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL MergePipelineCaches(VkDevice, VkPipelineCache, uint32_t,
-                                                   const VkPipelineCache*) {
+VKAPI_ATTR VkResult VKAPI_CALL MergePipelineCaches(VkDevice, VkPipelineCache, uint32_t, const VkPipelineCache*) {
     return VK_SUCCESS;
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL CreateGraphicsPipelines(VkDevice device, VkPipelineCache,
-                                                       uint32_t createInfoCount,
+VKAPI_ATTR VkResult VKAPI_CALL CreateGraphicsPipelines(VkDevice device, VkPipelineCache, uint32_t createInfoCount,
                                                        const VkGraphicsPipelineCreateInfo* pCreateInfos,
                                                        const VkAllocationCallbacks* pAllocator,
                                                        VkPipeline* pPipelines) {
@@ -184,8 +177,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateGraphicsPipelines(VkDevice device, VkPipeli
     return result;
 }
 
-VKAPI_ATTR void VKAPI_CALL DestroyPipeline(VkDevice, VkPipeline pipeline,
-                                           const VkAllocationCallbacks* pAllocator) {
+VKAPI_ATTR void VKAPI_CALL DestroyPipeline(VkDevice, VkPipeline pipeline, const VkAllocationCallbacks* pAllocator) {
     destroyHandle(pAllocator, pipeline);
 }
 

@@ -74,8 +74,7 @@ void readRasterization(const VkPipelineRasterizationStateCreateInfo& info, Pipel
     state.cullMode = info.cullMode;
     state.frontFace = info.frontFace;
     state.depthBiasEnable = info.depthBiasEnable != VK_FALSE;
-    if (const auto* vertex =
-            findInChain<VkPipelineRasterizationProvokingVertexStateCreateInfoEXT>(info.pNext)) {
+    if (const auto* vertex = findInChain<VkPipelineRasterizationProvokingVertexStateCreateInfoEXT>(info.pNext)) {
         state.provokingVertexLast = vertex->provokingVertexMode == VK_PROVOKING_VERTEX_MODE_LAST_VERTEX_EXT;
     }
     result.fixed.lineWidth = info.lineWidth;
@@ -86,10 +85,8 @@ void readRasterization(const VkPipelineRasterizationStateCreateInfo& info, Pipel
 
 Status readViewports(const VkPipelineViewportStateCreateInfo* info, PipelineState& result) {
     if (info == nullptr) return invalidArgument("pViewportState must be given");
-    if (info->viewportCount > kMaxViewports)
-        return aboveLimit("viewportCount", info->viewportCount, kMaxViewports);
-    if (info->scissorCount > kMaxViewports)
-        return aboveLimit("scissorCount", info->scissorCount, kMaxViewports);
+    if (info->viewportCount > kMaxViewports) return aboveLimit("viewportCount", info->viewportCount, kMaxViewports);
+    if (info->scissorCount > kMaxViewports) return aboveLimit("scissorCount", info->scissorCount, kMaxViewports);
     result.fixed.viewportCount = std::max(1u, info->viewportCount);
     if (!isDynamic(result, VK_DYNAMIC_STATE_VIEWPORT) && info->pViewports != nullptr) {
         std::copy_n(info->pViewports, info->viewportCount, result.fixed.viewports.begin());
@@ -104,8 +101,7 @@ Status readMultisample(const VkPipelineMultisampleStateCreateInfo* info, Graphic
     if (info == nullptr) return invalidArgument("pMultisampleState must be given");
     state.samples = static_cast<uint32_t>(info->rasterizationSamples);
     if (state.samples != 1 && state.samples != kMaxSamples) {
-        return unsupported("rasterizationSamples is " + std::to_string(state.samples) +
-                           "; supported are 1 and 4");
+        return unsupported("rasterizationSamples is " + std::to_string(state.samples) + "; supported are 1 and 4");
     }
     state.sampleMask = info->pSampleMask != nullptr ? info->pSampleMask[0] : ~0u;
     state.sampleShading = info->sampleShadingEnable != VK_FALSE;
@@ -120,8 +116,7 @@ DynamicState::StencilFace stencilFace(const VkStencilOpState& from) {
 }
 
 Status readDepthStencil(const VkPipelineDepthStencilStateCreateInfo* info, PipelineState& result) {
-    if (info == nullptr)
-        return invalidArgument("pDepthStencilState must be given: the subpass has such an attachment");
+    if (info == nullptr) return invalidArgument("pDepthStencilState must be given: the subpass has such an attachment");
     GraphicsState& state = result.state;
     state.depthTest = info->depthTestEnable != VK_FALSE;
     state.depthWrite = info->depthWriteEnable != VK_FALSE;
@@ -139,18 +134,15 @@ Status readDepthStencil(const VkPipelineDepthStencilStateCreateInfo* info, Pipel
 
 Status readBlend(const VkPipelineColorBlendStateCreateInfo* info, const SubpassFormats& formats,
                  PipelineState& result) {
-    if (info == nullptr)
-        return invalidArgument("pColorBlendState must be given: the subpass has colour attachments");
+    if (info == nullptr) return invalidArgument("pColorBlendState must be given: the subpass has colour attachments");
     if (info->attachmentCount != formats.colorCount) {
-        return invalidArgument("pColorBlendState->attachmentCount is " +
-                               std::to_string(info->attachmentCount) + "; the subpass has " +
-                               std::to_string(formats.colorCount));
+        return invalidArgument("pColorBlendState->attachmentCount is " + std::to_string(info->attachmentCount) +
+                               "; the subpass has " + std::to_string(formats.colorCount));
     }
     result.state.logicOpEnable = info->logicOpEnable != VK_FALSE;
     result.state.logicOp = info->logicOp;
     std::copy_n(info->pAttachments, info->attachmentCount, result.state.blend.begin());
-    std::copy_n(info->blendConstants, result.fixed.blendConstants.size(),
-                result.fixed.blendConstants.begin());
+    std::copy_n(info->blendConstants, result.fixed.blendConstants.size(), result.fixed.blendConstants.begin());
     return {};
 }
 

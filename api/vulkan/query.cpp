@@ -17,8 +17,7 @@ constexpr std::chrono::seconds kPatience{10};
 }  // namespace
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateQueryPool(VkDevice device, const VkQueryPoolCreateInfo* pCreateInfo,
-                                               const VkAllocationCallbacks* pAllocator,
-                                               VkQueryPool* pQueryPool) {
+                                               const VkAllocationCallbacks* pAllocator, VkQueryPool* pQueryPool) {
     return guarded([&] {
         switch (pCreateInfo->queryType) {
             case VK_QUERY_TYPE_OCCLUSION:
@@ -35,21 +34,18 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateQueryPool(VkDevice device, const VkQueryPoo
     });
 }
 
-VKAPI_ATTR void VKAPI_CALL DestroyQueryPool(VkDevice, VkQueryPool queryPool,
-                                            const VkAllocationCallbacks* pAllocator) {
+VKAPI_ATTR void VKAPI_CALL DestroyQueryPool(VkDevice, VkQueryPool queryPool, const VkAllocationCallbacks* pAllocator) {
     destroyHandle(pAllocator, queryPool);
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL GetQueryPoolResults(VkDevice device, VkQueryPool queryPool,
-                                                   uint32_t firstQuery, uint32_t queryCount, size_t dataSize,
-                                                   void* pData, VkDeviceSize stride,
-                                                   VkQueryResultFlags flags) {
+VKAPI_ATTR VkResult VKAPI_CALL GetQueryPoolResults(VkDevice device, VkQueryPool queryPool, uint32_t firstQuery,
+                                                   uint32_t queryCount, size_t dataSize, void* pData,
+                                                   VkDeviceSize stride, VkQueryResultFlags flags) {
     return guarded([&] {
         const Device& owner = *object(device);
         const QueryPool& pool = *object(queryPool);
         if (firstQuery > pool.count() || queryCount > pool.count() - firstQuery) {
-            return owner.report("vkGetQueryPoolResults", VK_ERROR_UNKNOWN,
-                                "the queries are outside the pool");
+            return owner.report("vkGetQueryPoolResults", VK_ERROR_UNKNOWN, "the queries are outside the pool");
         }
         auto* data = static_cast<std::byte*>(pData);
         const auto read = [&] { return pool.results(firstQuery, queryCount, data, dataSize, stride, flags); };

@@ -33,9 +33,8 @@ Submission makeSubmission(const VkSubmitInfo& info) {
         submission.commands.push_back(&object(info.pCommandBuffers[i])->stream);
     }
     for (uint32_t i = 0; i < info.signalSemaphoreCount; ++i) {
-        addSemaphore(info.pSignalSemaphores[i], values.pSignalSemaphoreValues,
-                     values.signalSemaphoreValueCount, i, submission.signalSemaphores,
-                     submission.signalTimelines);
+        addSemaphore(info.pSignalSemaphores[i], values.pSignalSemaphoreValues, values.signalSemaphoreValueCount, i,
+                     submission.signalSemaphores, submission.signalTimelines);
     }
     return submission;
 }

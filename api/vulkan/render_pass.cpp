@@ -17,13 +17,11 @@ std::vector<uint32_t> indices(uint32_t count, const VkAttachmentReference* refer
     return result;
 }
 
-Status checkReferences(const char* what, uint32_t subpass, const std::vector<uint32_t>& references,
-                       size_t count) {
+Status checkReferences(const char* what, uint32_t subpass, const std::vector<uint32_t>& references, size_t count) {
     for (const uint32_t index : references) {
         if (index == VK_ATTACHMENT_UNUSED || index < count) continue;
-        return invalidArgument("subpass " + std::to_string(subpass) + ": " + what + " " +
-                               std::to_string(index) + " does not exist; there are " + std::to_string(count) +
-                               " attachments");
+        return invalidArgument("subpass " + std::to_string(subpass) + ": " + what + " " + std::to_string(index) +
+                               " does not exist; there are " + std::to_string(count) + " attachments");
     }
     return {};
 }
@@ -50,8 +48,7 @@ Status checkInputs(const RenderPassObject& pass) {
             const VkAttachmentDescription& description = pass.attachments[index].description;
             if (description.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR ||
                 description.stencilLoadOp == VK_ATTACHMENT_LOAD_OP_CLEAR) {
-                return unsupported("subpass " + std::to_string(i) + " reads attachment " +
-                                   std::to_string(index) +
+                return unsupported("subpass " + std::to_string(i) + " reads attachment " + std::to_string(index) +
                                    ", which is to be cleared, before any subpass draws to it");
             }
         }
@@ -69,21 +66,18 @@ Result<RenderPassObject> makeRenderPass(const VkRenderPassCreateInfo& info) {
         }
         if (from.colorAttachmentCount > kMaxColorAttachments) {
             return invalidArgument("subpass " + std::to_string(i) + ": colorAttachmentCount " +
-                                   std::to_string(from.colorAttachmentCount) +
-                                   " is above maxColorAttachments");
+                                   std::to_string(from.colorAttachmentCount) + " is above maxColorAttachments");
         }
         Subpass& to = pass.subpasses.emplace_back();
         to.colors = indices(from.colorAttachmentCount, from.pColorAttachments);
         to.resolves = indices(from.colorAttachmentCount, from.pResolveAttachments);
         to.inputs = indices(from.inputAttachmentCount, from.pInputAttachments);
-        if (from.pDepthStencilAttachment != nullptr)
-            to.depthStencil = from.pDepthStencilAttachment->attachment;
+        if (from.pDepthStencilAttachment != nullptr) to.depthStencil = from.pDepthStencilAttachment->attachment;
         const size_t count = pass.attachments.size();
         if (Status s = checkReferences("colour attachment", i, to.colors, count); !s) return s.error();
         if (Status s = checkReferences("resolve attachment", i, to.resolves, count); !s) return s.error();
         if (Status s = checkReferences("input attachment", i, to.inputs, count); !s) return s.error();
-        if (Status s = checkReferences("depth-stencil attachment", i, {to.depthStencil}, count); !s)
-            return s.error();
+        if (Status s = checkReferences("depth-stencil attachment", i, {to.depthStencil}, count); !s) return s.error();
     }
     markUses(pass);
     if (Status s = checkInputs(pass); !s) return s.error();
@@ -92,8 +86,8 @@ Result<RenderPassObject> makeRenderPass(const VkRenderPassCreateInfo& info) {
 
 Status checkFramebuffer(const RenderPassObject& pass, const VkFramebufferCreateInfo& info) {
     if (info.attachmentCount != pass.attachments.size()) {
-        return invalidArgument("attachmentCount is " + std::to_string(info.attachmentCount) +
-                               "; the render pass has " + std::to_string(pass.attachments.size()));
+        return invalidArgument("attachmentCount is " + std::to_string(info.attachmentCount) + "; the render pass has " +
+                               std::to_string(pass.attachments.size()));
     }
     for (uint32_t i = 0; i < info.attachmentCount; ++i) {
         const std::string name = "attachment " + std::to_string(i);
@@ -108,8 +102,8 @@ Status checkFramebuffer(const RenderPassObject& pass, const VkFramebufferCreateI
         }
         const VkAttachmentDescription& description = pass.attachments[i].description;
         if (view->info().format != description.format) {
-            return invalidArgument(name + " has the format " + nameOf(view->info().format) +
-                                   "; the render pass says " + nameOf(description.format));
+            return invalidArgument(name + " has the format " + nameOf(view->info().format) + "; the render pass says " +
+                                   nameOf(description.format));
         }
         if (view->image().info().samples != static_cast<uint32_t>(description.samples)) {
             return invalidArgument(name + " has another sample count than the render pass says");
@@ -134,9 +128,8 @@ SubpassFormats RenderPassObject::formats(uint32_t subpass) const {
     return result;
 }
 
-command::BeginRendering renderingOf(const RenderPassObject& pass, const Framebuffer& framebuffer,
-                                    uint32_t subpass, const VkRect2D& area,
-                                    const std::vector<VkClearValue>& clears) {
+command::BeginRendering renderingOf(const RenderPassObject& pass, const Framebuffer& framebuffer, uint32_t subpass,
+                                    const VkRect2D& area, const std::vector<VkClearValue>& clears) {
     const Subpass& from = pass.subpasses[subpass];
     const auto attach = [&](uint32_t index) {
         RenderingAttachment result;
@@ -173,8 +166,7 @@ command::BeginRendering renderingOf(const RenderPassObject& pass, const Framebuf
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateRenderPass(VkDevice device, const VkRenderPassCreateInfo* pCreateInfo,
-                                                const VkAllocationCallbacks* pAllocator,
-                                                VkRenderPass* pRenderPass) {
+                                                const VkAllocationCallbacks* pAllocator, VkRenderPass* pRenderPass) {
     return guarded([&] {
         Result<RenderPassObject> pass = makeRenderPass(*pCreateInfo);
         if (!pass) return object(device)->report("vkCreateRenderPass", pass.error());
@@ -192,8 +184,7 @@ VKAPI_ATTR void VKAPI_CALL GetRenderAreaGranularity(VkDevice, VkRenderPass, VkEx
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateFramebuffer(VkDevice device, const VkFramebufferCreateInfo* pCreateInfo,
-                                                 const VkAllocationCallbacks* pAllocator,
-                                                 VkFramebuffer* pFramebuffer) {
+                                                 const VkAllocationCallbacks* pAllocator, VkFramebuffer* pFramebuffer) {
     return guarded([&] {
         if (const Status status = checkFramebuffer(*object(pCreateInfo->renderPass), *pCreateInfo); !status) {
             return object(device)->report("vkCreateFramebuffer", status.error());

@@ -46,8 +46,7 @@ struct Framebuffer {
 };
 
 /// The rendering that a subpass is. `clears` has an entry for each attachment, zeros where none was given.
-command::BeginRendering renderingOf(const RenderPassObject& pass, const Framebuffer& framebuffer,
-                                    uint32_t subpass, const VkRect2D& area,
-                                    const std::vector<VkClearValue>& clears);
+command::BeginRendering renderingOf(const RenderPassObject& pass, const Framebuffer& framebuffer, uint32_t subpass,
+                                    const VkRect2D& area, const std::vector<VkClearValue>& clears);
 
 }  // namespace vernier::vulkan

@@ -47,26 +47,22 @@ bool waitAnyCounter(const VkSemaphoreWaitInfo& info, uint64_t timeout) {
 }  // namespace
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateSemaphore(VkDevice, const VkSemaphoreCreateInfo* pCreateInfo,
-                                               const VkAllocationCallbacks* pAllocator,
-                                               VkSemaphore* pSemaphore) {
+                                               const VkAllocationCallbacks* pAllocator, VkSemaphore* pSemaphore) {
     const auto* type = findInChain<VkSemaphoreTypeCreateInfo>(pCreateInfo->pNext);
     const bool timeline = type != nullptr && type->semaphoreType == VK_SEMAPHORE_TYPE_TIMELINE;
     return createHandle(pAllocator, pSemaphore, timeline, timeline ? type->initialValue : 0);
 }
 
-VKAPI_ATTR void VKAPI_CALL DestroySemaphore(VkDevice, VkSemaphore semaphore,
-                                            const VkAllocationCallbacks* pAllocator) {
+VKAPI_ATTR void VKAPI_CALL DestroySemaphore(VkDevice, VkSemaphore semaphore, const VkAllocationCallbacks* pAllocator) {
     destroyHandle(pAllocator, semaphore);
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL GetSemaphoreCounterValue(VkDevice device, VkSemaphore semaphore,
-                                                        uint64_t* pValue) {
+VKAPI_ATTR VkResult VKAPI_CALL GetSemaphoreCounterValue(VkDevice device, VkSemaphore semaphore, uint64_t* pValue) {
     *pValue = object(semaphore)->counter.value();
     return object(device)->lost() ? VK_ERROR_DEVICE_LOST : VK_SUCCESS;
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL WaitSemaphores(VkDevice device, const VkSemaphoreWaitInfo* pWaitInfo,
-                                              uint64_t timeout) {
+VKAPI_ATTR VkResult VKAPI_CALL WaitSemaphores(VkDevice device, const VkSemaphoreWaitInfo* pWaitInfo, uint64_t timeout) {
     const bool any = (pWaitInfo->flags & VK_SEMAPHORE_WAIT_ANY_BIT) != 0;
     const bool met = any ? waitAnyCounter(*pWaitInfo, timeout) : waitAllCounters(*pWaitInfo, timeout);
     if (object(device)->lost()) return VK_ERROR_DEVICE_LOST;

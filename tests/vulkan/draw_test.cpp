@@ -92,8 +92,8 @@ void main() { color = tint; })");
             const float tint[] = {i == 0 ? 1.0f : 0.0f, i == 0 ? 0.0f : 1.0f, 0, 1};
             const VkRect2D scissor{{i * 16, 0}, {16, 12}};
             vkCmdSetScissor(commands, 0, 1, &scissor);
-            vkCmdPushConstants(commands, desc.layout,
-                               VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, 16, tint);
+            vkCmdPushConstants(commands, desc.layout, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, 16,
+                               tint);
             vkCmdDraw(commands, 3, 1, 0, 0);
         }
     });
@@ -106,8 +106,7 @@ TEST_F(PictureTest, descriptorsWithDynamicOffsetsAndTextures) {
     const VkDescriptorSetLayoutBinding bindings[] = {
         {0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr},
         {3, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr}};
-    auto layoutInfo =
-        make<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
+    auto layoutInfo = make<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
     layoutInfo.bindingCount = 2;
     layoutInfo.pBindings = bindings;
     VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
@@ -180,20 +179,19 @@ void main() { color = factor * texture(image, gl_FragCoord.xy / vec2(32, 24)); }
     barrier.subresourceRange = all;
     barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
     barrier.dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
-    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0,
-                         nullptr, 0, nullptr, 1, &barrier);
+    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0,
+                         nullptr, 1, &barrier);
     vkCmdClearColorImage(commands, texture.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &white, 1, &all);
     barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
     barrier.newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
     barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
     barrier.dstAccessMask = VK_ACCESS_SHADER_READ_BIT;
-    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, 0,
-                         0, nullptr, 0, nullptr, 1, &barrier);
+    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, 0, 0, nullptr,
+                         0, nullptr, 1, &barrier);
     beginPass(commands, pass);
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
     const uint32_t offset = 256;
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, desc.layout, 0, 1, &sets[1], 1,
-                            &offset);
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, desc.layout, 0, 1, &sets[1], 1, &offset);
     vkCmdDraw(commands, 3, 1, 0, 0);
     vkCmdEndRenderPass(commands);
     submit(commands);
@@ -211,8 +209,7 @@ void main() {
     desc.fragment = constantColor("0, 1, 0, 1");
     const VkPipeline pipeline = makePipeline(pass.pass, desc);
     const TestBuffer arguments = makeBuffer(64, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
-    const VkDrawIndirectCommand draws[] = {{3, 1, 0, 0},
-                                           {3, 1, 0, 2}};  // triangles: half of the columns each
+    const VkDrawIndirectCommand draws[] = {{3, 1, 0, 0}, {3, 1, 0, 2}};  // triangles: half of the columns each
     std::memcpy(arguments.data, draws, sizeof draws);
     const auto texels = render([&](VkCommandBuffer commands) {
         vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
@@ -234,8 +231,7 @@ TEST_F(PictureTest, secondaryCommandBuffersAndClears) {
     allocation.commandBufferCount = 1;
     VkCommandBuffer secondary = VK_NULL_HANDLE;
     ASSERT_EQ(vkAllocateCommandBuffers(device, &allocation, &secondary), VK_SUCCESS);
-    auto inheritance =
-        make<VkCommandBufferInheritanceInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_INHERITANCE_INFO);
+    auto inheritance = make<VkCommandBufferInheritanceInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_INHERITANCE_INFO);
     inheritance.renderPass = pass.pass;
     auto info = make<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
     info.flags = VK_COMMAND_BUFFER_USAGE_RENDER_PASS_CONTINUE_BIT;
@@ -296,9 +292,8 @@ TEST_F(PictureTest, queriesCountSamplesAndInvocations) {
     vkCmdEndQuery(commands, statistics, 0);
     submit(commands);
     uint64_t passed[2] = {7, 7}, counted[3] = {};
-    ASSERT_EQ(
-        vkGetQueryPoolResults(device, occlusion, 0, 2, sizeof passed, passed, 8, VK_QUERY_RESULT_64_BIT),
-        VK_SUCCESS);
+    ASSERT_EQ(vkGetQueryPoolResults(device, occlusion, 0, 2, sizeof passed, passed, 8, VK_QUERY_RESULT_64_BIT),
+              VK_SUCCESS);
     EXPECT_EQ(passed[0], uint64_t{kExtent.width} * kExtent.height);
     EXPECT_EQ(passed[1], 0u);
     ASSERT_EQ(vkGetQueryPoolResults(device, statistics, 0, 1, sizeof counted, counted, sizeof counted,
@@ -360,8 +355,7 @@ void main() { color = subpassLoad(source); })");
 
 TEST_F(PictureTest, drawingWithAPipelineForOtherAttachmentsIsRefused) {
     VERNIER_SKIP_WHEN_VALIDATED();
-    const TestImage wide =
-        makeImage(VK_FORMAT_R32G32B32A32_SFLOAT, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
+    const TestImage wide = makeImage(VK_FORMAT_R32G32B32A32_SFLOAT, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
     const Pass other = makePass(wide);
     PipelineDesc desc = defaults();
     desc.fragment = constantColor("1, 0, 0, 1");

@@ -14,8 +14,7 @@ class DriverTest : public VulkanTest {};
 TEST_F(DriverTest, identityIsItsOwn) {
     VkPhysicalDeviceProperties properties{};
     vkGetPhysicalDeviceProperties(physicalDevice, &properties);
-    EXPECT_EQ(std::string(properties.deviceName).rfind("Vernier (software, ", 0), 0u)
-        << properties.deviceName;
+    EXPECT_EQ(std::string(properties.deviceName).rfind("Vernier (software, ", 0), 0u) << properties.deviceName;
     EXPECT_EQ(properties.deviceType, VK_PHYSICAL_DEVICE_TYPE_CPU);
     EXPECT_EQ(properties.vendorID, 0x56524Eu);
     EXPECT_NE(properties.vendorID, static_cast<uint32_t>(VK_VENDOR_ID_MESA));
@@ -71,9 +70,8 @@ TEST_F(DriverTest, deviceCommandsAreThereOrNull) {
     // Without a compute queue the compute commands need not be there; without texel buffer features, nor
     // buffer views.
     EXPECT_EQ(missing, 5);
-    for (const char* name :
-         {"vkNoSuchCommand", "vkCreateSwapchainKHR", "vkGetBufferMemoryRequirements2",
-          "vkGetDescriptorSetLayoutSupportKHR", "vkGetPhysicalDeviceFeatures", "vkCreateInstance"}) {
+    for (const char* name : {"vkNoSuchCommand", "vkCreateSwapchainKHR", "vkGetBufferMemoryRequirements2",
+                             "vkGetDescriptorSetLayoutSupportKHR", "vkGetPhysicalDeviceFeatures", "vkCreateInstance"}) {
         EXPECT_EQ(vkGetDeviceProcAddr(device, name), nullptr) << name;
     }
     EXPECT_NE(vkGetDeviceProcAddr(device, "vkWaitSemaphoresKHR"), nullptr) << "its extension is enabled";
@@ -95,8 +93,8 @@ TEST(DriverLibrary, speaksToTheLoaderDirectly) {
     }
     uint32_t old = 2;
     EXPECT_EQ(negotiate(&old), VK_ERROR_INCOMPATIBLE_DRIVER);
-    for (const char* name : {"vkCreateInstance", "vkEnumerateInstanceExtensionProperties",
-                             "vkGetInstanceProcAddr", "vk_icdNegotiateLoaderICDInterfaceVersion"}) {
+    for (const char* name : {"vkCreateInstance", "vkEnumerateInstanceExtensionProperties", "vkGetInstanceProcAddr",
+                             "vk_icdNegotiateLoaderICDInterfaceVersion"}) {
         EXPECT_NE(get(nullptr, name), nullptr) << name;
     }
     for (const char* name : {"vkCreateDevice", "vkQueueSubmit", "vkEnumerateInstanceVersion"}) {
@@ -134,8 +132,7 @@ TEST_F(DriverTest, enumerationsFollowTheTwoCallIdiom) {
     std::set<std::string> names;
     for (const auto& extension : all) EXPECT_TRUE(names.insert(extension.extensionName).second);
     uint32_t tooFew = 1;
-    EXPECT_EQ(vkEnumerateDeviceExtensionProperties(physicalDevice, nullptr, &tooFew, all.data()),
-              VK_INCOMPLETE);
+    EXPECT_EQ(vkEnumerateDeviceExtensionProperties(physicalDevice, nullptr, &tooFew, all.data()), VK_INCOMPLETE);
     EXPECT_EQ(tooFew, 1u);
 }
 
@@ -152,10 +149,9 @@ TEST_F(DriverTest, mandatoryFormats) {
         VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT | VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT |
         VK_FORMAT_FEATURE_BLIT_SRC_BIT | VK_FORMAT_FEATURE_BLIT_DST_BIT;
     for (const VkFormat format :
-         {VK_FORMAT_R5G6B5_UNORM_PACK16, VK_FORMAT_A1R5G5B5_UNORM_PACK16, VK_FORMAT_R8_UNORM,
-          VK_FORMAT_R8G8_UNORM, VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_B8G8R8A8_UNORM,
-          VK_FORMAT_B8G8R8A8_SRGB, VK_FORMAT_A2B10G10R10_UNORM_PACK32, VK_FORMAT_R16_SFLOAT,
-          VK_FORMAT_R16G16B16A16_SFLOAT}) {
+         {VK_FORMAT_R5G6B5_UNORM_PACK16, VK_FORMAT_A1R5G5B5_UNORM_PACK16, VK_FORMAT_R8_UNORM, VK_FORMAT_R8G8_UNORM,
+          VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_B8G8R8A8_SRGB,
+          VK_FORMAT_A2B10G10R10_UNORM_PACK32, VK_FORMAT_R16_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT}) {
         EXPECT_EQ(optimal(format) & kColor, kColor) << format;
     }
     EXPECT_TRUE(optimal(VK_FORMAT_D16_UNORM) & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT);
@@ -167,15 +163,15 @@ TEST_F(DriverTest, mandatoryFormats) {
     }
 
     VkImageFormatProperties image{};
-    EXPECT_EQ(vkGetPhysicalDeviceImageFormatProperties(physicalDevice, VK_FORMAT_R8G8B8A8_UNORM,
-                                                       VK_IMAGE_TYPE_2D, VK_IMAGE_TILING_OPTIMAL,
-                                                       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, 0, &image),
+    EXPECT_EQ(vkGetPhysicalDeviceImageFormatProperties(physicalDevice, VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_TYPE_2D,
+                                                       VK_IMAGE_TILING_OPTIMAL, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, 0,
+                                                       &image),
               VK_SUCCESS);
     EXPECT_TRUE(image.sampleCounts & VK_SAMPLE_COUNT_4_BIT);
     EXPECT_GE(image.maxExtent.width, 4096u);
-    EXPECT_EQ(vkGetPhysicalDeviceImageFormatProperties(
-                  physicalDevice, VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_TYPE_2D, VK_IMAGE_TILING_OPTIMAL,
-                  VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, 0, &image),
+    EXPECT_EQ(vkGetPhysicalDeviceImageFormatProperties(physicalDevice, VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_TYPE_2D,
+                                                       VK_IMAGE_TILING_OPTIMAL,
+                                                       VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, 0, &image),
               VK_ERROR_FORMAT_NOT_SUPPORTED);
 }
 

@@ -16,19 +16,15 @@ struct CountingAllocator {
     VkAllocationCallbacks callbacks() {
         VkAllocationCallbacks result{};
         result.pUserData = this;
-        result.pfnAllocation = [](void* user, size_t size, size_t alignment,
-                                  VkSystemAllocationScope) -> void* {
+        result.pfnAllocation = [](void* user, size_t size, size_t alignment, VkSystemAllocationScope) -> void* {
             auto* self = static_cast<CountingAllocator*>(user);
             if (self->made++ == self->failAt) return nullptr;
-            const size_t rounded = (size + alignment - 1) / alignment * alignment;
-            void* memory =
-                std::aligned_alloc(std::max(alignment, sizeof(void*)), std::max(rounded, alignment));
+            const size_t step = std::max(alignment, sizeof(void*));
+            void* memory = std::aligned_alloc(step, (size + step - 1) / step * step);
             self->live[memory] = size;
             return memory;
         };
-        result.pfnReallocation = [](void*, void*, size_t, size_t, VkSystemAllocationScope) -> void* {
-            return nullptr;
-        };
+        result.pfnReallocation = [](void*, void*, size_t, size_t, VkSystemAllocationScope) -> void* { return nullptr; };
         result.pfnFree = [](void* user, void* memory) {
             auto* self = static_cast<CountingAllocator*>(user);
             if (memory == nullptr) return;
@@ -72,8 +68,7 @@ class ObjectsTest : public VulkanTest {
                    VkResult (*create)(VkDevice, const Info*, const VkAllocationCallbacks*, Handle*),
                    void (*destroy)(VkDevice, Handle, const VkAllocationCallbacks*)) {
         check<Handle>(
-            name,
-            [&](const VkAllocationCallbacks* c, Handle* handle) { return create(device, &info, c, handle); },
+            name, [&](const VkAllocationCallbacks* c, Handle* handle) { return create(device, &info, c, handle); },
             [&](Handle handle, const VkAllocationCallbacks* c) { destroy(device, handle, c); });
     }
 };
@@ -120,29 +115,26 @@ TEST_F(ObjectsTest, synchronisationAndQueries) {
 }
 
 TEST_F(ObjectsTest, descriptorsAndPipelineParts) {
-    const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2, VK_SHADER_STAGE_ALL,
-                                               nullptr};
+    const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2, VK_SHADER_STAGE_ALL, nullptr};
     auto layout = make<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
     layout.bindingCount = 1;
     layout.pBindings = &binding;
-    checkPair<VkDescriptorSetLayout>("set layout", layout, vkCreateDescriptorSetLayout,
-                                     vkDestroyDescriptorSetLayout);
+    checkPair<VkDescriptorSetLayout>("set layout", layout, vkCreateDescriptorSetLayout, vkDestroyDescriptorSetLayout);
     const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 4};
     auto poolInfo = make<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
     poolInfo.maxSets = 2;
     poolInfo.poolSizeCount = 1;
     poolInfo.pPoolSizes = &size;
     checkPair<VkDescriptorPool>("descriptor pool", poolInfo, vkCreateDescriptorPool, vkDestroyDescriptorPool);
-    checkPair<VkPipelineLayout>(
-        "pipeline layout", make<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO),
-        vkCreatePipelineLayout, vkDestroyPipelineLayout);
+    checkPair<VkPipelineLayout>("pipeline layout",
+                                make<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO),
+                                vkCreatePipelineLayout, vkDestroyPipelineLayout);
     checkPair<VkPipelineCache>("pipeline cache",
                                make<VkPipelineCacheCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO),
                                vkCreatePipelineCache, vkDestroyPipelineCache);
     auto commandPool = make<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
     checkPair<VkCommandPool>("command pool", commandPool, vkCreateCommandPool, vkDestroyCommandPool);
-    const auto words =
-        compileGlsl(VK_SHADER_STAGE_VERTEX_BIT, "#version 450\nvoid main() { gl_Position = vec4(0); }");
+    const auto words = compileGlsl(VK_SHADER_STAGE_VERTEX_BIT, "#version 450\nvoid main() { gl_Position = vec4(0); }");
     auto module = make<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
     module.codeSize = words.size() * 4;
     module.pCode = words.data();
@@ -155,10 +147,8 @@ TEST_F(ObjectsTest, descriptorsAndPipelineParts) {
 }
 
 TEST_F(ObjectsTest, poolsGiveOutNoMoreThanTheyHave) {
-    const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2, VK_SHADER_STAGE_ALL,
-                                               nullptr};
-    auto layoutInfo =
-        make<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
+    const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2, VK_SHADER_STAGE_ALL, nullptr};
+    auto layoutInfo = make<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
     layoutInfo.bindingCount = 1;
     layoutInfo.pBindings = &binding;
     VkDescriptorSetLayout layout = VK_NULL_HANDLE;
@@ -189,10 +179,8 @@ TEST_F(ObjectsTest, poolsGiveOutNoMoreThanTheyHave) {
 
 TEST_F(ObjectsTest, outOfPoolMemoryLeavesNothingAllocated) {
     VERNIER_SKIP_WHEN_VALIDATED();
-    const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2, VK_SHADER_STAGE_ALL,
-                                               nullptr};
-    auto layoutInfo =
-        make<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
+    const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2, VK_SHADER_STAGE_ALL, nullptr};
+    auto layoutInfo = make<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
     layoutInfo.bindingCount = 1;
     layoutInfo.pBindings = &binding;
     VkDescriptorSetLayout layout = VK_NULL_HANDLE;
@@ -213,8 +201,7 @@ TEST_F(ObjectsTest, outOfPoolMemoryLeavesNothingAllocated) {
     EXPECT_EQ(vkAllocateDescriptorSets(device, &info, sets), VK_ERROR_OUT_OF_POOL_MEMORY);
     EXPECT_EQ(sets[0], VkDescriptorSet{VK_NULL_HANDLE});
     info.descriptorSetCount = 1;
-    EXPECT_EQ(vkAllocateDescriptorSets(device, &info, sets), VK_SUCCESS)
-        << "the failed call gave everything back";
+    EXPECT_EQ(vkAllocateDescriptorSets(device, &info, sets), VK_SUCCESS) << "the failed call gave everything back";
     vkDestroyDescriptorPool(device, descriptors, nullptr);
     vkDestroyDescriptorSetLayout(device, layout, nullptr);
 }

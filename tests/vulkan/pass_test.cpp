@@ -10,8 +10,8 @@ constexpr VkExtent2D kExtent{20, 20};
 
 class PassTest : public DrawTest {
   protected:
-    VkPipeline colorPipeline(VkRenderPass pass, const std::string& rgba, const std::string& z,
-                             uint32_t subpass, VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT) {
+    VkPipeline colorPipeline(VkRenderPass pass, const std::string& rgba, const std::string& z, uint32_t subpass,
+                             VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT) {
         PipelineDesc desc;
         desc.extent = kExtent;
         desc.vertex = fullScreen(z);
@@ -29,8 +29,7 @@ class PassTest : public DrawTest {
 
 TEST_F(PassTest, depthDecidesAndIsStored) {
     const TestImage color = makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
-    const TestImage depth =
-        makeImage(VK_FORMAT_D32_SFLOAT, kExtent, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT);
+    const TestImage depth = makeImage(VK_FORMAT_D32_SFLOAT, kExtent, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT);
     const Pass pass = makePass(color, &depth);
     const VkPipeline near = colorPipeline(pass.pass, "1, 0, 0, 1", "0.25", 0);
     const VkPipeline far = colorPipeline(pass.pass, "0, 1, 0, 1", "0.75", 0);
@@ -51,10 +50,9 @@ TEST_F(PassTest, depthDecidesAndIsStored) {
 }
 
 TEST_F(PassTest, multisampleResolves) {
-    const TestImage color = makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT,
-                                      VK_SAMPLE_COUNT_4_BIT);
-    const TestImage resolved =
-        makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
+    const TestImage color =
+        makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, VK_SAMPLE_COUNT_4_BIT);
+    const TestImage resolved = makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
     const Pass pass = makePass(color, nullptr, &resolved);
     const VkPipeline pipeline = colorPipeline(pass.pass, "0, 1, 0, 1", "0.5", 0, VK_SAMPLE_COUNT_4_BIT);
     const VkCommandBuffer commands = begin();
@@ -97,10 +95,8 @@ TEST_F(PassTest, renderAreaLimitsTheClear) {
 
 TEST_F(PassTest, secondSubpassKeepsDepthAndDrawsToAnotherImage) {
     const TestImage first = makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
-    const TestImage second =
-        makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
-    const TestImage depth =
-        makeImage(VK_FORMAT_D32_SFLOAT, kExtent, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT);
+    const TestImage second = makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
+    const TestImage depth = makeImage(VK_FORMAT_D32_SFLOAT, kExtent, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT);
     std::vector<VkAttachmentDescription> attachments;
     for (const TestImage* image : {&first, &second, &depth}) {
         attachments.push_back({0, image->format, VK_SAMPLE_COUNT_1_BIT, VK_ATTACHMENT_LOAD_OP_CLEAR,
@@ -205,8 +201,7 @@ TEST_F(PassTest, slicesOfVolumesCanBeDrawnTo) {
     VkBufferImageCopy region{};
     region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     region.imageExtent = {8, 4, 3};
-    vkCmdCopyImageToBuffer(commands, slice.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, all.buffer, 1,
-                           &region);
+    vkCmdCopyImageToBuffer(commands, slice.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, all.buffer, 1, &region);
     submit(commands);
     const auto* texels = static_cast<const uint32_t*>(all.data);
     for (uint32_t i = 0; i < 96; ++i) ASSERT_EQ(texels[i], i / 32 == 1 ? kGreen : 0u) << i;

@@ -43,8 +43,8 @@ TEST_F(SyncTest, hostSetsAnEventThatTheQueueWaitsFor) {
         vkDestroyEvent(device, second, nullptr);
     });
     const VkCommandBuffer commands = begin();
-    vkCmdWaitEvents(commands, 1, &first, VK_PIPELINE_STAGE_HOST_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0,
-                    nullptr, 0, nullptr, 0, nullptr);
+    vkCmdWaitEvents(commands, 1, &first, VK_PIPELINE_STAGE_HOST_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, nullptr, 0,
+                    nullptr, 0, nullptr);
     vkCmdSetEvent(commands, second, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT);
     ASSERT_EQ(vkEndCommandBuffer(commands), VK_SUCCESS);
     auto submitInfo = make<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
@@ -82,10 +82,8 @@ TEST_F(SyncTest, binarySemaphoresOrderSubmissions) {
 }
 
 TEST_F(SyncTest, timelineSemaphoresCount) {
-    const auto wait =
-        reinterpret_cast<PFN_vkWaitSemaphoresKHR>(vkGetDeviceProcAddr(device, "vkWaitSemaphoresKHR"));
-    const auto signal =
-        reinterpret_cast<PFN_vkSignalSemaphoreKHR>(vkGetDeviceProcAddr(device, "vkSignalSemaphoreKHR"));
+    const auto wait = reinterpret_cast<PFN_vkWaitSemaphoresKHR>(vkGetDeviceProcAddr(device, "vkWaitSemaphoresKHR"));
+    const auto signal = reinterpret_cast<PFN_vkSignalSemaphoreKHR>(vkGetDeviceProcAddr(device, "vkSignalSemaphoreKHR"));
     const auto value = reinterpret_cast<PFN_vkGetSemaphoreCounterValueKHR>(
         vkGetDeviceProcAddr(device, "vkGetSemaphoreCounterValueKHR"));
     ASSERT_TRUE(wait != nullptr && signal != nullptr && value != nullptr);

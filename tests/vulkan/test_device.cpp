@@ -7,8 +7,7 @@
 namespace vernier::test {
 namespace {
 
-VKAPI_ATTR VkBool32 VKAPI_CALL keepMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
-                                           VkDebugUtilsMessageTypeFlagsEXT,
+VKAPI_ATTR VkBool32 VKAPI_CALL keepMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                            const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
     // With validation switched on in the environment, every test is also a test of clean use.
     const std::string id = data->pMessageIdName != nullptr ? data->pMessageIdName : "";
@@ -76,10 +75,9 @@ void VulkanTest::SetUp() {
     auto queueInfo = make<VkDeviceQueueCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO);
     queueInfo.queueCount = 1;
     queueInfo.pQueuePriorities = &priority;
-    const char* deviceExtensions[] = {VK_KHR_MAINTENANCE_1_EXTENSION_NAME,
-                                      VK_KHR_TIMELINE_SEMAPHORE_EXTENSION_NAME};
-    auto timeline = make<VkPhysicalDeviceTimelineSemaphoreFeatures>(
-        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES);
+    const char* deviceExtensions[] = {VK_KHR_MAINTENANCE_1_EXTENSION_NAME, VK_KHR_TIMELINE_SEMAPHORE_EXTENSION_NAME};
+    auto timeline =
+        make<VkPhysicalDeviceTimelineSemaphoreFeatures>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES);
     timeline.timelineSemaphore = VK_TRUE;
     auto deviceInfo = make<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
     deviceInfo.pNext = &timeline;
@@ -211,16 +209,14 @@ void VulkanTest::submit(VkCommandBuffer commands) {
     vkFreeCommandBuffers(device, pool, 1, &commands);
 }
 
-std::vector<uint8_t> VulkanTest::readImage(const TestImage& image, VkImageAspectFlags aspect,
-                                           uint32_t texelBytes) {
+std::vector<uint8_t> VulkanTest::readImage(const TestImage& image, VkImageAspectFlags aspect, uint32_t texelBytes) {
     const VkDeviceSize size = VkDeviceSize{texelBytes} * image.extent.width * image.extent.height;
     const TestBuffer buffer = makeBuffer(size, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
     const VkCommandBuffer commands = begin();
     VkBufferImageCopy region{};
     region.imageSubresource = {aspect, 0, 0, 1};
     region.imageExtent = {image.extent.width, image.extent.height, 1};
-    vkCmdCopyImageToBuffer(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer.buffer, 1,
-                           &region);
+    vkCmdCopyImageToBuffer(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer.buffer, 1, &region);
     submit(commands);
     std::vector<uint8_t> texels(size);
     std::memcpy(texels.data(), buffer.data, size);

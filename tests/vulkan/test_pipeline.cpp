@@ -13,9 +13,9 @@ DrawTest::Pass DrawTest::makePass(const TestImage& color, const TestImage* depth
     std::vector<VkAttachmentDescription> attachments;
     std::vector<VkImageView> views;
     const auto add = [&](const TestImage& image, VkSampleCountFlagBits count, VkImageLayout final) {
-        attachments.push_back({0, image.format, count, VK_ATTACHMENT_LOAD_OP_CLEAR,
-                               VK_ATTACHMENT_STORE_OP_STORE, VK_ATTACHMENT_LOAD_OP_DONT_CARE,
-                               VK_ATTACHMENT_STORE_OP_DONT_CARE, VK_IMAGE_LAYOUT_UNDEFINED, final});
+        attachments.push_back({0, image.format, count, VK_ATTACHMENT_LOAD_OP_CLEAR, VK_ATTACHMENT_STORE_OP_STORE,
+                               VK_ATTACHMENT_LOAD_OP_DONT_CARE, VK_ATTACHMENT_STORE_OP_DONT_CARE,
+                               VK_IMAGE_LAYOUT_UNDEFINED, final});
         views.push_back(image.view);
         return static_cast<uint32_t>(attachments.size() - 1);
     };
@@ -75,8 +75,7 @@ VkPipelineLayout DrawTest::makeLayout(const std::vector<VkDescriptorSetLayout>& 
 
 VkPipeline DrawTest::makePipeline(VkRenderPass pass, const PipelineDesc& desc, VkResult expected) {
     std::vector<VkPipelineShaderStageCreateInfo> stages;
-    const auto addStage = [&](VkShaderStageFlagBits stage, VkShaderModule module,
-                              const VkSpecializationInfo* special) {
+    const auto addStage = [&](VkShaderStageFlagBits stage, VkShaderModule module, const VkSpecializationInfo* special) {
         if (module == VK_NULL_HANDLE) return;
         auto& info = stages.emplace_back(
             make<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO));
@@ -88,42 +87,38 @@ VkPipeline DrawTest::makePipeline(VkRenderPass pass, const PipelineDesc& desc, V
     addStage(VK_SHADER_STAGE_VERTEX_BIT, desc.vertex, nullptr);
     addStage(VK_SHADER_STAGE_FRAGMENT_BIT, desc.fragment, desc.specialization);
 
-    auto input =
-        make<VkPipelineVertexInputStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
+    auto input = make<VkPipelineVertexInputStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
     input.vertexBindingDescriptionCount = static_cast<uint32_t>(desc.bindings.size());
     input.pVertexBindingDescriptions = desc.bindings.data();
     input.vertexAttributeDescriptionCount = static_cast<uint32_t>(desc.attributes.size());
     input.pVertexAttributeDescriptions = desc.attributes.data();
-    auto assembly = make<VkPipelineInputAssemblyStateCreateInfo>(
-        VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
+    auto assembly =
+        make<VkPipelineInputAssemblyStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
     assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-    const VkViewport viewport{
-        0, 0, static_cast<float>(desc.extent.width), static_cast<float>(desc.extent.height), 0, 1};
+    const VkViewport viewport{0, 0, static_cast<float>(desc.extent.width), static_cast<float>(desc.extent.height),
+                              0, 1};
     const VkRect2D scissor{{0, 0}, desc.extent};
-    auto viewports =
-        make<VkPipelineViewportStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
+    auto viewports = make<VkPipelineViewportStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
     viewports.viewportCount = viewports.scissorCount = 1;
     viewports.pViewports = &viewport;
     viewports.pScissors = &scissor;
-    auto raster = make<VkPipelineRasterizationStateCreateInfo>(
-        VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
+    auto raster =
+        make<VkPipelineRasterizationStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
     raster.lineWidth = 1;
     auto multisample =
         make<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
     multisample.rasterizationSamples = desc.samples;
-    auto depth = make<VkPipelineDepthStencilStateCreateInfo>(
-        VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
+    auto depth =
+        make<VkPipelineDepthStencilStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
     depth.depthTestEnable = depth.depthWriteEnable = desc.depthTest ? VK_TRUE : VK_FALSE;
     depth.depthCompareOp = VK_COMPARE_OP_LESS;
     VkPipelineColorBlendAttachmentState blend{};
     blend.colorWriteMask = 0xF;
     const std::vector<VkPipelineColorBlendAttachmentState> blends(desc.colorCount, blend);
-    auto colors =
-        make<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
+    auto colors = make<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
     colors.attachmentCount = desc.colorCount;
     colors.pAttachments = blends.data();
-    auto dynamic =
-        make<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
+    auto dynamic = make<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
     dynamic.dynamicStateCount = static_cast<uint32_t>(desc.dynamic.size());
     dynamic.pDynamicStates = desc.dynamic.data();
 

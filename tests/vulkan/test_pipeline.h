@@ -17,8 +17,7 @@ class DrawTest : public VulkanTest {
         std::vector<VkClearValue> clears;
     };
     /// One subpass: clears the colour, and the depth to 1 if there is one, and stores both.
-    Pass makePass(const TestImage& color, const TestImage* depth = nullptr,
-                  const TestImage* resolve = nullptr);
+    Pass makePass(const TestImage& color, const TestImage* depth = nullptr, const TestImage* resolve = nullptr);
 
     struct PipelineDesc {
         VkShaderModule vertex = VK_NULL_HANDLE, fragment = VK_NULL_HANDLE;
@@ -37,8 +36,7 @@ class DrawTest : public VulkanTest {
 
     VkPipelineLayout makeLayout(const std::vector<VkDescriptorSetLayout>& sets, uint32_t pushBytes);
 
-    void beginPass(VkCommandBuffer commands, const Pass& pass,
-                   VkSubpassContents contents = VK_SUBPASS_CONTENTS_INLINE);
+    void beginPass(VkCommandBuffer commands, const Pass& pass, VkSubpassContents contents = VK_SUBPASS_CONTENTS_INLINE);
 
     /// A full-screen triangle without vertex buffers: gl_Position from gl_VertexIndex, at depth `z`.
     VkShaderModule fullScreen(const std::string& z = "0.5");
