@@ -10,7 +10,9 @@ constexpr std::align_val_t kBlockAlignment{64};
 
 }  // namespace
 
-void Arena::AlignedDelete::operator()(std::byte* block) const { ::operator delete(block, kBlockAlignment); }
+void Arena::AlignedDelete::operator()(std::byte* block) const {
+    ::operator delete(block, kBlockAlignment);
+}
 
 void* Arena::allocate(size_t bytes, size_t alignment) {
     for (; current_ < blocks_.size(); ++current_, offset_ = 0) {

@@ -5,8 +5,8 @@
 
 namespace vernier {
 
-/// At least 1: the number of CPUs in the process's affinity mask, lowered to the cgroup's CPU quota (rounded up) where one
-/// is set. Thread-safe; reads /proc and /sys on each call.
+/// At least 1: the number of CPUs in the process's affinity mask, lowered to the cgroup's CPU quota (rounded up) where
+/// one is set. Thread-safe; reads /proc and /sys on each call.
 uint32_t usableCpuCount();
 
 }  // namespace vernier

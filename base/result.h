@@ -11,8 +11,8 @@
 namespace vernier {
 
 enum class ErrorCode : uint8_t {
-    invalidArgument,    // the caller broke a rule; the message names the object, the field and the value
-    unsupported,        // legal, but not implemented or not available
+    invalidArgument,  // the caller broke a rule; the message names the object, the field and the value
+    unsupported,      // legal, but not implemented or not available
     outOfHostMemory,
     outOfDeviceMemory,
     deviceLost,
@@ -23,8 +23,12 @@ struct Error {
     std::string message;
 };
 
-inline Error invalidArgument(std::string message) { return {ErrorCode::invalidArgument, std::move(message)}; }
-inline Error unsupported(std::string message) { return {ErrorCode::unsupported, std::move(message)}; }
+inline Error invalidArgument(std::string message) {
+    return {ErrorCode::invalidArgument, std::move(message)};
+}
+inline Error unsupported(std::string message) {
+    return {ErrorCode::unsupported, std::move(message)};
+}
 
 /// A T or an Error. [[nodiscard]]: a result is looked at.
 template <class T>
@@ -36,15 +40,27 @@ class [[nodiscard]] Result {
     bool ok() const { return state_.index() == 0; }
     explicit operator bool() const { return ok(); }
 
-    T& value() & { assert(ok()); return std::get<0>(state_); }
-    const T& value() const& { assert(ok()); return std::get<0>(state_); }
-    T&& value() && { assert(ok()); return std::get<0>(std::move(state_)); }
+    T& value() & {
+        assert(ok());
+        return std::get<0>(state_);
+    }
+    const T& value() const& {
+        assert(ok());
+        return std::get<0>(state_);
+    }
+    T&& value() && {
+        assert(ok());
+        return std::get<0>(std::move(state_));
+    }
     T& operator*() & { return value(); }
     const T& operator*() const& { return value(); }
     T* operator->() { return &value(); }
     const T* operator->() const { return &value(); }
 
-    const Error& error() const { assert(!ok()); return std::get<1>(state_); }
+    const Error& error() const {
+        assert(!ok());
+        return std::get<1>(state_);
+    }
 
   private:
     std::variant<T, Error> state_;
@@ -58,7 +74,10 @@ class [[nodiscard]] Status {
 
     bool ok() const { return !failed_; }
     explicit operator bool() const { return ok(); }
-    const Error& error() const { assert(failed_); return error_; }
+    const Error& error() const {
+        assert(failed_);
+        return error_;
+    }
 
   private:
     Error error_;

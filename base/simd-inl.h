@@ -15,9 +15,9 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SSE4
-/// One lane-half of the fused multiply-add below. The product of two floats is exact in double (24 + 24 <= 53 bits); the sum
-/// is rounded to odd, after which rounding to float is correct (Boldo and Melquiond, "Emulation of FMA and correctly
-/// rounded sums: proved algorithms using rounding to odd", IEEE TC 57(4), 2008).
+/// One lane-half of the fused multiply-add below. The product of two floats is exact in double (24 + 24 <= 53 bits);
+/// the sum is rounded to odd, after which rounding to float is correct (Boldo and Melquiond, "Emulation of FMA and
+/// correctly rounded sums: proved algorithms using rounding to odd", IEEE TC 57(4), 2008).
 template <class DD, class VD = hn::Vec<DD>>
 HWY_INLINE VD addRoundToOdd(DD dd, VD x, VD y) {
     const hn::RebindToSigned<DD> di;

@@ -20,9 +20,13 @@ Isa bestIsa() {
     return avx512 ? Isa::avx512 : avx2 ? Isa::avx2 : Isa::sse4;
 }
 
-Isa bestIsaUpTo(Isa limit) { return std::min(bestIsa(), limit); }
+Isa bestIsaUpTo(Isa limit) {
+    return std::min(bestIsa(), limit);
+}
 
-std::string_view isaName(Isa isa) { return kIsaNames[static_cast<size_t>(isa)]; }
+std::string_view isaName(Isa isa) {
+    return kIsaNames[static_cast<size_t>(isa)];
+}
 
 std::optional<Isa> isaFromName(std::string_view name) {
     const auto found = std::find(kIsaNames.begin(), kIsaNames.end(), name);

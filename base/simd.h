@@ -5,7 +5,8 @@
 //
 //     #undef HWY_TARGET_INCLUDE
 //     #define HWY_TARGET_INCLUDE "runtime/raster/coverage.cpp"   // this file
-//     #include "base/simd_targets.h"                             // before any other Highway include
+//     #include "base/simd_targets.h"                             // before any other Highway include; the blank
+//                                                                // line keeps clang-format from sorting it down
 //     #include <hwy/foreach_target.h>
 //     #include <hwy/highway.h>
 //     #include "base/simd-inl.h"                                 // operations common to all targets
@@ -43,10 +44,13 @@ std::optional<Isa> isaFromName(std::string_view name);
 }  // namespace vernier
 
 /// Returns the compilation of `function` for `isa` from the current function. Use under HWY_ONCE.
-#define VERNIER_SELECT_ISA(isa, function)                     \
-    switch (isa) {                                            \
-        case ::vernier::Isa::avx512: return N_AVX3::function; \
-        case ::vernier::Isa::avx2: return N_AVX2::function;   \
-        case ::vernier::Isa::sse4: break;                     \
-    }                                                         \
+#define VERNIER_SELECT_ISA(isa, function) \
+    switch (isa) {                        \
+        case ::vernier::Isa::avx512:      \
+            return N_AVX3::function;      \
+        case ::vernier::Isa::avx2:        \
+            return N_AVX2::function;      \
+        case ::vernier::Isa::sse4:        \
+            break;                        \
+    }                                     \
     return N_SSE4::function;

@@ -1,5 +1,5 @@
-// Include before <hwy/foreach_target.h>: fixes the set of targets to the ones in vernier::Isa, so that every SIMD source
-// file defines exactly the namespaces N_SSE4, N_AVX2 and N_AVX3.
+// Include before <hwy/foreach_target.h>: fixes the set of targets to the ones in vernier::Isa, so that every SIMD
+// source file defines exactly the namespaces N_SSE4, N_AVX2 and N_AVX3.
 #pragma once
 
 // Highway refuses a set without a baseline; SSE4 is ours, and each target's code is compiled with its own attributes.

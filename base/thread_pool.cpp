@@ -9,12 +9,15 @@ constexpr uint32_t kDefaultMxcsr = 0x1F80;  // all exceptions masked, round to n
 
 }  // namespace
 
-FloatControlScope::FloatControlScope() : saved_(_mm_getcsr()) { _mm_setcsr(kDefaultMxcsr); }
-FloatControlScope::~FloatControlScope() { _mm_setcsr(saved_); }
+FloatControlScope::FloatControlScope() : saved_(_mm_getcsr()) {
+    _mm_setcsr(kDefaultMxcsr);
+}
+FloatControlScope::~FloatControlScope() {
+    _mm_setcsr(saved_);
+}
 
 ThreadPool::ThreadPool(uint32_t threads) {
-    for (uint32_t worker = 1; worker < threads; ++worker)
-        workers_.emplace_back([this, worker] { workerMain(worker); });
+    for (uint32_t worker = 1; worker < threads; ++worker) workers_.emplace_back([this, worker] { workerMain(worker); });
 }
 
 ThreadPool::~ThreadPool() {

@@ -26,8 +26,8 @@ class ThreadPool {
 
     /// Calls step(index, worker) once for every index in [0, count) and returns when all are done. `worker` is below
     /// threadCount() and names the thread, for per-thread scratch memory. The floating-point control word of every
-    /// thread is set to the default (round to nearest, denormals kept, no traps) for the duration. `step` must not throw
-    /// and must not call parallelFor.
+    /// thread is set to the default (round to nearest, denormals kept, no traps) for the duration. `step` must not
+    /// throw and must not call parallelFor.
     void parallelFor(uint32_t count, const std::function<void(uint32_t index, uint32_t worker)>& step);
 
   private:
@@ -46,8 +46,8 @@ class ThreadPool {
     std::vector<std::thread> workers_;
 };
 
-/// Sets the SSE control word to round-to-nearest with denormals kept and exceptions masked, and restores the caller's on
-/// destruction: an application's own setting must not change a pixel.
+/// Sets the SSE control word to round-to-nearest with denormals kept and exceptions masked, and restores the caller's
+/// on destruction: an application's own setting must not change a pixel.
 class FloatControlScope {
   public:
     FloatControlScope();

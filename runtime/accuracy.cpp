@@ -15,11 +15,11 @@ using Interpolation = InterpolationArithmetic;
 
 /// The dial, position by position; in the order of Profile.
 constexpr std::array<Position, 5> kDial{{
-    {"draft", {4, Interpolation::singleFloat, MathTier::fast, FilterArithmetic::weights8}},
-    {"fast", {8, Interpolation::singleFloat, MathTier::fast, FilterArithmetic::weights8}},
-    {"standard", {8, Interpolation::singleFloat, MathTier::standard, FilterArithmetic::singleFloat}},
-    {"fine", {12, Interpolation::doubleFloat, MathTier::fine, FilterArithmetic::singleFloat}},
-    {"reference", {16, Interpolation::doubleFloat, MathTier::reference, FilterArithmetic::singleFloat}},
+    {"draft", {4, Interpolation::singleFloat, MathTier::fast}},
+    {"fast", {8, Interpolation::singleFloat, MathTier::fast}},
+    {"standard", {8, Interpolation::singleFloat, MathTier::standard}},
+    {"fine", {12, Interpolation::doubleFloat, MathTier::fine}},
+    {"reference", {16, Interpolation::doubleFloat, MathTier::reference}},
 }};
 static_assert(kDial.size() == std::size(kProfiles));
 
@@ -34,8 +34,7 @@ std::string_view profileName(Profile profile) {
 }
 
 std::optional<Profile> profileFromName(std::string_view name) {
-    const auto found =
-        std::find_if(kDial.begin(), kDial.end(), [&](const Position& p) { return p.name == name; });
+    const auto found = std::find_if(kDial.begin(), kDial.end(), [&](const Position& p) { return p.name == name; });
     if (found == kDial.end()) return std::nullopt;
     return static_cast<Profile>(found - kDial.begin());
 }

@@ -1,5 +1,5 @@
-// The accuracy dial: one ordered setting that sets every axis, and each axis alone. Watertightness, order, determinism and
-// safety are no axes: they hold at every position.
+// The accuracy dial: one ordered setting that sets every axis, and each axis alone. Watertightness, order, determinism
+// and safety are no axes: they hold at every position.
 #pragma once
 
 #include <cstdint>
@@ -11,23 +11,18 @@
 namespace vernier {
 
 enum class Profile : uint8_t { draft, fast, standard, fine, reference };
-inline constexpr Profile kProfiles[] = {Profile::draft, Profile::fast, Profile::standard, Profile::fine, Profile::reference};
+inline constexpr Profile kProfiles[] = {Profile::draft, Profile::fast, Profile::standard, Profile::fine,
+                                        Profile::reference};
 
 enum class InterpolationArithmetic : uint8_t {
     singleFloat,  // float barycentrics, anchored at the primitive
     doubleFloat,  // double barycentrics and attributes, rounded once at the end
 };
 
-enum class FilterArithmetic : uint8_t {
-    weights8,     // weights rounded to 8 fraction bits
-    singleFloat,  // float weights
-};
-
 struct Accuracy {
     uint32_t subPixelBits = 8;  // 4, 8, 12 or 16
     InterpolationArithmetic interpolation = InterpolationArithmetic::singleFloat;
     MathTier math = MathTier::standard;
-    FilterArithmetic filter = FilterArithmetic::singleFloat;
     bool operator==(const Accuracy&) const = default;
 };
 

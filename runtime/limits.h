@@ -1,5 +1,5 @@
-// Sizes that several rooms of the runtime share. Each bound that an algorithm relies on stands beside that algorithm in a
-// static_assert.
+// Sizes that several rooms of the runtime share. Each bound that an algorithm relies on stands beside that algorithm in
+// a static_assert.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,8 @@ inline constexpr uint32_t kMaxInterfaceComponents = 128;  // between vertex and 
 inline constexpr uint32_t kMaxSamples = 4;
 inline constexpr uint32_t kMaxClipDistances = 8;
 
-/// Window coordinates that reach the rasteriser lie in [kGuardBandMin, kGuardBandMax] pixels; what lies outside is clipped.
+/// Window coordinates that reach the rasteriser lie in [kGuardBandMin, kGuardBandMax] pixels; what lies outside is
+/// clipped.
 inline constexpr int32_t kGuardBandMin = -8192;
 inline constexpr int32_t kGuardBandMax = 24575;
 

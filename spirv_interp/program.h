@@ -2,8 +2,8 @@
 // here and in ir/ir.h (reflection) and resources.h (descriptors).
 //
 //   Result<ir::Program> a = loadShader({words, "main", Stage::vertex, specialization});   // validated, lowered
-//   ir::linkStages(a, b)                                                                   // ir/link.h: drop dead varyings
-//   Result<std::shared_ptr<const BatchProgram>> p = BatchProgram::compile(a, {isa, MathTier::standard});
+//   ir::linkStages(a, b)                                                                   // ir/link.h: drop dead
+//   varyings Result<std::shared_ptr<const BatchProgram>> p = BatchProgram::compile(a, {isa, MathTier::standard});
 //   BatchContext context(*p);              // per thread
 //   context.beginDraw(bindings);           // runs draw-rate code once
 //   fill context.input(slot)[lane] ...; context.run(lanes, execMask, storeMask); read context.output(slot)[lane]
@@ -59,9 +59,9 @@ struct BatchOptions {
 };
 
 struct BatchStatistics {
-    uint32_t instructions = 0;       // per batch
+    uint32_t instructions = 0;  // per batch
     uint32_t drawRateInstructions = 0;
-    uint32_t registers = 0;          // of `lanes` 32-bit words each
+    uint32_t registers = 0;  // of `lanes` 32-bit words each
     uint32_t lanes = 0;
 };
 
@@ -91,8 +91,8 @@ class BatchContext {
     /// must stay alive and their read-only contents unchanged until the next beginDraw.
     void beginDraw(const ResourceBindings& bindings);
 
-    /// The lanes of input `slot` (index into Program::inputs), `lanes()` 32-bit words, 64-byte aligned. nullptr when the
-    /// compiled program does not read it. The contents survive run() only until the next run().
+    /// The lanes of input `slot` (index into Program::inputs), `lanes()` 32-bit words, 64-byte aligned. nullptr when
+    /// the compiled program does not read it. run() may overwrite the lanes: fill them again before every run.
     float* input(uint32_t slot);
 
     /// Runs `lanes` lanes (a multiple of 4, at most BatchProgram::lanes()). `execMask`: ~0 for every lane that runs,

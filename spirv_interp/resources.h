@@ -1,5 +1,5 @@
-// How the memory and images of a draw reach a running program. spirv_interp knows nothing of image layouts or filters: an
-// image instruction is one call for a whole batch of lanes through a function pointer that was resolved when the
+// How the memory and images of a draw reach a running program. spirv_interp knows nothing of image layouts or filters:
+// an image instruction is one call for a whole batch of lanes through a function pointer that was resolved when the
 // descriptor was written or the draw was planned.
 #pragma once
 
@@ -20,16 +20,16 @@ struct BufferBinding {
 struct ImageCall {
     const ir::ImageOp* op = nullptr;
     uint32_t lanes = 0;
-    const uint32_t* mask = nullptr;      // ~0 or 0 per lane
-    const uint32_t* coord[4] = {};       // f32 bits, or i32 for fetch/read/store
-    const uint32_t* dref = nullptr;      // f32 bits
-    const uint32_t* lodOrBias = nullptr; // f32 bits; i32 for fetch
-    const uint32_t* ddx[3] = {};         // f32 bits
+    const uint32_t* mask = nullptr;       // ~0 or 0 per lane
+    const uint32_t* coord[4] = {};        // f32 bits, or i32 for fetch/read/store
+    const uint32_t* dref = nullptr;       // f32 bits
+    const uint32_t* lodOrBias = nullptr;  // f32 bits; i32 for fetch
+    const uint32_t* ddx[3] = {};          // f32 bits
     const uint32_t* ddy[3] = {};
-    const uint32_t* offset[3] = {};      // i32
-    const uint32_t* sample = nullptr;    // i32
-    const uint32_t* texel[4] = {};       // store: value; atomic: value, comparator
-    uint32_t* result[4] = {};            // where to put the results; nullptr: not wanted
+    const uint32_t* offset[3] = {};    // i32
+    const uint32_t* sample = nullptr;  // i32
+    const uint32_t* texel[4] = {};     // store: value; atomic: value, comparator
+    uint32_t* result[4] = {};          // where to put the results; nullptr: not wanted
 };
 
 struct ImageBinding {

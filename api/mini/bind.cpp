@@ -101,8 +101,9 @@ VnResult vnBindIndexBuffer(VnContext context, VnBuffer buffer, uint64_t offset, 
         if (buffer.id && !object) return badHandle(context->device, "vnBindIndexBuffer", "buffer");
         const uint64_t size = type == VK_INDEX_TYPE_UINT16 ? 2 : 4;
         if (object && (offset > object->buffer.size() || offset % size != 0))
-            return invalid(context->device, "vnBindIndexBuffer",
-                           "offset " + std::to_string(offset) + " is beyond the buffer or no multiple of the index size");
+            return invalid(
+                context->device, "vnBindIndexBuffer",
+                "offset " + std::to_string(offset) + " is beyond the buffer or no multiple of the index size");
         context->indexBuffer = {object, offset};
         context->indexType = type;
         context->indexBufferChanged = true;
@@ -189,8 +190,9 @@ VnResult vnSetScissor(VnContext context, const VkRect2D* scissor) {
     return guardedContext(context, __func__, [&] {
         if (!scissor) return invalid(context->device, "vnSetScissor", "scissor is NULL");
         if (scissor->offset.x < 0 || scissor->offset.y < 0)
-            return invalid(context->device, "vnSetScissor",
-                           "offset is (" + std::to_string(scissor->offset.x) + ", " + std::to_string(scissor->offset.y) + ")");
+            return invalid(
+                context->device, "vnSetScissor",
+                "offset is (" + std::to_string(scissor->offset.x) + ", " + std::to_string(scissor->offset.y) + ")");
         context->scissor = *scissor;
         context->dynamicChanged = true;
         return VN_SUCCESS;

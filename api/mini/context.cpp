@@ -75,8 +75,9 @@ VnResult attachmentOf(VnContext context, const VnAttachment& from, const char* n
     const VkExtent2D a = view->view.extent(), b = resolve->view.extent();
     if (resolve->image->image.info().samples != 1 || view->image->image.info().samples == 1 || a.width != b.width ||
         a.height != b.height || resolve->view.info().format != view->view.info().format)
-        return invalid(context->device, "vnBeginPass",
-                       std::string(name) + " resolve must be single-sampled, of a multisampled view of the same size and format");
+        return invalid(
+            context->device, "vnBeginPass",
+            std::string(name) + " resolve must be single-sampled, of a multisampled view of the same size and format");
     to.resolve = &context->recording->keep(resolve).view;
     return VN_SUCCESS;
 }
@@ -89,8 +90,8 @@ class PassBuilder {
         const ViewObject* view = nullptr;
         if (VnResult result = attachmentOf(context_, attachment, name, to, &view)) return result;
         const FormatInfo& format = view->image->image.format();
-        const VkFormatFeatureFlags wanted = depth ? VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT
-                                                  : VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT;
+        const VkFormatFeatureFlags wanted =
+            depth ? VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT;
         if (!(format.optimalTilingFeatures & wanted))
             return fail(context_->device, VN_ERROR_UNSUPPORTED,
                         std::string("vnBeginPass: format ") + format.name + " of " + name + " cannot be drawn to");
@@ -116,7 +117,8 @@ VnResult checkRenderArea(VnContext context, const VkRect2D& area, const VkExtent
     const auto inside = [](int64_t offset, int64_t size, int64_t limit) {
         return offset >= 0 && size > 0 && offset + size <= limit;
     };
-    if (inside(area.offset.x, area.extent.width, extent.width) && inside(area.offset.y, area.extent.height, extent.height))
+    if (inside(area.offset.x, area.extent.width, extent.width) &&
+        inside(area.offset.y, area.extent.height, extent.height))
         return VN_SUCCESS;
     return invalid(context->device, "vnBeginPass",
                    "renderArea is not inside the attachments of " + std::to_string(extent.width) + " x " +
@@ -186,7 +188,8 @@ VnResult vnEndPass(VnContext context) {
 
 namespace {
 
-VnResult clearAttachment(VnContext context, const char* function, const VkClearAttachment& clear, const VkRect2D* rect) {
+VnResult clearAttachment(VnContext context, const char* function, const VkClearAttachment& clear,
+                         const VkRect2D* rect) {
     if (!context->inPass) return wrongState(context, function, "no pass is open");
     CommandBuffer& commands = context->recording->commands;
     const VkClearRect where{rect ? *rect : context->renderArea, 0, 1};

@@ -89,7 +89,7 @@ struct VnContext_T {
 
     // What the recording has to be told before the next draw.
     std::shared_ptr<const vernier::GraphicsPipeline> pipeline;  // of the key as last planned
-    bool pipelineChanged = true;  // another combination of state objects
+    bool pipelineChanged = true;                                // another combination of state objects
     bool dynamicChanged = true;
     bool resourcesChanged = true;
     bool indexBufferChanged = true;

@@ -21,8 +21,9 @@ inline VnResult finish(VnContext context, const char* function) {
     if (context->recording->commands.first()) context->submit();
     context->waitIdle();
     if (context->device->runtime->queue().lost())
-        return fail(context->device, VN_ERROR_DEVICE_LOST,
-                    std::string(function) + ": a shader looped beyond the budget, or memory ran out; the device is lost");
+        return fail(
+            context->device, VN_ERROR_DEVICE_LOST,
+            std::string(function) + ": a shader looped beyond the budget, or memory ran out; the device is lost");
     return VN_SUCCESS;
 }
 

@@ -47,9 +47,10 @@ VnResult createDevice(const VnDeviceDesc& desc, VnDevice* device) {
     }
     Result<std::unique_ptr<Device>> created = Device::create(runtime);
     if (!created)
-        return report(desc,
-                      created.error().code == ErrorCode::invalidArgument ? VN_ERROR_INVALID_ARGUMENT : VN_ERROR_OUT_OF_MEMORY,
-                      created.error().message);
+        return report(
+            desc,
+            created.error().code == ErrorCode::invalidArgument ? VN_ERROR_INVALID_ARGUMENT : VN_ERROR_OUT_OF_MEMORY,
+            created.error().message);
     *device = new VnDevice_T(std::move(created).value(), desc, profile);
     return VN_SUCCESS;
 }
@@ -79,7 +80,9 @@ VnResult vnCreateDevice(const VnDeviceDesc* desc, VnDevice* device) {
     }
 }
 
-void vnDestroyDevice(VnDevice device) { delete device; }
+void vnDestroyDevice(VnDevice device) {
+    delete device;
+}
 
 size_t vnGetError(VnDevice device, char* text, size_t capacity) {
     if (!device) return 0;

@@ -83,10 +83,14 @@ GraphicsState graphicsStateOf(const VnContext_T& context) {
 bool isBound(const BoundResource& bound, ir::ResourceKind kind) {
     switch (kind) {
         case ir::ResourceKind::uniformBuffer:
-        case ir::ResourceKind::storageBuffer: return bound.buffer != nullptr;
-        case ir::ResourceKind::sampler: return bound.sampler != nullptr;
-        case ir::ResourceKind::combinedImageSampler: return bound.view && bound.sampler;
-        default: return bound.view != nullptr;
+        case ir::ResourceKind::storageBuffer:
+            return bound.buffer != nullptr;
+        case ir::ResourceKind::sampler:
+            return bound.sampler != nullptr;
+        case ir::ResourceKind::combinedImageSampler:
+            return bound.view && bound.sampler;
+        default:
+            return bound.view != nullptr;
     }
 }
 
@@ -97,7 +101,8 @@ VnResult checkBound(VnContext context, const char* function, const ir::Program& 
         const uint32_t needed = std::max(resource.arraySize, 1u);
         uint32_t bound = 0;
         if (found != context->resources.end())
-            while (bound < std::min<size_t>(needed, found->second.size()) && isBound(found->second[bound], resource.kind))
+            while (bound < std::min<size_t>(needed, found->second.size()) &&
+                   isBound(found->second[bound], resource.kind))
                 ++bound;
         if (bound < needed)
             return wrongState(context, function,
@@ -159,7 +164,8 @@ VnResult recordResources(VnContext context, const char* function) {
     for (uint32_t set = 0; set < kMaxDescriptorSets; ++set) {
         if (!(usedSets >> set & 1u)) continue;
         const DescriptorSet* made = snapshot(context, set);
-        commands.record(command::BindDescriptorSets{set, commands.copy(std::span<const DescriptorSet* const>(&made, 1)), {}});
+        commands.record(
+            command::BindDescriptorSets{set, commands.copy(std::span<const DescriptorSet* const>(&made, 1)), {}});
     }
     context->resourcesChanged = false;
     return VN_SUCCESS;
@@ -301,11 +307,13 @@ VnResult vnDrawIndexed(VnContext context, uint32_t indexCount, uint32_t instance
 }
 
 VnResult vnDrawIndirect(VnContext context, VnBuffer buffer, uint64_t offset, uint32_t drawCount, uint32_t stride) {
-    return guardedContext(
-        context, __func__, [&] { return drawIndirect(context, "vnDrawIndirect", buffer, offset, drawCount, stride, false); });
+    return guardedContext(context, __func__, [&] {
+        return drawIndirect(context, "vnDrawIndirect", buffer, offset, drawCount, stride, false);
+    });
 }
 
-VnResult vnDrawIndexedIndirect(VnContext context, VnBuffer buffer, uint64_t offset, uint32_t drawCount, uint32_t stride) {
+VnResult vnDrawIndexedIndirect(VnContext context, VnBuffer buffer, uint64_t offset, uint32_t drawCount,
+                               uint32_t stride) {
     return guardedContext(context, __func__, [&] {
         return drawIndirect(context, "vnDrawIndexedIndirect", buffer, offset, drawCount, stride, true);
     });

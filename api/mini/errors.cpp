@@ -14,11 +14,15 @@ VnResult fail(VnDevice device, VnResult result, const std::string& text) {
 VnResult fail(VnDevice device, const char* what, const Error& error) {
     const auto result = [&] {
         switch (error.code) {
-            case ErrorCode::invalidArgument: return VN_ERROR_INVALID_ARGUMENT;
-            case ErrorCode::unsupported: return VN_ERROR_UNSUPPORTED;
+            case ErrorCode::invalidArgument:
+                return VN_ERROR_INVALID_ARGUMENT;
+            case ErrorCode::unsupported:
+                return VN_ERROR_UNSUPPORTED;
             case ErrorCode::outOfHostMemory:
-            case ErrorCode::outOfDeviceMemory: return VN_ERROR_OUT_OF_MEMORY;
-            case ErrorCode::deviceLost: return VN_ERROR_DEVICE_LOST;
+            case ErrorCode::outOfDeviceMemory:
+                return VN_ERROR_OUT_OF_MEMORY;
+            case ErrorCode::deviceLost:
+                return VN_ERROR_DEVICE_LOST;
         }
         return VN_ERROR_INVALID_ARGUMENT;
     }();

@@ -29,7 +29,8 @@ VnResult guarded(VnDevice device, const char* function, Body body) {
 template <class Desc, class Handle>
 VnResult checkDesc(VnDevice device, const char* function, const Desc* desc, const Handle* handle) {
     if (!desc) return fail(device, VN_ERROR_INVALID_ARGUMENT, std::string(function) + ": desc is NULL");
-    if (!handle) return fail(device, VN_ERROR_INVALID_ARGUMENT, std::string(function) + ": the place for the handle is NULL");
+    if (!handle)
+        return fail(device, VN_ERROR_INVALID_ARGUMENT, std::string(function) + ": the place for the handle is NULL");
     if (desc->_start != 0 || desc->_end != 0)
         return fail(device, VN_ERROR_INVALID_ARGUMENT,
                     std::string(function) + ": desc is not initialised (_start is " + std::to_string(desc->_start) +
@@ -49,8 +50,7 @@ inline VnResult invalid(VnDevice device, const char* function, const std::string
 /// The common body of every destroy function.
 template <class Object>
 VnResult destroyIn(VnDevice device, const char* function, const char* kind, HandleTable<Object>& table, uint64_t id) {
-    return guarded(device, function,
-                   [&] { return table.remove(id) ? VN_SUCCESS : badHandle(device, function, kind); });
+    return guarded(device, function, [&] { return table.remove(id) ? VN_SUCCESS : badHandle(device, function, kind); });
 }
 
 }  // namespace vernier::mini

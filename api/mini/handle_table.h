@@ -1,5 +1,5 @@
-// Handles by value: an index, a generation that tells a reused slot from the object that was there before, and the salt of
-// the device, so that a destroyed or foreign handle is recognised and never followed.
+// Handles by value: an index, a generation that tells a reused slot from the object that was there before, and the salt
+// of the device, so that a destroyed or foreign handle is recognised and never followed.
 #pragma once
 
 #include <cstdint>

@@ -81,7 +81,8 @@ struct PipelineKey {
 
 /// The device of vernier.h. Its tables are thread-safe.
 struct VnDevice_T {
-    VnDevice_T(std::unique_ptr<vernier::Device> runtimeDevice, const VnDeviceDesc& desc, vernier::Profile deviceProfile);
+    VnDevice_T(std::unique_ptr<vernier::Device> runtimeDevice, const VnDeviceDesc& desc,
+               vernier::Profile deviceProfile);
     ~VnDevice_T();
 
     std::unique_ptr<vernier::Device> runtime;

@@ -50,7 +50,8 @@ VnResult vnCreateShader(VnDevice device, const VnShaderDesc* desc, VnShader* sha
 }
 
 VnResult vnDestroyShader(VnDevice device, VnShader shader) {
-    return guarded(device, __func__, [&] { return destroyIn(device, "vnDestroyShader", "shader", device->shaders, shader.id); });
+    return guarded(device, __func__,
+                   [&] { return destroyIn(device, "vnDestroyShader", "shader", device->shaders, shader.id); });
 }
 
 VnResult vnCreateProgram(VnDevice device, const VnProgramDesc* desc, VnProgram* program) {
@@ -60,7 +61,8 @@ VnResult vnCreateProgram(VnDevice device, const VnProgramDesc* desc, VnProgram* 
         if (desc->profile < VN_PROFILE_DEFAULT || desc->profile > VN_PROFILE_REFERENCE)
             return invalid(device, "vnCreateProgram", "profile is " + std::to_string(desc->profile));
         const auto vertex = device->shaders.find(desc->vertex.id);
-        if (!vertex || vertex->program.stage != ir::Stage::vertex) return badHandle(device, "vnCreateProgram", "vertex shader");
+        if (!vertex || vertex->program.stage != ir::Stage::vertex)
+            return badHandle(device, "vnCreateProgram", "vertex shader");
         const auto fragment = device->shaders.find(desc->fragment.id);
         if (desc->fragment.id && (!fragment || fragment->program.stage != ir::Stage::fragment))
             return badHandle(device, "vnCreateProgram", "fragment shader");

@@ -47,7 +47,8 @@ VnResult createView(VnDevice device, const char* function, std::shared_ptr<Image
                     VnView* view) {
     Result<ImageView> made = makeView(device, *image, desc);
     if (!made) return fail(device, function, made.error());
-    view->id = device->views.insert(std::make_shared<ViewObject>(ViewObject{std::move(image), std::move(made).value()}));
+    view->id =
+        device->views.insert(std::make_shared<ViewObject>(ViewObject{std::move(image), std::move(made).value()}));
     return VN_SUCCESS;
 }
 
@@ -69,7 +70,8 @@ VnResult vnCreateBuffer(VnDevice device, const VnBufferDesc* desc, VnBuffer* buf
 }
 
 VnResult vnDestroyBuffer(VnDevice device, VnBuffer buffer) {
-    return guarded(device, __func__, [&] { return destroyIn(device, "vnDestroyBuffer", "buffer", device->buffers, buffer.id); });
+    return guarded(device, __func__,
+                   [&] { return destroyIn(device, "vnDestroyBuffer", "buffer", device->buffers, buffer.id); });
 }
 
 VnResult vnMapBuffer(VnDevice device, VnBuffer buffer, void** memory) {
@@ -134,7 +136,8 @@ VnResult vnCreateView(VnDevice device, const VnViewDesc* desc, VnView* view) {
 }
 
 VnResult vnDestroyView(VnDevice device, VnView view) {
-    return guarded(device, __func__, [&] { return destroyIn(device, "vnDestroyView", "view", device->views, view.id); });
+    return guarded(device, __func__,
+                   [&] { return destroyIn(device, "vnDestroyView", "view", device->views, view.id); });
 }
 
 VnResult vnGetImageView(VnDevice device, VnImage image, VnView* view) {

@@ -10,8 +10,8 @@ namespace {
 
 /// Creates an immutable copy of a checked descriptor.
 template <class Object, class Desc, class Handle>
-VnResult createState(VnDevice device, const char* function, HandleTable<Object>& table, const Desc* desc, Handle* handle,
-                     VnResult (*check)(VnDevice, const char*, const Desc&)) {
+VnResult createState(VnDevice device, const char* function, HandleTable<Object>& table, const Desc* desc,
+                     Handle* handle, VnResult (*check)(VnDevice, const char*, const Desc&)) {
     return guarded(device, function, [&] {
         if (VnResult result = checkDesc(device, function, desc, handle)) return result;
         handle->id = 0;
@@ -66,7 +66,8 @@ VnResult checkBlend(VnDevice device, const char* function, const VnBlendStateDes
     if (VnResult r = checkEnum(device, function, "logicOp", desc.logicOp, VK_LOGIC_OP_SET)) return r;
     for (const VnBlendAttachment& a : desc.attachments) {
         for (const VkBlendFactor factor : {a.srcColor, a.dstColor, a.srcAlpha, a.dstAlpha})
-            if (VnResult r = checkEnum(device, function, "a blend factor", factor, VK_BLEND_FACTOR_ONE_MINUS_SRC1_ALPHA))
+            if (VnResult r =
+                    checkEnum(device, function, "a blend factor", factor, VK_BLEND_FACTOR_ONE_MINUS_SRC1_ALPHA))
                 return r;
         for (const VkBlendOp op : {a.colorOp, a.alphaOp})
             if (VnResult r = checkEnum(device, function, "a blend op", op, VK_BLEND_OP_MAX)) return r;
@@ -106,7 +107,8 @@ VnResult vnCreateVertexLayout(VnDevice device, const VnVertexLayoutDesc* desc, V
             const VnVertexAttribute& a = desc->attributes[i];
             if (VnResult result = checkAttribute(device, *desc, a)) return result;
             if (seen >> a.location & 1u)
-                return invalid(device, "vnCreateVertexLayout", "location " + std::to_string(a.location) + " comes twice");
+                return invalid(device, "vnCreateVertexLayout",
+                               "location " + std::to_string(a.location) + " comes twice");
             seen |= 1u << a.location;
             object->attributes.push_back({a.location, a.binding, a.format, a.offset});
         }
@@ -120,7 +122,8 @@ VnResult vnCreateVertexLayout(VnDevice device, const VnVertexLayoutDesc* desc, V
 }
 
 VnResult vnCreateRasterState(VnDevice device, const VnRasterStateDesc* desc, VnRasterState* state) {
-    return device ? createState(device, __func__, device->rasterStates, desc, state, checkRaster) : VN_ERROR_INVALID_HANDLE;
+    return device ? createState(device, __func__, device->rasterStates, desc, state, checkRaster)
+                  : VN_ERROR_INVALID_HANDLE;
 }
 
 VnResult vnCreateDepthStencilState(VnDevice device, const VnDepthStencilStateDesc* desc, VnDepthStencilState* state) {
@@ -129,18 +132,20 @@ VnResult vnCreateDepthStencilState(VnDevice device, const VnDepthStencilStateDes
 }
 
 VnResult vnCreateBlendState(VnDevice device, const VnBlendStateDesc* desc, VnBlendState* state) {
-    return device ? createState(device, __func__, device->blendStates, desc, state, checkBlend) : VN_ERROR_INVALID_HANDLE;
+    return device ? createState(device, __func__, device->blendStates, desc, state, checkBlend)
+                  : VN_ERROR_INVALID_HANDLE;
 }
 
-// Destroying a state object also forgets the plans made with it, so that a later object's handle never meets an old plan.
-#define VERNIER_DESTROY_STATE(Name, Handle, table, keyField, kind)                                                     \
-    VnResult vnDestroy##Name(VnDevice device, Handle state) {                                                          \
-        return guarded(device, __func__, [&] {                                                                         \
-            if (VnResult result = destroyIn(device, "vnDestroy" #Name, kind, device->table, state.id)) return result;  \
-            const std::lock_guard lock(device->pipelineMutex);                                                         \
-            std::erase_if(device->pipelines, [&](const auto& entry) { return entry.first.keyField == state.id; });     \
-            return VN_SUCCESS;                                                                                         \
-        });                                                                                                            \
+// Destroying a state object also forgets the plans made with it, so that a later object's handle never meets an old
+// plan.
+#define VERNIER_DESTROY_STATE(Name, Handle, table, keyField, kind)                                                    \
+    VnResult vnDestroy##Name(VnDevice device, Handle state) {                                                         \
+        return guarded(device, __func__, [&] {                                                                        \
+            if (VnResult result = destroyIn(device, "vnDestroy" #Name, kind, device->table, state.id)) return result; \
+            const std::lock_guard lock(device->pipelineMutex);                                                        \
+            std::erase_if(device->pipelines, [&](const auto& entry) { return entry.first.keyField == state.id; });    \
+            return VN_SUCCESS;                                                                                        \
+        });                                                                                                           \
     }
 VERNIER_DESTROY_STATE(VertexLayout, VnVertexLayout, vertexLayouts, vertexLayout, "vertex layout")
 VERNIER_DESTROY_STATE(RasterState, VnRasterState, rasterStates, raster, "raster state")

@@ -20,9 +20,9 @@ struct Region {
 VnResult resolveRegion(VnContext context, const char* function, const Image& image, const VnRegion* from, Region& to) {
     const VnRegion region = from ? *from : VnRegion{};
     if (region.mip >= image.info().mipLevels || region.layer >= image.info().arrayLayers)
-        return invalid(context->device, function,
-                       "mip " + std::to_string(region.mip) + ", layer " + std::to_string(region.layer) +
-                           " is not in the image");
+        return invalid(
+            context->device, function,
+            "mip " + std::to_string(region.mip) + ", layer " + std::to_string(region.layer) + " is not in the image");
     const VkExtent3D& size = image.level(region.mip).extent;
     const uint32_t width = region.width ? region.width : std::max(size.width, region.x) - region.x;
     const uint32_t height = region.height ? region.height : std::max(size.height, region.y) - region.y;
@@ -57,8 +57,9 @@ VnResult checkBytes(VnContext context, const char* function, const ImageObject& 
     if (image.image.info().samples > 1)
         return invalid(context->device, function, "the image is multisampled; resolve it first");
     if (data && size >= needed) return VN_SUCCESS;
-    return invalid(context->device, function,
-                   "the region needs " + std::to_string(needed) + " bytes, data has " + std::to_string(data ? size : 0));
+    return invalid(
+        context->device, function,
+        "the region needs " + std::to_string(needed) + " bytes, data has " + std::to_string(data ? size : 0));
 }
 
 /// A buffer of a transfer command and a range of it.
@@ -136,11 +137,11 @@ VnResult vnReadImage(VnContext context, VnImage image, const VnRegion* region, v
         const VkImageSubresourceLayers& sub = resolved.subresource;
         const uint64_t pitch = uint64_t{bufferTexelBytes(format, sub.aspectMask)} * resolved.extent.width;
         for (uint32_t y = 0; y < resolved.extent.height; ++y)
-            copyTexelsToBuffer(
-                format, sub.aspectMask,
-                rowAddress(object->image, sub.mipLevel, static_cast<uint32_t>(resolved.offset.y) + y, sub.baseArrayLayer, 0) +
-                    static_cast<uint64_t>(resolved.offset.x) * format.bytesPerTexel,
-                resolved.extent.width, static_cast<std::byte*>(data) + y * pitch);
+            copyTexelsToBuffer(format, sub.aspectMask,
+                               rowAddress(object->image, sub.mipLevel, static_cast<uint32_t>(resolved.offset.y) + y,
+                                          sub.baseArrayLayer, 0) +
+                                   static_cast<uint64_t>(resolved.offset.x) * format.bytesPerTexel,
+                               resolved.extent.width, static_cast<std::byte*>(data) + y * pitch);
         return VN_SUCCESS;
     });
 }
@@ -161,7 +162,8 @@ VnResult vnCopyBuffer(VnContext context, VnBuffer source, uint64_t sourceOffset,
     return guardedContext(context, __func__, [&] {
         std::shared_ptr<BufferObject> from, to;
         if (VnResult result = transferBuffer(context, "vnCopyBuffer", source, sourceOffset, size, from)) return result;
-        if (VnResult result = transferBuffer(context, "vnCopyBuffer", destination, destinationOffset, size, to)) return result;
+        if (VnResult result = transferBuffer(context, "vnCopyBuffer", destination, destinationOffset, size, to))
+            return result;
         context->recording->commands.record(
             command::CopyBuffer{&context->recording->keep(from).buffer, &context->recording->keep(to).buffer,
                                 one(context, VkBufferCopy{sourceOffset, destinationOffset, size})});
@@ -175,7 +177,8 @@ VnResult vnCopyImage(VnContext context, VnImage source, const VnRegion* sourceRe
         std::shared_ptr<ImageObject> from, to;
         Region a, b;
         if (VnResult result = transferImage(context, "vnCopyImage", source, sourceRegion, from, a)) return result;
-        if (VnResult result = transferImage(context, "vnCopyImage", destination, destinationRegion, to, b)) return result;
+        if (VnResult result = transferImage(context, "vnCopyImage", destination, destinationRegion, to, b))
+            return result;
         if (a.extent.width != b.extent.width || a.extent.height != b.extent.height)
             return invalid(context->device, "vnCopyImage", "the regions have different sizes");
         if (from->image.format().bytesPerTexel != to->image.format().bytesPerTexel ||
@@ -196,13 +199,15 @@ VnResult vnBlitImage(VnContext context, VnImage source, const VnRegion* sourceRe
         std::shared_ptr<ImageObject> from, to;
         Region a, b;
         if (VnResult result = transferImage(context, "vnBlitImage", source, sourceRegion, from, a)) return result;
-        if (VnResult result = transferImage(context, "vnBlitImage", destination, destinationRegion, to, b)) return result;
+        if (VnResult result = transferImage(context, "vnBlitImage", destination, destinationRegion, to, b))
+            return result;
         if (filter != VK_FILTER_NEAREST && filter != VK_FILTER_LINEAR)
             return invalid(context->device, "vnBlitImage", "filter is " + std::to_string(filter));
         const FormatInfo& fromFormat = from->image.format();
         const FormatInfo& toFormat = to->image.format();
         const bool color = a.subresource.aspectMask == VK_IMAGE_ASPECT_COLOR_BIT;
-        const bool sameKind = fromFormat.layout(a.subresource.aspectMask).type == toFormat.layout(b.subresource.aspectMask).type;
+        const bool sameKind =
+            fromFormat.layout(a.subresource.aspectMask).type == toFormat.layout(b.subresource.aspectMask).type;
         const bool smooth = fromFormat.layout(a.subresource.aspectMask).type == ValueType::floating && color;
         if (a.subresource.aspectMask != b.subresource.aspectMask || !sameKind ||
             (!color && fromFormat.format != toFormat.format) || (filter == VK_FILTER_LINEAR && !smooth) ||
@@ -221,9 +226,8 @@ VnResult vnBlitImage(VnContext context, VnImage source, const VnRegion* sourceRe
         blit.srcOffsets[1] = corner(a);
         blit.dstOffsets[0] = b.offset;
         blit.dstOffsets[1] = corner(b);
-        context->recording->commands.record(command::BlitImage{&context->recording->keep(from).image,
-                                                               &context->recording->keep(to).image, one(context, blit),
-                                                               filter});
+        context->recording->commands.record(command::BlitImage{
+            &context->recording->keep(from).image, &context->recording->keep(to).image, one(context, blit), filter});
         return VN_SUCCESS;
     });
 }
@@ -240,9 +244,9 @@ VnResult vnResolveImage(VnContext context, VnImage source, VnImage destination) 
             f.extent.height != t.extent.height || a.subresource.aspectMask != VK_IMAGE_ASPECT_COLOR_BIT)
             return invalid(context->device, "vnResolveImage",
                            "needs a multisampled and a single-sampled colour image of the same size and format");
-        context->recording->commands.record(
-            command::ResolveImage{&context->recording->keep(from).image, &context->recording->keep(to).image,
-                                  one(context, VkImageResolve{a.subresource, a.offset, b.subresource, b.offset, a.extent})});
+        context->recording->commands.record(command::ResolveImage{
+            &context->recording->keep(from).image, &context->recording->keep(to).image,
+            one(context, VkImageResolve{a.subresource, a.offset, b.subresource, b.offset, a.extent})});
         return VN_SUCCESS;
     });
 }
@@ -267,7 +271,8 @@ VnResult vnGenerateMips(VnContext context, VnImage image) {
             blit.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, target.info().arrayLayers};
             blit.srcOffsets[1] = corner(mip - 1);
             blit.dstOffsets[1] = corner(mip);
-            context->recording->commands.record(command::BlitImage{&target, &target, one(context, blit), VK_FILTER_LINEAR});
+            context->recording->commands.record(
+                command::BlitImage{&target, &target, one(context, blit), VK_FILTER_LINEAR});
         }
         return VN_SUCCESS;
     });

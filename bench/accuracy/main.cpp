@@ -1,7 +1,7 @@
 // vernier-accuracy: the price of accuracy. For each profile, and for lavapipe and SwiftShader beside, the error against
 // the exact oracle and the time per frame, in scenes that are each sensitive to one axis.
-#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -112,8 +112,8 @@ int run(const DriverPaths& paths, const std::filesystem::path& out, const std::s
             std::filesystem::create_directories(folder);
             const ChildResult child =
                 runChild({"--icd", paths.icd.string(), "--lavapipe", paths.lavapipe.string(), "--swiftshader",
-                          paths.swiftShader.string(), "--profile", position.profile, "render", "--driver", position.driver,
-                          "--scene", scene->name, "--out", folder.string()},
+                          paths.swiftShader.string(), "--profile", position.profile, "render", "--driver",
+                          position.driver, "--scene", scene->name, "--out", folder.string()},
                          folder / (scene->name + ".log"), 120);
             const Result<Rendering> rendering =
                 child.ok ? loadRendering(folder, scene->name) : Result<Rendering>(invalidArgument(child.failure));
@@ -126,12 +126,9 @@ int run(const DriverPaths& paths, const std::filesystem::path& out, const std::s
             std::printf("  %-12s %10.3f %14.3g %14.3g %10llu %10llu\n", position.label.c_str(), rendering->timing.frame,
                         figures.worst, figures.mean, static_cast<unsigned long long>(figures.outside),
                         static_cast<unsigned long long>(figures.judged));
-            report[scene->name][position.label] = {{"frame_ms", rendering->timing.frame},
-                                                   {"worst_255", figures.worst},
-                                                   {"mean_255", figures.mean},
-                                                   {"outside", figures.outside},
-                                                   {"judged", figures.judged},
-                                                   {"undecided", figures.undecided}};
+            report[scene->name][position.label] = {
+                {"frame_ms", rendering->timing.frame}, {"worst_255", figures.worst}, {"mean_255", figures.mean},
+                {"outside", figures.outside},          {"judged", figures.judged},   {"undecided", figures.undecided}};
         }
     }
     if (!json.empty()) std::ofstream(json) << report.dump(2) << '\n';
@@ -162,4 +159,6 @@ int main(int argc, char** argv) {
 }  // namespace
 }  // namespace vernier::bench
 
-int main(int argc, char** argv) { return vernier::bench::main(argc, argv); }
+int main(int argc, char** argv) {
+    return vernier::bench::main(argc, argv);
+}

@@ -29,9 +29,8 @@ void convert(benchmark::State& state, VkFormat format, bool pack, Isa isa) {
         }
         benchmark::ClobberMemory();
     }
-    state.counters["ns/texel"] =
-        benchmark::Counter(static_cast<double>(state.iterations()) * kTexels * 1e-9,
-                           benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    state.counters["ns/texel"] = benchmark::Counter(static_cast<double>(state.iterations()) * kTexels * 1e-9,
+                                                    benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
 }  // namespace
@@ -44,9 +43,8 @@ int main(int argc, char** argv) {
         if (bestIsaUpTo(isa) != isa) continue;
         for (const VkFormat format :
              {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R5G6B5_UNORM_PACK16,
-              VK_FORMAT_A2B10G10R10_UNORM_PACK32, VK_FORMAT_R16G16B16A16_SFLOAT,
-              VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32_SFLOAT, VK_FORMAT_D16_UNORM,
-              VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT}) {
+              VK_FORMAT_A2B10G10R10_UNORM_PACK32, VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT,
+              VK_FORMAT_R32_SFLOAT, VK_FORMAT_D16_UNORM, VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT}) {
             for (const bool pack : {false, true}) {
                 const std::string name =
                     std::string(isaName(isa)) + (pack ? "/pack/" : "/unpack/") + findFormat(format)->name;

@@ -39,8 +39,7 @@ enum class Filter { nearest, bilinear, trilinear };
 SamplerState samplerFor(Filter filter, VkSamplerAddressMode mode) {
     SamplerState sampler;
     sampler.magFilter = sampler.minFilter = filter == Filter::nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
-    sampler.mipmapMode =
-        filter == Filter::trilinear ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
+    sampler.mipmapMode = filter == Filter::trilinear ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
     for (VkSamplerAddressMode& m : sampler.addressMode) m = mode;
     return sampler;
 }
@@ -77,9 +76,8 @@ void sample(benchmark::State& state, VkFormat format, VkImageAspectFlags aspect,
         }
         benchmark::ClobberMemory();
     }
-    state.counters["ns/sample"] =
-        benchmark::Counter(static_cast<double>(state.iterations()) * kBatches * kLanes * 1e-9,
-                           benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    state.counters["ns/sample"] = benchmark::Counter(static_cast<double>(state.iterations()) * kBatches * kLanes * 1e-9,
+                                                     benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
 void registerAll() {
@@ -107,8 +105,7 @@ void registerAll() {
         for (const Kind& kind : kKinds) {
             for (const auto& [filterName, filter] : kFilters) {
                 for (const auto& [modeName, mode] : kModes) {
-                    if (mode != VK_SAMPLER_ADDRESS_MODE_REPEAT && kind.format != VK_FORMAT_R8G8B8A8_UNORM)
-                        continue;
+                    if (mode != VK_SAMPLER_ADDRESS_MODE_REPEAT && kind.format != VK_FORMAT_R8G8B8A8_UNORM) continue;
                     const std::string name =
                         std::string(isaName(isa)) + "/" + kind.name + "/" + filterName + "/" + modeName;
                     benchmark::RegisterBenchmark(name.c_str(), sample, kind.format, kind.aspect, filter, mode,

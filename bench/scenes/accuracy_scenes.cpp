@@ -12,7 +12,8 @@ constexpr VkFormat kFloat = VK_FORMAT_R32G32B32A32_SFLOAT;
 
 /// Interpolation: small triangles far from the framebuffer's origin, a float target so that nothing is hidden.
 Result<Scene> farTriangles() {
-    SceneRecorder record("far_triangles", "A strip of 8-pixel triangles around x = 4000: interpolation far from the origin.");
+    SceneRecorder record("far_triangles",
+                         "A strip of 8-pixel triangles around x = 4000: interpolation far from the origin.");
     constexpr VkExtent2D kExtent{4096, 16};
     const uint32_t target = record.colorTarget("color", kFloat, kExtent);
     const uint32_t pipeline = record.pipeline(record.vertex(R"(#version 450
@@ -41,13 +42,14 @@ Result<Scene> magnifiedRamp() {
     const uint32_t target = record.colorTarget("color", kFloat, kExtent);
     const std::vector<uint32_t> texels{0xFF000000u, 0xFF40FF20u, 0xFFC02080u, 0xFFFFFFFFu};
     const uint32_t texture = record.texture("ramp", VK_FORMAT_R8G8B8A8_UNORM, {4, 1}, {bytesOf(texels)});
-    const uint32_t pipeline = record.pipeline(record.vertex(R"(#version 450
+    const uint32_t pipeline = record
+                                  .pipeline(record.vertex(R"(#version 450
 layout(location = 0) out vec2 uv;
 void main() {
     uv = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1);
     gl_Position = vec4(uv * 2.0 - 1.0, 0.5, 1.0);
 })"),
-                                              record.fragment(R"(#version 450
+                                            record.fragment(R"(#version 450
 layout(set = 0, binding = 0) uniform sampler2D image;
 layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 color;
@@ -64,13 +66,14 @@ Result<Scene> transcendental() {
     SceneRecorder record("transcendental", "Sines of large arguments, powers and logarithms per pixel.");
     constexpr VkExtent2D kExtent{128, 128};
     const uint32_t target = record.colorTarget("color", kFloat, kExtent);
-    const uint32_t pipeline = record.pipeline(record.vertex(R"(#version 450
+    const uint32_t pipeline = record
+                                  .pipeline(record.vertex(R"(#version 450
 layout(location = 0) out vec2 uv;
 void main() {
     uv = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1);
     gl_Position = vec4(uv * 2.0 - 1.0, 0.5, 1.0);
 })"),
-                                              record.fragment(R"(#version 450
+                                            record.fragment(R"(#version 450
 layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 color;
 void main() {
@@ -91,6 +94,8 @@ constexpr SceneEntry kAccuracyScenes[] = {
 
 }  // namespace
 
-std::span<const SceneEntry> accuracyScenes() { return kAccuracyScenes; }
+std::span<const SceneEntry> accuracyScenes() {
+    return kAccuracyScenes;
+}
 
 }  // namespace vernier::bench

@@ -50,7 +50,9 @@ layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 color;
 void main() { color = vec4(uv, 0.5, 1.0); })";
 
-Result<Scene> fill() { return fullScreen("fill", "One full-screen quad with interpolated colours.", kGradient, 1); }
+Result<Scene> fill() {
+    return fullScreen("fill", "One full-screen quad with interpolated colours.", kGradient, 1);
+}
 
 Result<Scene> overdraw() {
     return fullScreen("overdraw", "16 opaque full-screen quads, one over the other.", kGradient, 16);
@@ -133,12 +135,13 @@ Result<Scene> smallTriangles() {
             const uint32_t a = y * (kColumns + 1) + x, b = a + kColumns + 1;
             indices.insert(indices.end(), {a, a + 1, b, b, a + 1, b + 1});
         }
-    const uint32_t pipeline = record.pipeline(record.vertex(R"(#version 450
+    const uint32_t pipeline = record
+                                  .pipeline(record.vertex(R"(#version 450
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec4 color;
 layout(location = 0) out vec4 shade;
 void main() { gl_Position = vec4(position, 1.0); shade = color; })"),
-                                              record.fragment(R"(#version 450
+                                            record.fragment(R"(#version 450
 layout(location = 0) in vec4 shade;
 layout(location = 0) out vec4 color;
 void main() { color = shade; })"))
@@ -166,7 +169,8 @@ Result<Scene> textured() {
     SceneSampler sampler;
     sampler.magFilter = sampler.minFilter = VK_FILTER_LINEAR;
     sampler.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
-    const uint32_t pipeline = record.pipeline(record.vertex(R"(#version 450
+    const uint32_t pipeline = record
+                                  .pipeline(record.vertex(R"(#version 450
 layout(location = 0) out vec2 uv;
 void main() {
     vec2 corner = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1);
@@ -174,7 +178,7 @@ void main() {
     float w = corner.y < 0.5 ? 1.0 : 30.0;
     gl_Position = vec4((corner.x - 0.5) * 40.0, corner.y < 0.5 ? 1.0 : -0.99 * w, 0.5 * w, w);
 })"),
-                                              record.fragment(R"(#version 450
+                                            record.fragment(R"(#version 450
 layout(set = 0, binding = 0) uniform sampler2D image;
 layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 color;
@@ -204,21 +208,29 @@ void main() { color = vec4(shade, 0.5, 1.0); })"));
     pipeline.pushConstants(8);
     record.pass(kExtent).color(target, {0, 0, 0, 1});
     for (uint32_t i = 0; i < 4096; ++i)
-        record.draw(pipeline, 3).push(
-            std::array<float, 2>{static_cast<float>(i % 64) / 64, static_cast<float>(i / 64) / 64});
+        record.draw(pipeline, 3)
+            .push(std::array<float, 2>{static_cast<float>(i % 64) / 64, static_cast<float>(i / 64) / 64});
     record.output(target);
     return record.finish();
 }
 
 constexpr SceneEntry kSpeedScenes[] = {
-    {"fill", fill},           {"overdraw", overdraw},   {"blending", blending},
-    {"small_triangles", smallTriangles}, {"textured", textured},   {"lighting", lighting},
-    {"arithmetic", arithmetic}, {"divergent", divergent}, {"tiny_draws", tinyDraws},
+    {"fill", fill},
+    {"overdraw", overdraw},
+    {"blending", blending},
+    {"small_triangles", smallTriangles},
+    {"textured", textured},
+    {"lighting", lighting},
+    {"arithmetic", arithmetic},
+    {"divergent", divergent},
+    {"tiny_draws", tinyDraws},
 };
 
 }  // namespace
 
-std::span<const SceneEntry> speedScenes() { return kSpeedScenes; }
+std::span<const SceneEntry> speedScenes() {
+    return kSpeedScenes;
+}
 
 const SceneEntry* findBenchScene(std::string_view name) {
     for (const std::span<const SceneEntry> list : {speedScenes(), accuracyScenes()})

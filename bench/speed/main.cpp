@@ -1,6 +1,7 @@
-// vernier-bench: every driver on every speed scene, in turn A B C A B C, each in a process of its own; medians and ratios.
-#include <CLI/CLI.hpp>
+// vernier-bench: every driver on every speed scene, in turn A B C A B C, each in a process of its own; medians and
+// ratios.
 #include <algorithm>
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -127,9 +128,11 @@ struct RunOptions {
 int run(const std::vector<DriverChoice>& choices, const RunOptions& options, const std::vector<std::string>& common) {
     std::vector<std::string> drivers;
     for (const DriverChoice& choice : choices) {
-        const bool wanted = options.drivers.empty() || std::count(options.drivers.begin(), options.drivers.end(), choice.name);
+        const bool wanted =
+            options.drivers.empty() || std::count(options.drivers.begin(), options.drivers.end(), choice.name);
         if (wanted && choice.present()) drivers.push_back(choice.name);
-        if (wanted && !choice.present()) std::printf("left out: %s (%s)\n", choice.name.c_str(), choice.absence.c_str());
+        if (wanted && !choice.present())
+            std::printf("left out: %s (%s)\n", choice.name.c_str(), choice.absence.c_str());
     }
     const std::string reference =
         std::count(drivers.begin(), drivers.end(), "lavapipe") ? std::string("lavapipe") : drivers.back();
@@ -147,7 +150,8 @@ int run(const std::vector<DriverChoice>& choices, const RunOptions& options, con
                 Measured& measured = row[driver];
                 const std::filesystem::path out = options.out / driver;
                 std::vector<std::string> arguments = common;
-                arguments.insert(arguments.end(), {"render", "--driver", driver, "--scene", scene, "--out", out.string()});
+                arguments.insert(arguments.end(),
+                                 {"render", "--driver", driver, "--scene", scene, "--out", out.string()});
                 std::filesystem::create_directories(out);
                 const ChildResult child = runChild(arguments, out / (scene + ".log"), 120);
                 const Result<Rendering> rendering =
@@ -206,4 +210,6 @@ int main(int argc, char** argv) {
 }  // namespace
 }  // namespace vernier::bench
 
-int main(int argc, char** argv) { return vernier::bench::main(argc, argv); }
+int main(int argc, char** argv) {
+    return vernier::bench::main(argc, argv);
+}

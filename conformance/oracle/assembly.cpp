@@ -56,8 +56,7 @@ struct VertexFetcher {
             for (const SceneVertexBuffer& source : draw.vertexBuffers) {
                 if (source.binding != binding.binding || source.buffer >= scene.buffers.size()) continue;
                 const Bytes& data = scene.buffers[source.buffer].data;
-                const uint64_t element =
-                    binding.inputRate == VK_VERTEX_INPUT_RATE_INSTANCE ? instance : vertexIndex;
+                const uint64_t element = binding.inputRate == VK_VERTEX_INPUT_RATE_INSTANCE ? instance : vertexIndex;
                 const uint64_t offset = source.offset + element * binding.stride + attribute.offset;
                 return offset + format->bytes <= data.size() ? data.data() + offset : nullptr;
             }
@@ -80,9 +79,8 @@ std::vector<std::optional<uint32_t>> vertexOrder(const Scene& scene, const Scene
                                                                         : 2;
         const Bytes& data = scene.buffers[draw.indexBuffer].data;
         const uint64_t offset = draw.indexOffset + (uint64_t{draw.first} + i) * size;
-        const uint64_t index = offset + size <= data.size()
-                                   ? extractBits(data.data() + offset, 0, static_cast<unsigned>(size * 8))
-                                   : 0;
+        const uint64_t index =
+            offset + size <= data.size() ? extractBits(data.data() + offset, 0, static_cast<unsigned>(size * 8)) : 0;
         const bool restart = pipeline.primitiveRestart && index == (uint64_t{1} << (size * 8)) - 1;
         if (restart) {
             order.push_back(std::nullopt);
@@ -93,15 +91,14 @@ std::vector<std::optional<uint32_t>> vertexOrder(const Scene& scene, const Scene
     return order;
 }
 
-Result<ShadedVertex> shadeVertex(const Interpreter& shader, Values inputs, uint32_t vertexIndex,
-                                 uint32_t instance, const SceneDraw& draw, ShaderResources& resources) {
+Result<ShadedVertex> shadeVertex(const Interpreter& shader, Values inputs, uint32_t vertexIndex, uint32_t instance,
+                                 const SceneDraw& draw, ShaderResources& resources) {
     const auto set = [&inputs](spv::BuiltIn builtin, uint32_t value) {
         inputs.setInt(builtin, static_cast<int32_t>(value));
     };
     set(spv::BuiltInVertexIndex, vertexIndex);
     set(spv::BuiltInInstanceIndex, instance);
-    set(spv::BuiltInBaseVertex,
-        draw.indexBuffer == kNone ? draw.first : static_cast<uint32_t>(draw.vertexOffset));
+    set(spv::BuiltInBaseVertex, draw.indexBuffer == kNone ? draw.first : static_cast<uint32_t>(draw.vertexOffset));
     set(spv::BuiltInBaseInstance, draw.firstInstance);
     set(spv::BuiltInDrawIndex, 0);
     const auto outcome = shader.run(inputs, resources);
@@ -109,8 +106,7 @@ Result<ShadedVertex> shadeVertex(const Interpreter& shader, Values inputs, uint3
     ShadedVertex vertex;
     const auto& builtins = outcome->outputs.builtins;
     if (const auto position = builtins.find(spv::BuiltInPosition); position != builtins.end()) {
-        for (size_t i = 0; i < 4 && i < position->second.size(); ++i)
-            vertex.position[i] = position->second[i].number;
+        for (size_t i = 0; i < 4 && i < position->second.size(); ++i) vertex.position[i] = position->second[i].number;
     }
     if (const auto clip = builtins.find(spv::BuiltInClipDistance); clip != builtins.end()) {
         for (const auto& distance : clip->second) vertex.clipDistances.push_back(distance.number);
@@ -191,11 +187,10 @@ Result<DrawGeometry> assembleDraw(const Scene& scene, const SceneDraw& draw, Sha
                 flush();
                 continue;
             }
-            const auto [entry, fresh] =
-                shaded.try_emplace(*number, static_cast<uint32_t>(geometry.vertices.size()));
+            const auto [entry, fresh] = shaded.try_emplace(*number, static_cast<uint32_t>(geometry.vertices.size()));
             if (fresh) {
-                auto vertex = shadeVertex(*shader, fetcher.fetch(*number, instance), *number, instance, draw,
-                                          resources);
+                auto vertex =
+                    shadeVertex(*shader, fetcher.fetch(*number, instance), *number, instance, draw, resources);
                 if (!vertex) return vertex.error();
                 geometry.vertices.push_back(std::move(*vertex));
             }

@@ -51,8 +51,7 @@ BlendVerdict blendExactly(const PixelFormat& format, const VkPipelineColorBlendA
 
 std::string checkBlendChain(const PixelFormat& format, const VkPipelineColorBlendAttachmentState& state,
                             const std::array<Rational, 4>& constants, const Codes& initial,
-                            const std::vector<std::array<Rational, 4>>& sources,
-                            const std::vector<Codes>& observed) {
+                            const std::vector<std::array<Rational, 4>>& sources, const std::vector<Codes>& observed) {
     Codes before = initial, exactBefore = initial;
     for (size_t step = 0; step < sources.size() && step < observed.size(); ++step) {
         const BlendVerdict verdict = blendExactly(format, state, constants, sources[step], before);
@@ -62,9 +61,8 @@ std::string checkBlendChain(const PixelFormat& format, const VkPipelineColorBlen
             if (set.permits(observed[step][i])) continue;
             return "blended write " + std::to_string(step) + ", channel " + "RGBA"[i] + ": code " +
                    std::to_string(observed[step][i]) + ", exact from the observed destination " +
-                   std::to_string(before[i]) + " is " + std::to_string(set.below) + " or " +
-                   std::to_string(set.above) + " (the ideal chain has " + std::to_string(ideal.nearest[i]) +
-                   ")";
+                   std::to_string(before[i]) + " is " + std::to_string(set.below) + " or " + std::to_string(set.above) +
+                   " (the ideal chain has " + std::to_string(ideal.nearest[i]) + ")";
         }
         before = observed[step];
         exactBefore = ideal.nearest;

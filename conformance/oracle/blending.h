@@ -24,9 +24,8 @@ T larger(const T& a, const T& b) {
 
 /// Component `channel` of a blend factor (Vulkan, Blend Factors). Dual-source factors take `source1`.
 template <class T>
-T blendFactor(VkBlendFactor factor, size_t channel, const std::array<T, 4>& source,
-              const std::array<T, 4>& destination, const std::array<T, 4>& constants,
-              const std::array<T, 4>& source1) {
+T blendFactor(VkBlendFactor factor, size_t channel, const std::array<T, 4>& source, const std::array<T, 4>& destination,
+              const std::array<T, 4>& constants, const std::array<T, 4>& source1) {
     const T one(1);
     switch (factor) {
         case VK_BLEND_FACTOR_ZERO:
@@ -75,19 +74,19 @@ T blendFactor(VkBlendFactor factor, size_t channel, const std::array<T, 4>& sour
 
 /// One component of the blended result before conversion to the attachment's format.
 template <class T>
-T blendComponent(const VkPipelineColorBlendAttachmentState& state, size_t channel,
-                 const std::array<T, 4>& source, const std::array<T, 4>& destination,
-                 const std::array<T, 4>& constants, const std::array<T, 4>& source1) {
+T blendComponent(const VkPipelineColorBlendAttachmentState& state, size_t channel, const std::array<T, 4>& source,
+                 const std::array<T, 4>& destination, const std::array<T, 4>& constants,
+                 const std::array<T, 4>& source1) {
     const bool alpha = channel == 3;
     const VkBlendOp op = alpha ? state.alphaBlendOp : state.colorBlendOp;
     const T& s = source[channel];
     const T& d = destination[channel];
     if (op == VK_BLEND_OP_MIN) return smaller(s, d);
     if (op == VK_BLEND_OP_MAX) return larger(s, d);
-    const T ws = s * blendFactor(alpha ? state.srcAlphaBlendFactor : state.srcColorBlendFactor, channel,
-                                 source, destination, constants, source1);
-    const T wd = d * blendFactor(alpha ? state.dstAlphaBlendFactor : state.dstColorBlendFactor, channel,
-                                 source, destination, constants, source1);
+    const T ws = s * blendFactor(alpha ? state.srcAlphaBlendFactor : state.srcColorBlendFactor, channel, source,
+                                 destination, constants, source1);
+    const T wd = d * blendFactor(alpha ? state.dstAlphaBlendFactor : state.dstColorBlendFactor, channel, source,
+                                 destination, constants, source1);
     switch (op) {
         case VK_BLEND_OP_SUBTRACT:
             return ws - wd;
@@ -118,7 +117,6 @@ BlendVerdict blendExactly(const PixelFormat& format, const VkPipelineColorBlendA
 /// legal.
 std::string checkBlendChain(const PixelFormat& format, const VkPipelineColorBlendAttachmentState& state,
                             const std::array<Rational, 4>& constants, const Codes& initial,
-                            const std::vector<std::array<Rational, 4>>& sources,
-                            const std::vector<Codes>& observed);
+                            const std::vector<std::array<Rational, 4>>& sources, const std::vector<Codes>& observed);
 
 }  // namespace vernier::conformance::exact

@@ -22,10 +22,9 @@ void main() { color = vec4(16.0 / 255.0, 0.0, 0.0, 0.0); }
 }  // namespace
 
 ClipPosition clipOnGrid(const GridPoint& p, const VkViewport& viewport) {
-    const double x = static_cast<double>(p.x) / 256 - viewport.x,
-                 y = static_cast<double>(p.y) / 256 - viewport.y;
-    return {static_cast<float>(x * 2 / viewport.width - 1), static_cast<float>(y * 2 / viewport.height - 1),
-            0.5f, 1.0f};
+    const double x = static_cast<double>(p.x) / 256 - viewport.x, y = static_cast<double>(p.y) / 256 - viewport.y;
+    return {static_cast<float>(x * 2 / viewport.width - 1), static_cast<float>(y * 2 / viewport.height - 1), 0.5f,
+            1.0f};
 }
 
 Result<Scene> coverageScene(std::string_view name, std::span<const ClipPosition> positions, VkExtent2D extent,
@@ -38,11 +37,10 @@ Result<Scene> coverageScene(std::string_view name, std::span<const ClipPosition>
     add.srcColorBlendFactor = add.dstColorBlendFactor = VK_BLEND_FACTOR_ONE;
     add.srcAlphaBlendFactor = add.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
     add.colorWriteMask = 0xf;
-    const uint32_t pipeline =
-        record.pipeline(record.vertex(kPositionVertexGlsl), record.fragment(kCountFragmentGlsl))
-            .binding(sizeof(ClipPosition))
-            .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, 0)
-            .blend(add);
+    const uint32_t pipeline = record.pipeline(record.vertex(kPositionVertexGlsl), record.fragment(kCountFragmentGlsl))
+                                  .binding(sizeof(ClipPosition))
+                                  .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, 0)
+                                  .blend(add);
     record.pass(extent).color(target, {0, 0, 0, 0});
     record.draw(pipeline, static_cast<uint32_t>(positions.size()))
         .vertices(vertices)
@@ -51,10 +49,8 @@ Result<Scene> coverageScene(std::string_view name, std::span<const ClipPosition>
     return record.finish();
 }
 
-Result<Scene> coverageScene(std::string_view name, std::span<const GridTriangle> triangles,
-                            VkExtent2D extent) {
-    const VkViewport viewport{0, 0, static_cast<float>(extent.width), static_cast<float>(extent.height),
-                              0, 1};
+Result<Scene> coverageScene(std::string_view name, std::span<const GridTriangle> triangles, VkExtent2D extent) {
+    const VkViewport viewport{0, 0, static_cast<float>(extent.width), static_cast<float>(extent.height), 0, 1};
     std::vector<ClipPosition> positions;
     for (const GridTriangle& t : triangles) {
         for (const GridPoint& p : t) positions.push_back(clipOnGrid(p, viewport));
@@ -64,8 +60,7 @@ Result<Scene> coverageScene(std::string_view name, std::span<const GridTriangle>
 
 Result<std::vector<uint32_t>> coverageCounts(const RenderedImage& image, VkExtent2D extent) {
     if (image.format != VK_FORMAT_R8G8B8A8_UNORM || image.extent.width != extent.width ||
-        image.extent.height != extent.height ||
-        image.texels.size() != size_t{extent.width} * extent.height * 4) {
+        image.extent.height != extent.height || image.texels.size() != size_t{extent.width} * extent.height * 4) {
         return invalidArgument("coverage image has the wrong format or extent");
     }
     std::vector<uint32_t> counts;
@@ -82,8 +77,7 @@ Result<std::vector<uint32_t>> coverageCounts(const RenderedImage& image, VkExten
     return counts;
 }
 
-uint64_t codeAt(const RenderedImage& image, const exact::PixelFormat& format, uint32_t x, uint32_t y,
-                uint8_t channel) {
+uint64_t codeAt(const RenderedImage& image, const exact::PixelFormat& format, uint32_t x, uint32_t y, uint8_t channel) {
     const exact::Component* component = format.channel(channel);
     if (!component) return 0;
     const size_t offset = (size_t{y} * image.extent.width + x) * format.bytes;
@@ -92,12 +86,10 @@ uint64_t codeAt(const RenderedImage& image, const exact::PixelFormat& format, ui
 
 Status checkShape(const CaseImages& images, size_t scenes, size_t outputs, VkExtent2D extent) {
     if (images.size() != scenes) {
-        return invalidArgument(std::to_string(images.size()) + " results for " + std::to_string(scenes) +
-                               " scenes");
+        return invalidArgument(std::to_string(images.size()) + " results for " + std::to_string(scenes) + " scenes");
     }
     for (const auto& list : images) {
-        if (list.size() != outputs)
-            return invalidArgument("a scene gave " + std::to_string(list.size()) + " images");
+        if (list.size() != outputs) return invalidArgument("a scene gave " + std::to_string(list.size()) + " images");
         for (const RenderedImage& image : list) {
             const exact::PixelFormat* format = exact::findPixelFormat(image.format);
             if (!format || image.extent.width != extent.width || image.extent.height != extent.height ||
@@ -115,15 +107,10 @@ Status verdict(std::string_view name, const std::string& wrong) {
 }
 
 std::string pixelText(uint32_t x, uint32_t y) {
-    return std::string("pixel (")
-        .append(std::to_string(x))
-        .append(", ")
-        .append(std::to_string(y))
-        .append(")");
+    return std::string("pixel (").append(std::to_string(x)).append(", ").append(std::to_string(y)).append(")");
 }
 
-Tiling jitteredTiling(uint32_t cells, double cellPixels, double jitterPixels, double resolution,
-                      uint32_t seed) {
+Tiling jitteredTiling(uint32_t cells, double cellPixels, double jitterPixels, double resolution, uint32_t seed) {
     std::mt19937 random(seed);
     const auto jitter = [&] {
         const double unit = static_cast<double>(random()) / 4294967296.0;

@@ -27,15 +27,13 @@ ClipPosition clipOnGrid(const GridPoint& p, const VkViewport& viewport);
 inline constexpr uint32_t kCountStep = 16;
 Result<Scene> coverageScene(std::string_view name, std::span<const ClipPosition> positions, VkExtent2D extent,
                             const VkViewport& viewport);
-Result<Scene> coverageScene(std::string_view name, std::span<const GridTriangle> triangles,
-                            VkExtent2D extent);
+Result<Scene> coverageScene(std::string_view name, std::span<const GridTriangle> triangles, VkExtent2D extent);
 
 /// The counts of such an image; an error if a code is no count or another channel was touched.
 Result<std::vector<uint32_t>> coverageCounts(const RenderedImage& image, VkExtent2D extent);
 
 /// The code of a channel; 0 for a channel that the format lacks.
-uint64_t codeAt(const RenderedImage& image, const exact::PixelFormat& format, uint32_t x, uint32_t y,
-                uint8_t channel);
+uint64_t codeAt(const RenderedImage& image, const exact::PixelFormat& format, uint32_t x, uint32_t y, uint8_t channel);
 
 /// Checks that there are `scenes` results of `outputs` images each, of the given extent.
 Status checkShape(const CaseImages& images, size_t scenes, size_t outputs, VkExtent2D extent);
@@ -50,7 +48,6 @@ struct Tiling {
     std::vector<std::array<double, 2>> points;  // pixels
     std::vector<std::array<size_t, 3>> triangles;
 };
-Tiling jitteredTiling(uint32_t cells, double cellPixels, double jitterPixels, double resolution,
-                      uint32_t seed);
+Tiling jitteredTiling(uint32_t cells, double cellPixels, double jitterPixels, double resolution, uint32_t seed);
 
 }  // namespace vernier::conformance::cases

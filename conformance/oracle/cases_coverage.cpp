@@ -80,8 +80,7 @@ Status checkE01(const CaseImages& images, Strictness strictness) {
     const auto quads = diagonalQuads();
     if (Status s = checkShape(images, quads.size(), 1, kSmall); !s) return s;
     for (size_t i = 0; i < quads.size(); ++i) {
-        if (Status s = checkCounts("E01", images[i][0], quads[i], gridOf(kSmall), strictness, true); !s)
-            return s;
+        if (Status s = checkCounts("E01", images[i][0], quads[i], gridOf(kSmall), strictness, true); !s) return s;
     }
     return {};
 }
@@ -118,11 +117,9 @@ Status checkE02(const CaseImages& images, Strictness strictness) {
     const auto orders = vertexOrders();
     if (Status s = checkShape(images, orders.size(), 1, kSmall); !s) return s;
     for (size_t i = 0; i < orders.size(); ++i) {
-        if (Status s = checkCounts("E02", images[i][0], orders[i], gridOf(kSmall), strictness, true); !s)
-            return s;
+        if (Status s = checkCounts("E02", images[i][0], orders[i], gridOf(kSmall), strictness, true); !s) return s;
         if (images[i][0].texels != images[0][0].texels) {
-            return verdict("E02",
-                           "vertex order " + std::to_string(i) + " gives another coverage than order 0");
+            return verdict("E02", "vertex order " + std::to_string(i) + " gives another coverage than order 0");
         }
     }
     return {};
@@ -167,16 +164,14 @@ Result<std::vector<Scene>> buildE06() {
 Status checkE06(const CaseImages& images, Strictness strictness) {
     if (Status s = checkShape(images, 2, 1, kMedium); !s) return s;
     const auto triangles = gridTriangles(onGrid());
-    if (Status s = checkCounts("E06", images[0][0], triangles, gridOf(kMedium), strictness, true); !s)
-        return s;
+    if (Status s = checkCounts("E06", images[0][0], triangles, gridOf(kMedium), strictness, true); !s) return s;
     if (images[0][0].texels != images[1][0].texels)
         return verdict("E06", "the coverage depends on the order of the triangles");
     return {};
 }
 
 Result<std::vector<Scene>> buildE07() {
-    return collect(
-        {coverageScene("E07", clipPositions(offGrid(), kMediumViewport), kMedium, kMediumViewport)});
+    return collect({coverageScene("E07", clipPositions(offGrid(), kMediumViewport), kMedium, kMediumViewport)});
 }
 
 Status checkE07(const CaseImages& images, Strictness strictness) {
@@ -194,8 +189,7 @@ constexpr float kSliverViewport = 8192;
 // The sliver of 0.777 square pixels, moved by half a pixel so that the lattice points inside it become
 // centres, and a triangle beyond each of its edges.
 std::vector<GridTriangle> sliverAndNeighbours() {
-    const GridPoint a{965334 + 128, 9134 + 128}, b{1857265 + 128, 1515506 + 128},
-        c{1515249 + 128, 937879 + 128};
+    const GridPoint a{965334 + 128, 9134 + 128}, b{1857265 + 128, 1515506 + 128}, c{1515249 + 128, 937879 + 128};
     const GridPoint left{965334 - 300000, 1515506}, right{1857265, 9134 + 200000};
     const bool leftIsFar = (exact::edgeFunction(a, b, c) > 0) == (exact::edgeFunction(a, b, left) > 0);
     const GridPoint far = leftIsFar ? left : right,
@@ -211,8 +205,8 @@ std::vector<Centre> sliverCentres() {
     const GridTriangle sliver = sliverAndNeighbours()[0];
     std::vector<Centre> result;
     for (int64_t y = sliver[0].y / 256; y <= sliver[1].y / 256; ++y) {
-        const int64_t along = sliver[0].x + (sliver[1].x - sliver[0].x) * (y * 256 + 128 - sliver[0].y) /
-                                                (sliver[1].y - sliver[0].y);
+        const int64_t along =
+            sliver[0].x + (sliver[1].x - sliver[0].x) * (y * 256 + 128 - sliver[0].y) / (sliver[1].y - sliver[0].y);
         for (int64_t x = along / 256 - 2; x <= along / 256 + 2; ++x) {
             if (exact::covers(sliver, {x * 256 + 128, y * 256 + 128})) result.push_back({x, y});
         }
@@ -242,12 +236,8 @@ Result<std::vector<Scene>> buildE10() {
         for (const GridTriangle& t : sliverAndNeighbours()) {
             for (const GridPoint& p : t) positions.push_back(clipOnGrid(p, whole));
         }
-        const VkViewport moved{static_cast<float>(-window.x),
-                               static_cast<float>(-window.y),
-                               kSliverViewport,
-                               kSliverViewport,
-                               0,
-                               1};
+        const VkViewport moved{
+            static_cast<float>(-window.x), static_cast<float>(-window.y), kSliverViewport, kSliverViewport, 0, 1};
         scenes.push_back(coverageScene("E10", positions, kWindow, moved));
     }
     return collect(std::move(scenes));
@@ -261,8 +251,8 @@ Status checkE10(const CaseImages& images, Strictness strictness) {
         const SampleGrid grid = gridOf(kWindow, windows[i].x * 256, windows[i].y * 256);
         Status s = checkCounts("E10", images[i][0], triangles, grid, strictness, true);
         if (!s) {
-            return verdict("E10", "window at (" + std::to_string(windows[i].x) + ", " +
-                                      std::to_string(windows[i].y) + "): " + s.error().message);
+            return verdict("E10", "window at (" + std::to_string(windows[i].x) + ", " + std::to_string(windows[i].y) +
+                                      "): " + s.error().message);
         }
     }
     return {};

@@ -52,8 +52,8 @@ struct SampleSides {
     Side clip = Side::inside;
 };
 
-SampleSides sidesOf(const ClipTriangle& clip, const exact::HomogeneousTriangle<Rational>& t,
-                    const Rational& x, const Rational& y) {
+SampleSides sidesOf(const ClipTriangle& clip, const exact::HomogeneousTriangle<Rational>& t, const Rational& x,
+                    const Rational& y) {
     SampleSides sides;
     const int orientation = sgn(t.determinant);
     std::array<Rational, 3> nearLine, farLine;
@@ -84,12 +84,9 @@ std::vector<std::vector<ClipTriangle>> clippedPairs() {
     };
     return {
         pair({-0.7f, -0.8f, -0.3f, 1}, {0.6f, 0.9f, 0.7f, 1}, {0.8f, -0.6f, 0.4f, 1}, {-0.9f, 0.5f, 0.2f, 1}),
-        pair({-0.1f, 0.9f, -0.5f, 0.3f}, {0.3f, -1.5f, 1.9f, 2}, {1.7f, 0.2f, 0.9f, 1.9f},
-             {-1.8f, 0.1f, 0.6f, 1.9f}),
-        pair({0.13f, 1.1f, -0.9f, -0.6f}, {0.4f, -3.1f, 3.5f, 4}, {3.3f, 1.2f, 2.1f, 3.7f},
-             {-3.6f, 1.4f, 2.6f, 3.9f}),
-        pair({-0.4f, -0.9f, 0.4f, 1}, {0.35f, 0.95f, 1.6f, 1.1f}, {0.9f, -0.4f, 0.9f, 1},
-             {-0.8f, 0.7f, 0.3f, 1}),
+        pair({-0.1f, 0.9f, -0.5f, 0.3f}, {0.3f, -1.5f, 1.9f, 2}, {1.7f, 0.2f, 0.9f, 1.9f}, {-1.8f, 0.1f, 0.6f, 1.9f}),
+        pair({0.13f, 1.1f, -0.9f, -0.6f}, {0.4f, -3.1f, 3.5f, 4}, {3.3f, 1.2f, 2.1f, 3.7f}, {-3.6f, 1.4f, 2.6f, 3.9f}),
+        pair({-0.4f, -0.9f, 0.4f, 1}, {0.35f, 0.95f, 1.6f, 1.1f}, {0.9f, -0.4f, 0.9f, 1}, {-0.8f, 0.7f, 0.3f, 1}),
     };
 }
 
@@ -111,16 +108,12 @@ Status checkC02(const CaseImages& images, Strictness) {
     for (size_t i = 0; i < pairs.size(); ++i) {
         const auto counts = coverageCounts(images[i][0], kTarget);
         if (!counts) return verdict("C02", counts.error().message);
-        const auto first = exactTriangle(pairs[i][0], kViewport),
-                   second = exactTriangle(pairs[i][1], kViewport);
+        const auto first = exactTriangle(pairs[i][0], kViewport), second = exactTriangle(pairs[i][1], kViewport);
         for (uint32_t y = 0; y < kTarget.height; ++y) {
             for (uint32_t x = 0; x < kTarget.width; ++x) {
                 const Rational px = x + exact::fraction(1, 2), py = y + exact::fraction(1, 2);
-                const SampleSides a = sidesOf(pairs[i][0], first, px, py),
-                                  b = sidesOf(pairs[i][1], second, px, py);
-                const auto others = [](const SampleSides& s) {
-                    return std::max({s.edge[0], s.edge[1], s.clip});
-                };
+                const SampleSides a = sidesOf(pairs[i][0], first, px, py), b = sidesOf(pairs[i][1], second, px, py);
+                const auto others = [](const SampleSides& s) { return std::max({s.edge[0], s.edge[1], s.clip}); };
                 const bool sharedOpen = a.edge[2] == Side::open || b.edge[2] == Side::open;
                 const Side inA = std::max(others(a), sharedOpen ? Side::inside : a.edge[2]);
                 const Side inB = std::max(others(b), sharedOpen ? Side::inside : b.edge[2]);
@@ -133,11 +126,11 @@ Status checkC02(const CaseImages& images, Strictness) {
                 }
                 const uint32_t count = (*counts)[y * kTarget.width + x];
                 if (count >= low && count <= high) continue;
-                return verdict("C02", "pair " + std::to_string(i) + ", " + pixelText(x, y) + " is covered " +
-                                          std::to_string(count) + " times, exactly " + std::to_string(low) +
-                                          ".." + std::to_string(high) +
-                                          (sharedOpen ? " (on the clipped shared edge)"
-                                                      : " (clear of the shared edge)"));
+                return verdict("C02",
+                               "pair " + std::to_string(i) + ", " + pixelText(x, y) + " is covered " +
+                                   std::to_string(count) + " times, exactly " + std::to_string(low) + ".." +
+                                   std::to_string(high) +
+                                   (sharedOpen ? " (on the clipped shared edge)" : " (clear of the shared edge)"));
             }
         }
     }
@@ -192,11 +185,10 @@ Result<std::vector<Scene>> buildW06() {
         SceneRecorder record("W06", "Clip coordinates scaled by 2^" + std::to_string(exponent) + ".");
         const uint32_t target = record.colorTarget("color", VK_FORMAT_R8G8B8A8_UNORM, kTarget);
         const uint32_t vertices = record.vertexBuffer("vertices", scaledVertices(exponent));
-        const uint32_t pipeline =
-            record.pipeline(record.vertex(kColorVertex), record.fragment(kColorFragment))
-                .binding(sizeof(ScaledVertex))
-                .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, 0)
-                .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, sizeof(ClipPosition));
+        const uint32_t pipeline = record.pipeline(record.vertex(kColorVertex), record.fragment(kColorFragment))
+                                      .binding(sizeof(ScaledVertex))
+                                      .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, 0)
+                                      .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, sizeof(ClipPosition));
         record.pass(kTarget).color(target, {0, 0, 0, 1});
         record.draw(pipeline, 9).vertices(vertices);
         record.output(target);
@@ -232,9 +224,8 @@ Status checkW06(const CaseImages& images, Strictness) {
         const auto at = static_cast<uint32_t>(different.in1 - plain.begin());
         return verdict("W06", "scaled by 2^" + std::to_string(kScales[i]) + ", " +
                                   pixelText(at / 4 % kTarget.width, at / 4 / kTarget.width) + " channel " +
-                                  "RGBA"[at % 4] + " has code " +
-                                  std::to_string(std::to_integer<int>(*different.in2)) + ", unscaled " +
-                                  std::to_string(std::to_integer<int>(*different.in1)) +
+                                  "RGBA"[at % 4] + " has code " + std::to_string(std::to_integer<int>(*different.in2)) +
+                                  ", unscaled " + std::to_string(std::to_integer<int>(*different.in1)) +
                                   "; a power of two changes no exact result");
     }
     return {};
@@ -268,11 +259,9 @@ void main() {
 
 std::vector<ScaledVertex> constantVertices() {
     const std::array<float, 4> c = kConstants;
-    return {{{-0.97f, -0.83f, 0.1f, 1}, c},     {{6.3f, -6.1f, 5.9f, 7}, c},
-            {{-2.7f, 2.9f, 1.9f, 3}, c},        {{0.9f, 0.93f, 0.1f, 1}, c},
-            {{-33.0f, 34.1f, 20.5f, 37.0f}, c}, {{0.33f, -0.31f, 0.02f, 0.41f}, c},
-            {{-0.05f, -0.9f, -0.4f, 0.2f}, c},  {{100.1f, 99.7f, 90.0f, 101.3f}, c},
-            {{-90.5f, 87.25f, 50, 101}, c}};
+    return {{{-0.97f, -0.83f, 0.1f, 1}, c},    {{6.3f, -6.1f, 5.9f, 7}, c},         {{-2.7f, 2.9f, 1.9f, 3}, c},
+            {{0.9f, 0.93f, 0.1f, 1}, c},       {{-33.0f, 34.1f, 20.5f, 37.0f}, c},  {{0.33f, -0.31f, 0.02f, 0.41f}, c},
+            {{-0.05f, -0.9f, -0.4f, 0.2f}, c}, {{100.1f, 99.7f, 90.0f, 101.3f}, c}, {{-90.5f, 87.25f, 50, 101}, c}};
 }
 
 }  // namespace
@@ -282,12 +271,11 @@ Result<std::vector<Scene>> buildI01() {
     const uint32_t perspective = record.colorTarget("perspective", VK_FORMAT_R32G32B32A32_SFLOAT, kTarget);
     const uint32_t linear = record.colorTarget("linear", VK_FORMAT_R32G32B32A32_SFLOAT, kTarget);
     const uint32_t vertices = record.vertexBuffer("vertices", constantVertices());
-    const uint32_t pipeline =
-        record.pipeline(record.vertex(kConstantVertex), record.fragment(kConstantFragment))
-            .binding(sizeof(ScaledVertex))
-            .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, 0)
-            .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, sizeof(ClipPosition))
-            .targets(2);
+    const uint32_t pipeline = record.pipeline(record.vertex(kConstantVertex), record.fragment(kConstantFragment))
+                                  .binding(sizeof(ScaledVertex))
+                                  .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, 0)
+                                  .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, sizeof(ClipPosition))
+                                  .targets(2);
     record.pass(kTarget).color(perspective, {0, 0, 0, 0}).color(linear, {0, 0, 0, 0});
     record.draw(pipeline, 9).vertices(vertices);
     record.output(perspective);
@@ -313,8 +301,7 @@ Status checkI01(const CaseImages& images, Strictness) {
                 for (size_t c = 0; c < 4; ++c) {
                     if (v[c] == kConstants[c]) continue;
                     char text[96];
-                    std::snprintf(text, sizeof(text), " component %zu is %.9g, exactly %.9g", c, v[c],
-                                  kConstants[c]);
+                    std::snprintf(text, sizeof(text), " component %zu is %.9g, exactly %.9g", c, v[c], kConstants[c]);
                     return verdict("I01", (output ? "noperspective, " : "smooth, ") + pixelText(x, y) + text +
                                               "; the weights sum to 1, a constant stays constant");
                 }
@@ -386,11 +373,10 @@ Result<std::vector<Scene>> buildI02() {
             }
         }
         const uint32_t vertices = record.vertexBuffer("vertices", data);
-        const uint32_t pipeline =
-            record.pipeline(record.vertex(kColorVertex), record.fragment(kColorFragment))
-                .binding(sizeof(ScaledVertex))
-                .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, 0)
-                .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, sizeof(ClipPosition));
+        const uint32_t pipeline = record.pipeline(record.vertex(kColorVertex), record.fragment(kColorFragment))
+                                      .binding(sizeof(ScaledVertex))
+                                      .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, 0)
+                                      .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, sizeof(ClipPosition));
         record.pass(extent).color(target, {0, 0, 0, 0});
         record.draw(pipeline, static_cast<uint32_t>(data.size())).vertices(vertices);
         record.output(target);
@@ -425,14 +411,13 @@ Status checkI02(const CaseImages& images, Strictness strictness) {
             }
             Rational expected;
             for (size_t i = 0; i < 3; ++i) expected += weight[i] / sum * exact::rational(t.attribute[i]);
-            const double observed =
-                std::bit_cast<float>(static_cast<uint32_t>(codeAt(image, format, x, y, 0)));
+            const double observed = std::bit_cast<float>(static_cast<uint32_t>(codeAt(image, format, x, y, 0)));
             const double error = std::abs(observed - expected.get_d());
             if (error <= tolerance) continue;
             char text[128];
             std::snprintf(text, sizeof(text),
-                          " is %.9g, exactly %.9g: error %.3g of the attribute's range, allowed %.3g",
-                          observed, expected.get_d(), error, tolerance);
+                          " is %.9g, exactly %.9g: error %.3g of the attribute's range, allowed %.3g", observed,
+                          expected.get_d(), error, tolerance);
             return verdict("I02", pixelText(x, y) + text);
         }
     }

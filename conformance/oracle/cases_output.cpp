@@ -96,10 +96,9 @@ Status checkD03(const CaseImages& images, Strictness) {
         for (uint32_t pixel = 0; pixel < kTarget.width * kTarget.height; ++pixel) {
             passed += texels[pixel * 4 + 1] == std::byte{255};
             if (texels[pixel * 4] == std::byte{0}) continue;
-            return verdict("D03",
-                           pixelText(pixel % kTarget.width, pixel / kTarget.width) +
-                               ": the second draw of the same triangles failed EQUAL against the first in " +
-                               (i == 0 ? "D32_SFLOAT" : "D16_UNORM"));
+            return verdict("D03", pixelText(pixel % kTarget.width, pixel / kTarget.width) +
+                                      ": the second draw of the same triangles failed EQUAL against the first in " +
+                                      (i == 0 ? "D32_SFLOAT" : "D16_UNORM"));
         }
         if (passed < 2000) return verdict("D03", "only " + std::to_string(passed) + " pixels are covered");
     }
@@ -117,9 +116,8 @@ Result<std::vector<Scene>> storeScenes(std::string_view name, const std::string&
         const float background = drawn ? 1.0f : value;
         record.pass(kTarget).color(target, {background, background, background, background});
         if (drawn) {
-            const std::string glsl =
-                "#version 450\nlayout(location = 0) out vec4 color;\nvoid main() { color = vec4(" +
-                glslValue + "); }\n";
+            const std::string glsl = "#version 450\nlayout(location = 0) out vec4 color;\nvoid main() { color = vec4(" +
+                                     glslValue + "); }\n";
             record.draw(record.pipeline(record.vertex(kCoverVertex), record.fragment(glsl)), 3);
         }
         record.output(target);
@@ -138,14 +136,12 @@ Status checkStored(std::string_view name, const CaseImages& images, Strictness s
         const Bytes& texels = list[0].texels;
         for (uint32_t i = 0; i < texels.size(); ++i) {
             const auto code = std::to_integer<uint64_t>(texels[i]);
-            const bool right =
-                strictness == Strictness::declared ? code == codes.nearest : codes.permits(code);
+            const bool right = strictness == Strictness::declared ? code == codes.nearest : codes.permits(code);
             if (right && code == first) continue;
-            return verdict(name, pixelText(i / 4 % kTarget.width, i / 4 / kTarget.width) + " channel " +
-                                     "RGBA"[i % 4] + " has code " + std::to_string(code) + ", permitted " +
-                                     std::to_string(codes.below) + " or " + std::to_string(codes.above) +
-                                     ", nearest " + std::to_string(codes.nearest) + ", and elsewhere " +
-                                     std::to_string(first));
+            return verdict(name, pixelText(i / 4 % kTarget.width, i / 4 / kTarget.width) + " channel " + "RGBA"[i % 4] +
+                                     " has code " + std::to_string(code) + ", permitted " +
+                                     std::to_string(codes.below) + " or " + std::to_string(codes.above) + ", nearest " +
+                                     std::to_string(codes.nearest) + ", and elsewhere " + std::to_string(first));
         }
     }
     return {};
@@ -190,10 +186,8 @@ Bytes allCodes(const exact::PixelFormat& format) {
 }
 
 Result<Scene> identityScene(std::string_view name, VkFormat format) {
-    SceneRecorder record(name,
-                         "Every code fetched from a texture and written to a target of the same format.");
-    const uint32_t texture =
-        record.texture("codes", format, kCodes, {allCodes(*exact::findPixelFormat(format))});
+    SceneRecorder record(name, "Every code fetched from a texture and written to a target of the same format.");
+    const uint32_t texture = record.texture("codes", format, kCodes, {allCodes(*exact::findPixelFormat(format))});
     const uint32_t target = record.colorTarget("copy", format, kCodes);
     const uint32_t sampler = record.sampler(VK_FILTER_NEAREST);
     record.pass(kCodes).color(target, {0, 0, 0, 0});
@@ -208,13 +202,11 @@ Status checkIdentity(std::string_view name, const RenderedImage& image) {
     const Bytes expected = allCodes(format);
     for (uint32_t x = 0; x < kCodes.width; ++x) {
         for (const exact::Component& c : format.all()) {
-            const uint64_t written =
-                exact::extractBits(expected.data() + size_t{x} * format.bytes, c.offset, c.bits);
+            const uint64_t written = exact::extractBits(expected.data() + size_t{x} * format.bytes, c.offset, c.bits);
             const uint64_t read = codeAt(image, format, x, 0, c.channel);
             if (read == written) continue;
             return verdict(name, "format " + std::to_string(image.format) + ", channel " + "RGBA"[c.channel] +
-                                     ": code " + std::to_string(written) + " came back as " +
-                                     std::to_string(read) +
+                                     ": code " + std::to_string(written) + " came back as " + std::to_string(read) +
                                      "; a value that is exactly a code maps to that code");
         }
     }
@@ -223,8 +215,7 @@ Status checkIdentity(std::string_view name, const RenderedImage& image) {
 
 // Formats that every Vulkan implementation samples and renders to.
 constexpr std::array<VkFormat, 4> kUnormFormats{VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_B8G8R8A8_UNORM,
-                                                VK_FORMAT_A2B10G10R10_UNORM_PACK32,
-                                                VK_FORMAT_R5G6B5_UNORM_PACK16};
+                                                VK_FORMAT_A2B10G10R10_UNORM_PACK32, VK_FORMAT_R5G6B5_UNORM_PACK16};
 
 }  // namespace
 

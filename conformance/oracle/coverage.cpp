@@ -19,8 +19,7 @@ int64_t distance(const GridPoint& a, const GridPoint& b) {
 // How far an edge function can move when both ends move by delta per coordinate: E is bilinear in the two
 // ends.
 Wide support(const GridPoint& a, const GridPoint& b, const GridPoint& p, int64_t delta) {
-    return static_cast<Wide>(delta) * (distance(a, p) + distance(b, p)) +
-           static_cast<Wide>(2) * delta * delta;
+    return static_cast<Wide>(delta) * (distance(a, p) + distance(b, p)) + static_cast<Wide>(2) * delta * delta;
 }
 
 GridTriangle clockwise(const GridTriangle& triangle) {

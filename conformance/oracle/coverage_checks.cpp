@@ -13,8 +13,8 @@ std::string text(const GridPoint& p) {
 
 std::string wrongSample(uint32_t x, uint32_t y, uint32_t observed, const std::string& expected,
                         const std::string& cause) {
-    return "pixel (" + std::to_string(x) + ", " + std::to_string(y) + ") is covered " +
-           std::to_string(observed) + " times, exactly " + expected + "; " + cause;
+    return "pixel (" + std::to_string(x) + ", " + std::to_string(y) + ") is covered " + std::to_string(observed) +
+           " times, exactly " + expected + "; " + cause;
 }
 
 // The triangles that have anything to do with a sample, described.
@@ -22,8 +22,8 @@ std::string causes(std::span<const GridTriangle> triangles, const GridPoint& p) 
     std::string result;
     for (size_t i = 0; i < triangles.size(); ++i) {
         if (classify(triangles[i], p) == Coverage::mustNot) continue;
-        result += (result.empty() ? "" : "; ") + ("triangle " + std::to_string(i) + ": ") +
-                  describeSample(triangles[i], p);
+        result +=
+            (result.empty() ? "" : "; ") + ("triangle " + std::to_string(i) + ": ") + describeSample(triangles[i], p);
     }
     return result.empty() ? "no triangle comes near" : result;
 }
@@ -94,11 +94,9 @@ std::string checkDeclaredCoverage(std::span<const GridTriangle> triangles, const
         grid, observed, [&](uint32_t x, uint32_t y, const GridPoint& p, uint32_t count) -> std::string {
             const int64_t dx = static_cast<int64_t>(x) - scissor.offset.x,
                           dy = static_cast<int64_t>(y) - scissor.offset.y;
-            const bool inScissor =
-                dx >= 0 && dy >= 0 && dx < scissor.extent.width && dy < scissor.extent.height;
+            const bool inScissor = dx >= 0 && dy >= 0 && dx < scissor.extent.width && dy < scissor.extent.height;
             const auto covering = [&p](const GridTriangle& t) { return covers(t, p); };
-            const auto expected =
-                inScissor ? static_cast<uint32_t>(std::ranges::count_if(triangles, covering)) : 0u;
+            const auto expected = inScissor ? static_cast<uint32_t>(std::ranges::count_if(triangles, covering)) : 0u;
             if (count == expected) return {};
             return wrongSample(x, y, count, std::to_string(expected),
                                inScissor ? causes(triangles, p) : "outside the scissor");
@@ -108,24 +106,24 @@ std::string checkDeclaredCoverage(std::span<const GridTriangle> triangles, const
 std::string checkLegalCoverage(std::span<const GridTriangle> triangles, const SampleGrid& grid,
                                std::span<const uint32_t> observed) {
     const std::vector<SharedEdge> shared = findSharedEdges(triangles);
-    return forEachSample(
-        grid, observed, [&](uint32_t x, uint32_t y, const GridPoint& p, uint32_t count) -> std::string {
-            uint32_t low = 0, high = 0;
-            for (const GridTriangle& t : triangles) {
-                const Coverage coverage = classify(t, p);
-                low += coverage == Coverage::must;
-                high += coverage != Coverage::mustNot;
-            }
-            for (const SharedEdge& edge : shared) {
-                if (!isExclusive(triangles, edge, p)) continue;
-                ++low;
-                --high;
-            }
-            if (count >= low && count <= high) return {};
-            const std::string expected =
-                low == high ? std::to_string(low) : std::to_string(low) + ".." + std::to_string(high);
-            return wrongSample(x, y, count, expected, causes(triangles, p));
-        });
+    return forEachSample(grid, observed,
+                         [&](uint32_t x, uint32_t y, const GridPoint& p, uint32_t count) -> std::string {
+                             uint32_t low = 0, high = 0;
+                             for (const GridTriangle& t : triangles) {
+                                 const Coverage coverage = classify(t, p);
+                                 low += coverage == Coverage::must;
+                                 high += coverage != Coverage::mustNot;
+                             }
+                             for (const SharedEdge& edge : shared) {
+                                 if (!isExclusive(triangles, edge, p)) continue;
+                                 ++low;
+                                 --high;
+                             }
+                             if (count >= low && count <= high) return {};
+                             const std::string expected =
+                                 low == high ? std::to_string(low) : std::to_string(low) + ".." + std::to_string(high);
+                             return wrongSample(x, y, count, expected, causes(triangles, p));
+                         });
 }
 
 std::string checkPartition(std::span<const GridTriangle> triangles, const SampleGrid& grid,
@@ -135,8 +133,7 @@ std::string checkPartition(std::span<const GridTriangle> triangles, const Sample
         grid, observed, [&](uint32_t x, uint32_t y, const GridPoint& p, uint32_t count) -> std::string {
             const auto open = [&p](const Edge& edge) { return nearSegment(edge, p, 1); };
             if (std::ranges::any_of(boundary, open)) return {};
-            const bool inside =
-                std::ranges::any_of(triangles, [&p](const GridTriangle& t) { return covers(t, p); });
+            const bool inside = std::ranges::any_of(triangles, [&p](const GridTriangle& t) { return covers(t, p); });
             if (count == (inside ? 1u : 0u)) return {};
             return wrongSample(x, y, count, inside ? "1 (interior of the tiling)" : "0 (outside the tiling)",
                                causes(triangles, p));

@@ -32,8 +32,7 @@ BiasUnit biasUnit(VkFormat format, const std::array<Rational, 3>& vertexDepths) 
     Rational largest = 0;
     for (const Rational& z : vertexDepths) largest = std::max(largest, Rational(abs(z)));
     const FloatLayout layout = floatLayout(component.bits);
-    const int exponent =
-        largest == 0 ? layout.minExponent() : std::max(floorLog2(largest), layout.minExponent());
+    const int exponent = largest == 0 ? layout.minExponent() : std::max(floorLog2(largest), layout.minExponent());
     const Rational unit = powerOfTwo(exponent - layout.mantissaBits);
     return {unit, unit};
 }

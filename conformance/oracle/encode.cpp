@@ -18,9 +18,7 @@ uint64_t maskOf(unsigned bits) {
 
 // A number on the scale of codes: the codes around it, in two's complement of the component's width.
 CodeSet around(const Rational& scaled, unsigned bits) {
-    const auto code = [bits](const Integer& value) {
-        return static_cast<uint64_t>(toInt64(value)) & maskOf(bits);
-    };
+    const auto code = [bits](const Integer& value) { return static_cast<uint64_t>(toInt64(value)) & maskOf(bits); };
     return {code(floorOf(scaled)), code(ceilOf(scaled)), code(roundHalfEven(scaled))};
 }
 
@@ -40,8 +38,7 @@ CodeSet encodeSrgb(const Rational& value, unsigned bits) {
     if (low == top) return {code(low), code(low), code(low)};
     // Codes 0 and max are met by 0 and 1 alone; any other hit on a code needs the linear segment.
     const Rational atLow = Rational(low) / Rational(top);
-    if (x <= fraction(31308, 10000000) && x * fraction(1292, 100) == atLow)
-        return {code(low), code(low), code(low)};
+    if (x <= fraction(31308, 10000000) && x * fraction(1292, 100) == atLow) return {code(low), code(low), code(low)};
     const Rational half = (Rational(low) + fraction(1, 2)) / Rational(top);
     return {code(low), code(low + 1), srgbReaches(x, half) ? code(low + 1) : code(low)};
 }
@@ -60,8 +57,7 @@ CodeSet encodeFloat(const Rational& value, const FloatLayout& layout, bool hasSi
             // Codes of one sign are consecutive integers in the order of their values, across exponents as
             // well.
             const Rational quanta = magnitude / powerOfTwo(exponent - layout.mantissaBits);
-            const uint64_t base = static_cast<uint64_t>(exponent - layout.minExponent())
-                                  << layout.mantissaBits;
+            const uint64_t base = static_cast<uint64_t>(exponent - layout.minExponent()) << layout.mantissaBits;
             below = base + static_cast<uint64_t>(toInt64(floorOf(quanta)));
             above = base + static_cast<uint64_t>(toInt64(ceilOf(quanta)));
             nearest = base + static_cast<uint64_t>(toInt64(roundHalfEven(quanta)));
@@ -101,11 +97,9 @@ CodeSet encode(const Component& component, const Rational& value) {
     const unsigned bits = component.bits;
     switch (component.encoding) {
         case Encoding::unorm:
-            return around(clamp(value, 0, 1) * Rational(Integer(static_cast<unsigned long>(maskOf(bits)))),
-                          bits);
+            return around(clamp(value, 0, 1) * Rational(Integer(static_cast<unsigned long>(maskOf(bits)))), bits);
         case Encoding::snorm:
-            return around(
-                clamp(value, -1, 1) * Rational(Integer(static_cast<unsigned long>(maskOf(bits - 1)))), bits);
+            return around(clamp(value, -1, 1) * Rational(Integer(static_cast<unsigned long>(maskOf(bits - 1)))), bits);
         case Encoding::srgb:
             return encodeSrgb(value, bits);
         case Encoding::uint:
@@ -123,8 +117,8 @@ std::optional<Rational> decode(const Component& component, uint64_t code) {
     const auto integer = [](uint64_t v) { return Rational(Integer(static_cast<unsigned long>(v))); };
     const auto signedCode = [&] {
         const bool negative = (code >> (bits - 1)) & 1;
-        return Rational(Integer(static_cast<long>(negative ? static_cast<int64_t>(code | ~maskOf(bits))
-                                                           : static_cast<int64_t>(code))));
+        return Rational(Integer(
+            static_cast<long>(negative ? static_cast<int64_t>(code | ~maskOf(bits)) : static_cast<int64_t>(code))));
     };
     switch (component.encoding) {
         case Encoding::unorm:

@@ -17,8 +17,8 @@ Rational lerp(const Rational& a, const Rational& b, const Rational& t) {
     return a + t * (b - a);
 }
 
-Rational bilinearAt(const std::function<Rational(int64_t, int64_t)>& texel, int64_t x, int64_t y,
-                    const Rational& a, const Rational& b) {
+Rational bilinearAt(const std::function<Rational(int64_t, int64_t)>& texel, int64_t x, int64_t y, const Rational& a,
+                    const Rational& b) {
     return lerp(lerp(texel(x, y), texel(x + 1, y), a), lerp(texel(x, y + 1), texel(x + 1, y + 1), a), b);
 }
 
@@ -28,8 +28,7 @@ std::vector<Rational> breakpoints(const Rational& u, const Rational& reach) {
     const Rational low = u - reach, high = u + reach;
     std::vector<Rational> result{low, high};
     const Rational half = fraction(1, 2);
-    for (Integer i = ceilOf(low - half); Rational(i) <= high - half; ++i)
-        result.push_back(Rational(i) + half);
+    for (Integer i = ceilOf(low - half); Rational(i) <= high - half; ++i) result.push_back(Rational(i) + half);
     return result;
 }
 
@@ -57,8 +56,7 @@ AxisTaps linearTaps(const Rational& u, int weightBits) {
     const Rational shifted = u - fraction(1, 2);
     const Integer first = floorOf(shifted);
     Rational weight = shifted - Rational(first);
-    if (weightBits >= 0)
-        weight = Rational(roundHalfEven(weight * powerOfTwo(weightBits))) / powerOfTwo(weightBits);
+    if (weightBits >= 0) weight = Rational(roundHalfEven(weight * powerOfTwo(weightBits))) / powerOfTwo(weightBits);
     return {toInt64(first), weight};
 }
 
@@ -66,14 +64,14 @@ int64_t nearestTexel(const Rational& u) {
     return toInt64(floorOf(u));
 }
 
-Rational bilinear(const std::function<Rational(int64_t, int64_t)>& texel, const Rational& u,
-                  const Rational& v, int weightBits) {
+Rational bilinear(const std::function<Rational(int64_t, int64_t)>& texel, const Rational& u, const Rational& v,
+                  int weightBits) {
     const AxisTaps x = linearTaps(u, weightBits), y = linearTaps(v, weightBits);
     return bilinearAt(texel, x.first, y.first, x.weight, y.weight);
 }
 
-FilterRange bilinearRange(const std::function<Rational(int64_t, int64_t)>& texel, const Rational& u,
-                          const Rational& v, int weightBits, const Rational& slack) {
+FilterRange bilinearRange(const std::function<Rational(int64_t, int64_t)>& texel, const Rational& u, const Rational& v,
+                          int weightBits, const Rational& slack) {
     const Rational reach = slack + powerOfTwo(-weightBits);
     std::optional<FilterRange> range;
     for (const Rational& x : breakpoints(u, reach)) {
@@ -101,8 +99,7 @@ SquaredScaleRange squaredScaleRange(const TexelDerivatives& d) {
 std::optional<Enclosure> levelOfDetail(const Rational& squaredRho, double bias) {
     if (squaredRho <= 0) return std::nullopt;
     const Enclosure twice = log2Enclosure(squaredRho);
-    return Enclosure{std::nextafter(twice.low / 2 + bias, -HUGE_VAL),
-                     std::nextafter(twice.high / 2 + bias, HUGE_VAL)};
+    return Enclosure{std::nextafter(twice.low / 2 + bias, -HUGE_VAL), std::nextafter(twice.high / 2 + bias, HUGE_VAL)};
 }
 
 NearestLevel nearestLevel(const Rational& squaredRho) {

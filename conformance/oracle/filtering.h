@@ -30,8 +30,8 @@ AxisTaps linearTaps(const Rational& u, int weightBits = -1);
 int64_t nearestTexel(const Rational& u);
 
 /// Bilinear filter of a texel function at unnormalised (u, v).
-Rational bilinear(const std::function<Rational(int64_t x, int64_t y)>& texel, const Rational& u,
-                  const Rational& v, int weightBits = -1);
+Rational bilinear(const std::function<Rational(int64_t x, int64_t y)>& texel, const Rational& u, const Rational& v,
+                  int weightBits = -1);
 
 /// Smallest and largest value of the bilinear filter when coordinates carry an error of up to `slack` texels
 /// and the weights are rounded in any way to `weightBits` fraction bits: the range a conforming filter can

@@ -100,11 +100,11 @@ Result<FragmentShader> FragmentShader::create(const Scene& scene, const ScenePip
                 result.outputs_.push_back(v);
                 continue;
             }
-            const bool perSample = v.sample || (v.isBuiltin && (v.builtin == spv::BuiltInSampleId ||
-                                                                v.builtin == spv::BuiltInSamplePosition));
+            const bool perSample =
+                v.sample ||
+                (v.isBuiltin && (v.builtin == spv::BuiltInSampleId || v.builtin == spv::BuiltInSamplePosition));
             if (pipeline.samples != VK_SAMPLE_COUNT_1_BIT && (perSample || v.centroid)) {
-                return unsupported("oracle: fragment input '" + v.name +
-                                   "' asks for per-sample or centroid shading");
+                return unsupported("oracle: fragment input '" + v.name + "' asks for per-sample or centroid shading");
             }
             const bool interpolated =
                 v.isBuiltin ? v.builtin == spv::BuiltInFragCoord : !v.flat && !isIntegerVariable(v);
@@ -125,23 +125,20 @@ void FragmentShader::setVariable(const InterfaceVariable& variable, const Fragme
             if (found != source.vertices[i]->varyings.end()) at[i] = found->second;
         }
         reference::Texel<double>& texel = values.locations[location];
-        for (size_t c = variable.component; c < std::min<size_t>(4, variable.component + variable.components);
-             ++c) {
+        for (size_t c = variable.component; c < std::min<size_t>(4, variable.component + variable.components); ++c) {
             if (variable.flat || isIntegerVariable(variable)) {
                 texel[c] = at[0][c];
                 continue;
             }
             const std::array<double, 3> f{at[0][c].number, at[1][c].number, at[2][c].number};
             const auto& shape = source.triangle->homogeneous();
-            texel[c].number =
-                variable.noPerspective ? shape.linear(weights, f) : shape.perspective(weights, f);
+            texel[c].number = variable.noPerspective ? shape.linear(weights, f) : shape.perspective(weights, f);
         }
     }
 }
 
-std::array<FragmentShader::Values, 4> FragmentShader::inputsAt(const FragmentSource& source, uint32_t x,
-                                                               uint32_t y, double shiftX,
-                                                               double shiftY) const {
+std::array<FragmentShader::Values, 4> FragmentShader::inputsAt(const FragmentSource& source, uint32_t x, uint32_t y,
+                                                               double shiftX, double shiftY) const {
     std::array<Values, 4> result;
     for (uint32_t lane = 0; lane < 4; ++lane) {
         Values& values = result[lane];
@@ -155,8 +152,7 @@ std::array<FragmentShader::Values, 4> FragmentShader::inputsAt(const FragmentSou
             }
             switch (v.builtin) {
                 case spv::BuiltInFragCoord:
-                    values.setFloat(spv::BuiltInFragCoord,
-                                    {px, py, shape.depth(weights), shape.inverseW(weights)});
+                    values.setFloat(spv::BuiltInFragCoord, {px, py, shape.depth(weights), shape.inverseW(weights)});
                     break;
                 case spv::BuiltInFrontFacing:
                     values.setInt(v.builtin, source.frontFacing);
@@ -172,8 +168,8 @@ std::array<FragmentShader::Values, 4> FragmentShader::inputsAt(const FragmentSou
     return result;
 }
 
-Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSource& source, uint32_t x,
-                                                               uint32_t y, const std::array<bool, 4>& covered,
+Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSource& source, uint32_t x, uint32_t y,
+                                                               const std::array<bool, 4>& covered,
                                                                const OutputState& output,
                                                                ShaderResources& resources) const {
     ShaderRuns runs;
@@ -200,8 +196,7 @@ Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSou
         const double d = source.triangle->freedom();
         for (const double dx : {-d, d}) {
             for (const double dy : {-d, d}) {
-                if (Status s = add(runs.shifted, nominal_, inputsAt(source, x, y, dx, dy)); !s)
-                    return s.error();
+                if (Status s = add(runs.shifted, nominal_, inputsAt(source, x, y, dx, dy)); !s) return s.error();
             }
         }
     }

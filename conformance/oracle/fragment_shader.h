@@ -46,8 +46,7 @@ class FragmentShader {
 
     /// The quad whose upper left pixel is (x, y). `resources` is used by one thread at a time.
     Result<std::array<FragmentResult, 4>> evaluate(const FragmentSource& source, uint32_t x, uint32_t y,
-                                                   const std::array<bool, 4>& covered,
-                                                   const OutputState& output,
+                                                   const std::array<bool, 4>& covered, const OutputState& output,
                                                    ShaderResources& resources) const;
 
   private:

@@ -113,8 +113,7 @@ std::vector<ClippedVertex<T>> clipPolygon(const std::vector<ClippedVertex<T>>& p
         const ClippedVertex<T>& out = aIn ? b : a;
         const T t = (aIn ? da : db) / T((aIn ? da : db) - (aIn ? db : da));
         ClippedVertex<T> cut;
-        for (size_t c = 0; c < 4; ++c)
-            cut.position[c] = in.position[c] + t * (out.position[c] - in.position[c]);
+        for (size_t c = 0; c < 4; ++c) cut.position[c] = in.position[c] + t * (out.position[c] - in.position[c]);
         for (size_t c = 0; c < 3; ++c) cut.weight[c] = in.weight[c] + t * (out.weight[c] - in.weight[c]);
         result.push_back(cut);
     }

@@ -30,8 +30,7 @@ Result<ImageStore> ImageStore::create(const SceneImage& image) {
     for (uint32_t mip = 0; mip < image.mipLevels; ++mip) {
         for (uint32_t layer = 0; layer < image.arrayLayers; ++layer) {
             ImageLevel level;
-            level.extent = {std::max(1u, image.extent.width >> mip),
-                            std::max(1u, image.extent.height >> mip)};
+            level.extent = {std::max(1u, image.extent.width >> mip), std::max(1u, image.extent.height >> mip)};
             level.samples = image.samples;
             const size_t pixels = static_cast<size_t>(level.extent.width) * level.extent.height;
             level.texels.resize(pixels * level.samples);
@@ -39,8 +38,8 @@ Result<ImageStore> ImageStore::create(const SceneImage& image) {
             const size_t bytes = store.format_->bytes;
             const bool given = index < image.data.size() && !image.data[index].empty();
             if (given && image.data[index].size() != pixels * bytes) {
-                return invalidArgument("oracle: image '" + image.name + "', data[" + std::to_string(index) +
-                                       "] has " + std::to_string(image.data[index].size()) + " bytes, not " +
+                return invalidArgument("oracle: image '" + image.name + "', data[" + std::to_string(index) + "] has " +
+                                       std::to_string(image.data[index].size()) + " bytes, not " +
                                        std::to_string(pixels * bytes));
             }
             for (size_t i = 0; i < level.texels.size(); ++i) {
@@ -75,8 +74,7 @@ StoredTexel resolveSamples(const PixelFormat& format, const ImageLevel& source, 
         for (size_t c = 0; c < 4; ++c) {
             const Interval& v = sample.channels[c];
             sum[c] = sum[c] + v;
-            encodedSum[c] =
-                encodedSum[c] + Interval(srgbEncode(v.value), srgbEncode(v.low), srgbEncode(v.high));
+            encodedSum[c] = encodedSum[c] + Interval(srgbEncode(v.value), srgbEncode(v.low), srgbEncode(v.high));
             if (format.isInteger()) result.channels[c] = result.channels[c].united(v);
         }
     }
@@ -85,8 +83,8 @@ StoredTexel resolveSamples(const PixelFormat& format, const ImageLevel& source, 
         const size_t c = component.channel;
         Interval average{sum[c].value / count, sum[c].low / count, sum[c].high / count};
         if (component.encoding == Encoding::srgb) {
-            average = average.united(
-                {0, srgbDecode(encodedSum[c].low / count), srgbDecode(encodedSum[c].high / count)});
+            average =
+                average.united({0, srgbDecode(encodedSum[c].low / count), srgbDecode(encodedSum[c].high / count)});
         }
         result.channels[c] = quantise(component, average);
     }

@@ -41,9 +41,7 @@ class ImageStore {
     uint32_t arrayLayers() const { return arrayLayers_; }
 
     ImageLevel& level(uint32_t mip, uint32_t layer) { return levels_[mip * arrayLayers_ + layer]; }
-    const ImageLevel& level(uint32_t mip, uint32_t layer) const {
-        return levels_[mip * arrayLayers_ + layer];
-    }
+    const ImageLevel& level(uint32_t mip, uint32_t layer) const { return levels_[mip * arrayLayers_ + layer]; }
 
   private:
     const PixelFormat* format_ = nullptr;

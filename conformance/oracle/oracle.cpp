@@ -24,8 +24,7 @@ class SceneCheck {
         for (size_t i = 0; i < scene_.pipelines.size(); ++i) checkPipeline(i);
         for (const SceneStep& step : scene_.steps) {
             if (const auto* pass = std::get_if<ScenePass>(&step)) checkPass(*pass);
-            if (const auto* mips = std::get_if<SceneGenerateMips>(&step))
-                image(mips->image, "mip generation");
+            if (const auto* mips = std::get_if<SceneGenerateMips>(&step)) image(mips->image, "mip generation");
             if (const auto* copy = std::get_if<SceneCopyImage>(&step)) {
                 image(copy->source, "copy source");
                 image(copy->destination, "copy destination");
@@ -51,8 +50,7 @@ class SceneCheck {
     void checkPipeline(size_t i) {
         const ScenePipeline& pipeline = scene_.pipelines[i];
         index(pipeline.vertexShader, scene_.shaders.size(), "vertex shader");
-        if (pipeline.fragmentShader != kNone)
-            index(pipeline.fragmentShader, scene_.shaders.size(), "fragment shader");
+        if (pipeline.fragmentShader != kNone) index(pipeline.fragmentShader, scene_.shaders.size(), "fragment shader");
     }
 
     void checkAttachment(const SceneAttachment& a, VkExtent2D extent) {
@@ -99,8 +97,7 @@ void generateMips(ImageStore& image) {
                 for (uint32_t x = 0; x < to.extent.width; ++x) {
                     const double u = (x + 0.5) * from.width / to.extent.width;
                     const double v = (y + 0.5) * from.height / to.extent.height;
-                    to.at(x, y) =
-                        storeFiltered(image, exact::blitTexel(image, mip - 1, layer, u, v, VK_FILTER_LINEAR));
+                    to.at(x, y) = storeFiltered(image, exact::blitTexel(image, mip - 1, layer, u, v, VK_FILTER_LINEAR));
                 }
             }
         }
@@ -115,10 +112,8 @@ Status copyImage(const SceneCopyImage& copy, std::vector<ImageStore>& images) {
     }
     const VkImageCopy& r = copy.region;
     for (uint32_t layer = 0; layer < r.srcSubresource.layerCount; ++layer) {
-        const ImageLevel& from =
-            source.level(r.srcSubresource.mipLevel, r.srcSubresource.baseArrayLayer + layer);
-        ImageLevel& to =
-            destination.level(r.dstSubresource.mipLevel, r.dstSubresource.baseArrayLayer + layer);
+        const ImageLevel& from = source.level(r.srcSubresource.mipLevel, r.srcSubresource.baseArrayLayer + layer);
+        ImageLevel& to = destination.level(r.dstSubresource.mipLevel, r.dstSubresource.baseArrayLayer + layer);
         for (uint32_t y = 0; y < r.extent.height; ++y) {
             for (uint32_t x = 0; x < r.extent.width; ++x) {
                 const uint32_t sx = static_cast<uint32_t>(r.srcOffset.x) + x,
@@ -129,8 +124,7 @@ Status copyImage(const SceneCopyImage& copy, std::vector<ImageStore>& images) {
                     dy >= to.extent.height) {
                     return invalidArgument("oracle: a copy region reaches outside its image");
                 }
-                for (uint32_t s = 0; s < std::min(from.samples, to.samples); ++s)
-                    to.at(dx, dy, s) = from.at(sx, sy, s);
+                for (uint32_t s = 0; s < std::min(from.samples, to.samples); ++s) to.at(dx, dy, s) = from.at(sx, sy, s);
             }
         }
     }
@@ -147,8 +141,7 @@ Status blitImage(const SceneBlitImage& blit, std::vector<ImageStore>& images) {
     const double scaleX = static_cast<double>(s1.x - s0.x) / (d1.x - d0.x);
     const double scaleY = static_cast<double>(s1.y - s0.y) / (d1.y - d0.y);
     for (uint32_t layer = 0; layer < r.srcSubresource.layerCount; ++layer) {
-        ImageLevel& to =
-            destination.level(r.dstSubresource.mipLevel, r.dstSubresource.baseArrayLayer + layer);
+        ImageLevel& to = destination.level(r.dstSubresource.mipLevel, r.dstSubresource.baseArrayLayer + layer);
         const auto [left, right] = std::minmax(d0.x, d1.x);
         const auto [top, bottom] = std::minmax(d0.y, d1.y);
         if (left < 0 || top < 0 || static_cast<uint32_t>(right) > to.extent.width ||
@@ -158,9 +151,8 @@ Status blitImage(const SceneBlitImage& blit, std::vector<ImageStore>& images) {
         for (int32_t y = top; y < bottom; ++y) {
             for (int32_t x = left; x < right; ++x) {
                 const double u = s0.x + (x + 0.5 - d0.x) * scaleX, v = s0.y + (y + 0.5 - d0.y) * scaleY;
-                const auto texel =
-                    exact::blitTexel(source, r.srcSubresource.mipLevel,
-                                     r.srcSubresource.baseArrayLayer + layer, u, v, blit.filter);
+                const auto texel = exact::blitTexel(source, r.srcSubresource.mipLevel,
+                                                    r.srcSubresource.baseArrayLayer + layer, u, v, blit.filter);
                 to.at(static_cast<uint32_t>(x), static_cast<uint32_t>(y)) = storeFiltered(destination, texel);
             }
         }

@@ -69,8 +69,7 @@ class PassRenderer {
 
     Status load() {
         if (pass_.colors.size() > kMaxColorAttachments) {
-            return unsupported("oracle: a pass with " + std::to_string(pass_.colors.size()) +
-                               " colour attachments");
+            return unsupported("oracle: a pass with " + std::to_string(pass_.colors.size()) + " colour attachments");
         }
         width_ = pass_.extent.width;
         height_ = pass_.extent.height;
@@ -115,16 +114,14 @@ class PassRenderer {
             } else {
                 const StoredTexel& texel = attachment(a)->at(x, y, s);
                 state.colors[i] = texel.channels;
-                state.flags[i] =
-                    a.loadOp == VK_ATTACHMENT_LOAD_OP_LOAD ? texel.flags : uint8_t{kOracleUnknown};
+                state.flags[i] = a.loadOp == VK_ATTACHMENT_LOAD_OP_LOAD ? texel.flags : uint8_t{kOracleUnknown};
             }
         }
         if (output_.depthFormat) {
             const SceneAttachment& a = pass_.depthStencil;
             if (a.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR) {
                 state.depth = static_cast<double>(a.clear.depthStencil.depth);
-                if (output_.depthFormat->depth)
-                    state.depth = quantise(output_.depthFormat->components[0], state.depth);
+                if (output_.depthFormat->depth) state.depth = quantise(output_.depthFormat->components[0], state.depth);
                 state.stencil = static_cast<uint8_t>(a.clear.depthStencil.stencil);
             } else {
                 const StoredTexel& texel = attachment(a)->at(x, y, s);
@@ -143,16 +140,14 @@ class PassRenderer {
 
     Status draw(const SceneDraw& draw) {
         const ScenePipeline& pipeline = scene_.pipelines[draw.pipeline];
-        if (pipeline.polygonMode != VK_POLYGON_MODE_FILL)
-            return unsupported("oracle: polygonMode other than FILL");
+        if (pipeline.polygonMode != VK_POLYGON_MODE_FILL) return unsupported("oracle: polygonMode other than FILL");
         OutputState output = output_;
         output.pipeline = &pipeline;
         output.viewport = draw.viewport;
         ShaderResources vertexResources(scene_, images_, draw);
         auto geometry = assembleDraw(scene_, draw, vertexResources);
         if (!geometry) return geometry.error();
-        if (vertexResources.wrote)
-            return unsupported("oracle: the vertex shader uses storage buffers or images");
+        if (vertexResources.wrote) return unsupported("oracle: the vertex shader uses storage buffers or images");
         std::optional<FragmentShader> shader;
         if (pipeline.fragmentShader != kNone) {
             auto created = FragmentShader::create(scene_, pipeline);
@@ -190,8 +185,7 @@ class PassRenderer {
         PixelBounds limits{
             std::max(0, scissor.offset.x), std::max(0, scissor.offset.y),
             static_cast<int32_t>(std::min<int64_t>(width_, int64_t{scissor.offset.x} + scissor.extent.width)),
-            static_cast<int32_t>(
-                std::min<int64_t>(height_, int64_t{scissor.offset.y} + scissor.extent.height))};
+            static_cast<int32_t>(std::min<int64_t>(height_, int64_t{scissor.offset.y} + scissor.extent.height))};
         const double context[] = {static_cast<double>(pipeline.vertexShader),
                                   draw.viewport.x,
                                   draw.viewport.y,
@@ -223,14 +217,12 @@ class PassRenderer {
             source.primitiveId = geometry.primitiveIds[i];
             const bool culled = (source.frontFacing && (pipeline.cullMode & VK_CULL_MODE_FRONT_BIT)) ||
                                 (!source.frontFacing && (pipeline.cullMode & VK_CULL_MODE_BACK_BIT));
-            if (culled && (!triangle->orientationOpen() || pipeline.cullMode == VK_CULL_MODE_FRONT_AND_BACK))
-                continue;
+            if (culled && (!triangle->orientationOpen() || pipeline.cullMode == VK_CULL_MODE_FRONT_AND_BACK)) continue;
             PreparedTriangle prepared{std::move(*triangle), source, bounds, 0.0, 0, culled};
             prepared.depthOrigin = prepared.triangle.identity();
             if (pipeline.depthBias && output_.depthFormat) {
                 prepared.bias = biasOf(prepared.triangle, pipeline);
-                const double bias[] = {pipeline.depthBiasConstant, pipeline.depthBiasClamp,
-                                       pipeline.depthBiasSlope};
+                const double bias[] = {pipeline.depthBiasConstant, pipeline.depthBiasClamp, pipeline.depthBiasSlope};
                 prepared.depthOrigin = hashNumbers(prepared.depthOrigin, bias, 3);
             }
             result.push_back(std::move(prepared));
@@ -243,10 +235,9 @@ class PassRenderer {
         std::array<Rational, 3> depths;
         const std::array<double, 3> z = triangle.vertexDepths();
         for (size_t i = 0; i < 3; ++i) depths[i] = rational(std::isfinite(z[i]) ? z[i] : 1.0);
-        const BiasRange range =
-            depthBias(output_.depthFormat->format, depths, rational(triangle.depthSlopeX()),
-                      rational(triangle.depthSlopeY()), pipeline.depthBiasConstant, pipeline.depthBiasClamp,
-                      pipeline.depthBiasSlope);
+        const BiasRange range = depthBias(output_.depthFormat->format, depths, rational(triangle.depthSlopeX()),
+                                          rational(triangle.depthSlopeY()), pipeline.depthBiasConstant,
+                                          pipeline.depthBiasClamp, pipeline.depthBiasSlope);
         return {(range.low + range.high) / 2, range.low, range.high};
     }
 
@@ -257,8 +248,8 @@ class PassRenderer {
     }
 
     // The two pixel rows of quads that begin at `row`.
-    Status shadeRow(const PreparedTriangle& t, uint32_t row, const FragmentShader* shader,
-                    const OutputState& output, ShaderResources& resources) {
+    Status shadeRow(const PreparedTriangle& t, uint32_t row, const FragmentShader* shader, const OutputState& output,
+                    ShaderResources& resources) {
         const int32_t y0 = std::max<int32_t>(t.bounds.y0, static_cast<int32_t>(row));
         const int32_t y1 = std::min<int32_t>(t.bounds.y1, static_cast<int32_t>(row) + 2);
         if (y0 >= y1) return {};
@@ -274,15 +265,13 @@ class PassRenderer {
                     if (!(output.pipeline->sampleMask & (1u << s))) continue;
                     verdict = t.triangle.classify(samplePoint(x, y, s));
                     if (t.culled) verdict.nominalAsWhole = false;
-                    covered[static_cast<size_t>(lane)] =
-                        covered[static_cast<size_t>(lane)] || verdict.possible;
+                    covered[static_cast<size_t>(lane)] = covered[static_cast<size_t>(lane)] || verdict.possible;
                 }
             }
             if (std::ranges::none_of(covered, [](bool c) { return c; })) continue;
             std::array<FragmentResult, 4> fragments{};
             if (shader) {
-                auto shaded =
-                    shader->evaluate(t.source, static_cast<uint32_t>(qx), row, covered, output, resources);
+                auto shaded = shader->evaluate(t.source, static_cast<uint32_t>(qx), row, covered, output, resources);
                 if (!shaded) return shaded.error();
                 fragments = std::move(*shaded);
             } else {
@@ -290,8 +279,7 @@ class PassRenderer {
             }
             for (size_t lane = 0; lane < 4; ++lane) {
                 if (!covered[lane]) continue;
-                const int32_t x = qx + static_cast<int32_t>(lane % 2),
-                              y = static_cast<int32_t>(row + lane / 2);
+                const int32_t x = qx + static_cast<int32_t>(lane % 2), y = static_cast<int32_t>(row + lane / 2);
                 for (uint32_t s = 0; s < samples_; ++s) {
                     applySample(t, x, y, s, verdicts[lane * samples_ + s], fragments[lane], output);
                 }
@@ -300,9 +288,8 @@ class PassRenderer {
         return {};
     }
 
-    void applySample(const PreparedTriangle& t, int32_t x, int32_t y, uint32_t s,
-                     const SampleVerdict& verdict, const FragmentResult& fragment,
-                     const OutputState& output) {
+    void applySample(const PreparedTriangle& t, int32_t x, int32_t y, uint32_t s, const SampleVerdict& verdict,
+                     const FragmentResult& fragment, const OutputState& output) {
         if (!verdict.possible) return;
         SampleInput input;
         input.verdict = verdict;
@@ -316,8 +303,7 @@ class PassRenderer {
         // Without depth clamping fragments beyond the viewport's range have been clipped; rounding leaves no
         // more than a trace.
         const auto [low, high] = std::minmax(output.viewport.minDepth, output.viewport.maxDepth);
-        if (!output.pipeline->depthClamp && !output.pipeline->depthBias)
-            input.depth = input.depth.clamped(low, high);
+        if (!output.pipeline->depthClamp && !output.pipeline->depthBias) input.depth = input.depth.clamped(low, high);
         input.depthOrigin = t.depthOrigin;
         input.frontFacing = t.source.frontFacing;
         applyTriangle(output, input, at(static_cast<uint32_t>(x), static_cast<uint32_t>(y), s));
@@ -340,8 +326,7 @@ class PassRenderer {
             for (const SampleState& state : states) {
                 texel.flags |= state.flags[i];
                 if (state.colors[i] != states[0].colors[i]) texel.flags |= kOracleEdge;
-                for (size_t c = 0; c < 4; ++c)
-                    texel.channels[c] = texel.channels[c].united(state.colors[i][c]);
+                for (size_t c = 0; c < 4; ++c) texel.channels[c] = texel.channels[c].united(state.colors[i][c]);
             }
             target->at(x, y, s) = texel;
         }
@@ -351,8 +336,7 @@ class PassRenderer {
             for (const SampleState& state : states) {
                 texel.flags |= state.flags[kDepthFlags];
                 const Interval stencil(state.stencil);
-                if (state.depth != states[0].depth || state.stencil != states[0].stencil)
-                    texel.flags |= kOracleEdge;
+                if (state.depth != states[0].depth || state.stencil != states[0].stencil) texel.flags |= kOracleEdge;
                 texel.channels[0] = texel.channels[0].united(state.depth);
                 texel.channels[1] = texel.channels[1].united(stencil);
             }

@@ -52,10 +52,8 @@ std::vector<PixelFormat> buildTable() {
     };
     const VkFormat none = VK_FORMAT_UNDEFINED;
     const Family families[] = {
-        {8, unorm, VK_FORMAT_R8_UNORM, VK_FORMAT_R8G8_UNORM, VK_FORMAT_R8G8B8A8_UNORM,
-         VK_FORMAT_B8G8R8A8_UNORM},
-        {8, snorm, VK_FORMAT_R8_SNORM, VK_FORMAT_R8G8_SNORM, VK_FORMAT_R8G8B8A8_SNORM,
-         VK_FORMAT_B8G8R8A8_SNORM},
+        {8, unorm, VK_FORMAT_R8_UNORM, VK_FORMAT_R8G8_UNORM, VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_B8G8R8A8_UNORM},
+        {8, snorm, VK_FORMAT_R8_SNORM, VK_FORMAT_R8G8_SNORM, VK_FORMAT_R8G8B8A8_SNORM, VK_FORMAT_B8G8R8A8_SNORM},
         {8, uint, VK_FORMAT_R8_UINT, VK_FORMAT_R8G8_UINT, VK_FORMAT_R8G8B8A8_UINT, VK_FORMAT_B8G8R8A8_UINT},
         {8, sint, VK_FORMAT_R8_SINT, VK_FORMAT_R8G8_SINT, VK_FORMAT_R8G8B8A8_SINT, VK_FORMAT_B8G8R8A8_SINT},
         {8, srgb, VK_FORMAT_R8_SRGB, VK_FORMAT_R8G8_SRGB, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_B8G8R8A8_SRGB},
@@ -74,9 +72,8 @@ std::vector<PixelFormat> buildTable() {
         t.push_back(array(f.rgba, "rgba", f.bits, f.encoding));
         if (f.bgra != none) t.push_back(array(f.bgra, "bgra", f.bits, f.encoding));
     }
-    const std::pair<VkFormat, Encoding> threeFloats[] = {{VK_FORMAT_R32G32B32_SFLOAT, sfloat},
-                                                         {VK_FORMAT_R32G32B32_UINT, uint},
-                                                         {VK_FORMAT_R32G32B32_SINT, sint}};
+    const std::pair<VkFormat, Encoding> threeFloats[] = {
+        {VK_FORMAT_R32G32B32_SFLOAT, sfloat}, {VK_FORMAT_R32G32B32_UINT, uint}, {VK_FORMAT_R32G32B32_SINT, sint}};
     for (const auto& [format, encoding] : threeFloats) t.push_back(array(format, "rgb", 32, encoding));
     const std::pair<VkFormat, Encoding> abgr8[] = {{VK_FORMAT_A8B8G8R8_UNORM_PACK32, unorm},
                                                    {VK_FORMAT_A8B8G8R8_SNORM_PACK32, snorm},
@@ -86,10 +83,8 @@ std::vector<PixelFormat> buildTable() {
     for (const auto& [format, encoding] : abgr8) t.push_back(array(format, "rgba", 8, encoding));
 
     // The names of packed formats run from the most significant bits down.
-    t.push_back(
-        packed(VK_FORMAT_R5G6B5_UNORM_PACK16, 2, {{0, 11, 5, unorm}, {1, 5, 6, unorm}, {2, 0, 5, unorm}}));
-    t.push_back(
-        packed(VK_FORMAT_B5G6R5_UNORM_PACK16, 2, {{2, 11, 5, unorm}, {1, 5, 6, unorm}, {0, 0, 5, unorm}}));
+    t.push_back(packed(VK_FORMAT_R5G6B5_UNORM_PACK16, 2, {{0, 11, 5, unorm}, {1, 5, 6, unorm}, {2, 0, 5, unorm}}));
+    t.push_back(packed(VK_FORMAT_B5G6R5_UNORM_PACK16, 2, {{2, 11, 5, unorm}, {1, 5, 6, unorm}, {0, 0, 5, unorm}}));
     t.push_back(packed(VK_FORMAT_R4G4B4A4_UNORM_PACK16, 2,
                        {{0, 12, 4, unorm}, {1, 8, 4, unorm}, {2, 4, 4, unorm}, {3, 0, 4, unorm}}));
     t.push_back(packed(VK_FORMAT_B4G4R4A4_UNORM_PACK16, 2,
@@ -100,16 +95,15 @@ std::vector<PixelFormat> buildTable() {
                        {{2, 11, 5, unorm}, {1, 6, 5, unorm}, {0, 1, 5, unorm}, {3, 0, 1, unorm}}));
     t.push_back(packed(VK_FORMAT_A1R5G5B5_UNORM_PACK16, 2,
                        {{3, 15, 1, unorm}, {0, 10, 5, unorm}, {1, 5, 5, unorm}, {2, 0, 5, unorm}}));
-    for (const auto& [format, encoding] : {std::pair{VK_FORMAT_A2B10G10R10_UNORM_PACK32, unorm},
-                                           std::pair{VK_FORMAT_A2B10G10R10_UINT_PACK32, uint}}) {
-        t.push_back(packed(
-            format, 4,
-            {{3, 30, 2, encoding}, {2, 20, 10, encoding}, {1, 10, 10, encoding}, {0, 0, 10, encoding}}));
+    for (const auto& [format, encoding] :
+         {std::pair{VK_FORMAT_A2B10G10R10_UNORM_PACK32, unorm}, std::pair{VK_FORMAT_A2B10G10R10_UINT_PACK32, uint}}) {
+        t.push_back(packed(format, 4,
+                           {{3, 30, 2, encoding}, {2, 20, 10, encoding}, {1, 10, 10, encoding}, {0, 0, 10, encoding}}));
     }
     t.push_back(packed(VK_FORMAT_A2R10G10B10_UNORM_PACK32, 4,
                        {{3, 30, 2, unorm}, {0, 20, 10, unorm}, {1, 10, 10, unorm}, {2, 0, 10, unorm}}));
-    t.push_back(packed(VK_FORMAT_B10G11R11_UFLOAT_PACK32, 4,
-                       {{2, 22, 10, ufloat}, {1, 11, 11, ufloat}, {0, 0, 11, ufloat}}));
+    t.push_back(
+        packed(VK_FORMAT_B10G11R11_UFLOAT_PACK32, 4, {{2, 22, 10, ufloat}, {1, 11, 11, ufloat}, {0, 0, 11, ufloat}}));
     t.push_back(packed(VK_FORMAT_E5B9G9R9_UFLOAT_PACK32, 4,
                        {{2, 18, 9, sharedExponent}, {1, 9, 9, sharedExponent}, {0, 0, 9, sharedExponent}}));
 

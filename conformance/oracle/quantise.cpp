@@ -24,8 +24,7 @@ Interval roundedCodes(const Interval& n, double budget, double first, double las
 Interval quantiseFixed(const Interval& number, double minimum, double codes, double budget) {
     if (number.isNan()) return {0, minimum, 1};
     const Interval n = number.clamped(minimum, 1);
-    const Interval c =
-        roundedCodes({n.value * codes, n.low * codes, n.high * codes}, budget, minimum * codes, codes);
+    const Interval c = roundedCodes({n.value * codes, n.low * codes, n.high * codes}, budget, minimum * codes, codes);
     return {c.value / codes, c.low / codes, c.high / codes};
 }
 
@@ -80,8 +79,7 @@ Interval quantise(const Component& component, const Interval& number, double bud
         case Encoding::srgb: {
             if (number.isNan()) return {0, 0, 1};
             const Interval n = number.clamped(0, 1);
-            const Interval encoded(srgbEncode(n.value) * 255, srgbEncode(n.low) * 255,
-                                   srgbEncode(n.high) * 255);
+            const Interval encoded(srgbEncode(n.value) * 255, srgbEncode(n.low) * 255, srgbEncode(n.high) * 255);
             const Interval c = roundedCodes(encoded, budget, 0, 255);
             const auto at = [](double code) { return srgbTable()[static_cast<size_t>(code)]; };
             return {at(c.value), at(c.low), at(c.high)};
@@ -98,8 +96,7 @@ Interval quantise(const Component& component, const Interval& number, double bud
         if (std::isnan(number.value)) n.value = number.value;
     }
     const FloatLayout layout = floatLayout(component.bits);
-    return {roundToFloat(n.value, layout, 0), roundToFloat(n.low, layout, -1),
-            roundToFloat(n.high, layout, 1)};
+    return {roundToFloat(n.value, layout, 0), roundToFloat(n.low, layout, -1), roundToFloat(n.high, layout, 1)};
 }
 
 double decodeNumber(const Component& component, uint64_t code) {
@@ -129,11 +126,9 @@ double decodeNumber(const Component& component, uint64_t code) {
         component.encoding == Encoding::sfloat && (code >> (layout.exponentBits + layout.mantissaBits));
     double result;
     if (field == (1 << layout.exponentBits) - 1) {
-        result =
-            mantissa ? std::numeric_limits<double>::quiet_NaN() : std::numeric_limits<double>::infinity();
+        result = mantissa ? std::numeric_limits<double>::quiet_NaN() : std::numeric_limits<double>::infinity();
     } else {
-        const double significand =
-            static_cast<double>(mantissa) + (field ? std::ldexp(1.0, layout.mantissaBits) : 0);
+        const double significand = static_cast<double>(mantissa) + (field ? std::ldexp(1.0, layout.mantissaBits) : 0);
         result = std::ldexp(significand, layout.minExponent() + std::max(field, 1) - 1 - layout.mantissaBits);
     }
     return negative ? -result : result;
@@ -146,8 +141,7 @@ std::array<double, 4> decodeTexel(const PixelFormat& format, const std::byte* te
         for (size_t i = 0; i < 3; ++i) result[i] = rgb[i].get_d();
         return result;
     }
-    for (const Component& c : format.all())
-        result[c.channel] = decodeNumber(c, extractBits(texel, c.offset, c.bits));
+    for (const Component& c : format.all()) result[c.channel] = decodeNumber(c, extractBits(texel, c.offset, c.bits));
     return result;
 }
 

@@ -26,8 +26,7 @@ SampleQuery queryOf(const reference::ImageRequest<double>& r) {
 
 }  // namespace
 
-ShaderResources::ShaderResources(const Scene& scene, const std::vector<ImageStore>& images,
-                                 const SceneDraw& draw)
+ShaderResources::ShaderResources(const Scene& scene, const std::vector<ImageStore>& images, const SceneDraw& draw)
     : scene_(scene), images_(images), draw_(draw), pushConstants_(draw.pushConstants) {
     for (const SceneBinding& binding : draw.bindings) {
         Bytes bytes;
@@ -56,12 +55,10 @@ const ImageStore* ShaderResources::imageOf(const reference::Descriptor& descript
 
 const SceneSampler* ShaderResources::samplerOf(const reference::Descriptor& descriptor) const {
     const SceneBinding* binding = find(descriptor);
-    return binding && binding->sampler < scene_.samplers.size() ? &scene_.samplers[binding->sampler]
-                                                                : nullptr;
+    return binding && binding->sampler < scene_.samplers.size() ? &scene_.samplers[binding->sampler] : nullptr;
 }
 
-std::span<std::byte> ShaderResources::buffer(reference::BufferKind kind,
-                                             const reference::Descriptor& descriptor) {
+std::span<std::byte> ShaderResources::buffer(reference::BufferKind kind, const reference::Descriptor& descriptor) {
     if (kind == reference::BufferKind::pushConstants) return pushConstants_;
     if (kind == reference::BufferKind::storage) wrote = true;
     const SceneBinding* binding = find(descriptor);
@@ -69,18 +66,16 @@ std::span<std::byte> ShaderResources::buffer(reference::BufferKind kind,
     return buffers_[static_cast<size_t>(binding - draw_.bindings.data())];
 }
 
-reference::Texel<double> ShaderResources::deliver(const SampleResult& result,
-                                                  const reference::ImageShape& shape) {
+reference::Texel<double> ShaderResources::deliver(const SampleResult& result, const reference::ImageShape& shape) {
     flags |= result.flags;
     reference::Texel<double> texel;
     for (size_t c = 0; c < 4; ++c) {
         const Interval& v = result.color[c];
         sawRange = sawRange || !v.isExact();
         const double number = end == RangeEnd::nominal ? v.value : end == RangeEnd::low ? v.low : v.high;
-        texel[c] =
-            shape.floating
-                ? reference::Scalar<double>::ofNumber(number)
-                : reference::Scalar<double>::ofBits(static_cast<uint32_t>(static_cast<int64_t>(number)));
+        texel[c] = shape.floating
+                       ? reference::Scalar<double>::ofNumber(number)
+                       : reference::Scalar<double>::ofBits(static_cast<uint32_t>(static_cast<int64_t>(number)));
     }
     return texel;
 }
@@ -114,8 +109,8 @@ reference::Texel<double> ShaderResources::fetch(const reference::ImageRequest<do
     const bool oneDimensional = request.shape.dim == spv::Dim1D;
     const int64_t y = oneDimensional ? 0 : int64_t{request.texel[1]} + request.offset[1];
     const int64_t layer = request.shape.arrayed ? request.texel[oneDimensional ? 1 : 2] : 0;
-    return deliver(fetchImage(*image, int64_t{request.texel[0]} + request.offset[0], y, layer,
-                              request.texelLod, static_cast<uint32_t>(request.sample)),
+    return deliver(fetchImage(*image, int64_t{request.texel[0]} + request.offset[0], y, layer, request.texelLod,
+                              static_cast<uint32_t>(request.sample)),
                    request.shape);
 }
 
@@ -144,12 +139,10 @@ std::array<double, 2> ShaderResources::queryLod(const reference::ImageRequest<do
     query.minLod = -VK_LOD_CLAMP_NONE;
     const Interval lambda = levelOfDetail(query, unclamped, image->level(0, 0).extent);
     sawRange = sawRange || !lambda.isExact();
-    const double at = end == RangeEnd::nominal ? lambda.value
-                      : end == RangeEnd::low   ? lambda.low
-                                               : lambda.high;
+    const double at = end == RangeEnd::nominal ? lambda.value : end == RangeEnd::low ? lambda.low : lambda.high;
     const double last = image->mipLevels() - 1;
-    const double clamped = std::clamp(
-        std::clamp<double>(at, sampler->minLod, std::max(sampler->minLod, sampler->maxLod)), 0.0, last);
+    const double clamped =
+        std::clamp(std::clamp<double>(at, sampler->minLod, std::max(sampler->minLod, sampler->maxLod)), 0.0, last);
     const bool nearest = sampler->mipmapMode == VK_SAMPLER_MIPMAP_MODE_NEAREST;
     return {nearest ? std::clamp(std::ceil(clamped + 0.5) - 1, 0.0, last) : clamped, at};
 }

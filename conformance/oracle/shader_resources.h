@@ -20,20 +20,17 @@ class ShaderResources : public reference::Resources<double> {
     ShaderResources(const Scene& scene, const std::vector<ImageStore>& images, const SceneDraw& draw);
 
     RangeEnd end = RangeEnd::nominal;
-    bool sawRange =
-        false;           // a texture read had more than one permitted value; sticky until reset by the caller
-    uint8_t flags = 0;   // of OracleFlag, from the texels read; sticky
-    bool wrote = false;  // a storage buffer or image was asked for; sticky
+    bool sawRange = false;  // a texture read had more than one permitted value; sticky until reset by the caller
+    uint8_t flags = 0;      // of OracleFlag, from the texels read; sticky
+    bool wrote = false;     // a storage buffer or image was asked for; sticky
 
     std::span<std::byte> buffer(reference::BufferKind kind, const reference::Descriptor& descriptor) override;
     reference::Texel<double> sample(const reference::ImageRequest<double>& request) override;
     reference::Texel<double> gather(const reference::ImageRequest<double>& request) override;
     reference::Texel<double> fetch(const reference::ImageRequest<double>& request) override;
-    void write(const reference::ImageRequest<double>&, const reference::Texel<double>&) override {
-        wrote = true;
-    }
-    std::array<int32_t, 4> querySize(const reference::Descriptor& descriptor,
-                                     const reference::ImageShape& shape, int32_t lod) override;
+    void write(const reference::ImageRequest<double>&, const reference::Texel<double>&) override { wrote = true; }
+    std::array<int32_t, 4> querySize(const reference::Descriptor& descriptor, const reference::ImageShape& shape,
+                                     int32_t lod) override;
     int32_t queryLevels(const reference::Descriptor& descriptor, const reference::ImageShape&) override;
     std::array<double, 2> queryLod(const reference::ImageRequest<double>& request) override;
 

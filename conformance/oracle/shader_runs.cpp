@@ -94,8 +94,8 @@ ShaderRuns withKeptOutputs(const ShaderRuns& runs, size_t lane) {
 }
 
 template <class Read>
-std::optional<Interval> rangeOf(const ShaderRuns& runs, size_t lane, const InterfaceVariable& v,
-                                double imprecision, Read read) {
+std::optional<Interval> rangeOf(const ShaderRuns& runs, size_t lane, const InterfaceVariable& v, double imprecision,
+                                Read read) {
     const auto spread = spreadOf(runs, lane, read);
     if (!spread) return std::nullopt;
     const Interval bare = spread->range(0);
@@ -130,12 +130,11 @@ FragmentResult combineRuns(const ShaderRuns& runs, size_t lane, std::span<const 
     for (const InterfaceVariable& v : outputs) {
         if (v.isBuiltin) {
             if (v.builtin != spv::BuiltInFragDepth) continue;
-            result.depth =
-                rangeOf(runs, lane, v, imprecision, [](const Values& values) -> std::optional<double> {
-                    const auto found = values.builtins.find(spv::BuiltInFragDepth);
-                    if (found == values.builtins.end() || found->second.empty()) return std::nullopt;
-                    return found->second[0].number;
-                });
+            result.depth = rangeOf(runs, lane, v, imprecision, [](const Values& values) -> std::optional<double> {
+                const auto found = values.builtins.find(spv::BuiltInFragDepth);
+                if (found == values.builtins.end() || found->second.empty()) return std::nullopt;
+                return found->second[0].number;
+            });
             continue;
         }
         for (uint32_t k = 0; k < v.locations; ++k) {

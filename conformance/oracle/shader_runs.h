@@ -23,8 +23,7 @@ bool isIntegerVariable(const reference::InterfaceVariable& variable);
 
 /// One fragment's result: nominal outputs with their ranges. Components that the shader has not written are
 /// NaN. `imprecision` is the relative error of the built-in functions that the module uses.
-FragmentResult combineRuns(const ShaderRuns& runs, size_t lane,
-                           std::span<const reference::InterfaceVariable> outputs, double imprecision,
-                           size_t colorCount);
+FragmentResult combineRuns(const ShaderRuns& runs, size_t lane, std::span<const reference::InterfaceVariable> outputs,
+                           double imprecision, size_t colorCount);
 
 }  // namespace vernier::conformance::exact

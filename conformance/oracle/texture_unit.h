@@ -40,12 +40,10 @@ SampleResult gatherImage(const ImageStore& image, const SceneSampler& sampler, c
                          uint32_t channel);
 
 /// One texel without a sampler; outside the level it reads as 0.
-SampleResult fetchImage(const ImageStore& image, int64_t x, int64_t y, int64_t layer, int64_t mip,
-                        uint32_t sample);
+SampleResult fetchImage(const ImageStore& image, int64_t x, int64_t y, int64_t layer, int64_t mip, uint32_t sample);
 
 /// A texel of an axis-aligned blit: linear or nearest filter at unnormalised (u, v), edges clamped.
-SampleResult blitTexel(const ImageStore& image, uint32_t mip, uint32_t layer, double u, double v,
-                       VkFilter filter);
+SampleResult blitTexel(const ImageStore& image, uint32_t mip, uint32_t layer, double u, double v, VkFilter filter);
 
 /// Nominal level of detail with its range, before clamping to the image: -infinity without any derivative.
 Interval levelOfDetail(const SampleQuery& query, const SceneSampler& sampler, VkExtent2D extent);

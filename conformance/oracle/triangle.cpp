@@ -98,9 +98,8 @@ std::optional<Triangle> Triangle::create(const Setup& setup) {
         const auto& [a, b, c] = t.window_;
         const Point third{c[0], c[1]};
         const double area = std::abs(cross(a, b, third));
-        const double reach =
-            t.freedom_ * (distance(a, third) + distance(b, third) + distance(a, {b[0], b[1]})) +
-            6 * t.freedom_ * t.freedom_;
+        const double reach = t.freedom_ * (distance(a, third) + distance(b, third) + distance(a, {b[0], b[1]})) +
+                             6 * t.freedom_ * t.freedom_;
         t.orientationOpen_ = area <= reach;
         // Exactly coincident or exactly collinear on the grid: empty under every snapping rule that is a
         // function of the coordinates.
@@ -135,8 +134,8 @@ std::optional<Triangle> Triangle::create(const Setup& setup) {
             t.slopeX_ += t.shape_.edge[i][0] * v[i].z / determinant;
             t.slopeY_ += t.shape_.edge[i][1] * v[i].z / determinant;
         }
-        t.depthSlack_ = t.freedom_ * (std::abs(t.slopeX_) + std::abs(t.slopeY_)) +
-                        kDepthRounding * std::min(largest, 1e6);
+        t.depthSlack_ =
+            t.freedom_ * (std::abs(t.slopeX_) + std::abs(t.slopeY_)) + kDepthRounding * std::min(largest, 1e6);
     }
     return t;
 }
@@ -169,8 +168,7 @@ SampleVerdict Triangle::classifySnapped(const GridPoint& sample) const {
     for (size_t i = 0; i < 3; ++i) {
         const size_t j = (i + 1) % 3, k = (i + 2) % 3;
         const double e = side_ * cross(window_[j], window_[k], p);
-        const double support =
-            freedom_ * (distance(window_[j], p) + distance(window_[k], p)) + 2 * freedom_ * freedom_;
+        const double support = freedom_ * (distance(window_[j], p) + distance(window_[k], p)) + 2 * freedom_ * freedom_;
         if (std::abs(e) > support) {
             outside += e < 0;
             inside += e > 0;
@@ -178,8 +176,7 @@ SampleVerdict Triangle::classifySnapped(const GridPoint& sample) const {
             const GridPoint& a = side_ > 0 ? grid_[j] : grid_[k];
             const GridPoint& b = side_ > 0 ? grid_[k] : grid_[j];
             const Wide exactly = edgeFunction(a, b, sample);
-            verdict.edges[verdict.edgeCount++] =
-                openEdge(i, exactly > 0 || (exactly == 0 && isTopLeft(a, b)));
+            verdict.edges[verdict.edgeCount++] = openEdge(i, exactly > 0 || (exactly == 0 && isTopLeft(a, b)));
         }
     }
     if (orientationOpen_) {
@@ -199,13 +196,12 @@ SampleVerdict Triangle::classifyHomogeneous(const GridPoint& sample) const {
     for (size_t i = 0; i < 3; ++i) {
         const auto& [a, b, c] = shape_.edge[i];
         const double e = side_ * (a * p.x + b * p.y + c);
-        const double support = freedom_ * (std::abs(a) + std::abs(b)) +
-                               kNoise * (std::abs(a * p.x) + std::abs(b * p.y) + std::abs(c));
+        const double support =
+            freedom_ * (std::abs(a) + std::abs(b)) + kNoise * (std::abs(a * p.x) + std::abs(b * p.y) + std::abs(c));
         if (e < -support) return verdict;
         if (e > support) continue;
         const double dx = side_ * a, dy = side_ * b;
-        verdict.edges[verdict.edgeCount++] =
-            openEdge(i, e > 0 || (e == 0 && (dx > 0 || (dx == 0 && dy > 0))));
+        verdict.edges[verdict.edgeCount++] = openEdge(i, e > 0 || (e == 0 && (dx > 0 || (dx == 0 && dy > 0))));
     }
     verdict.possible = true;
     return verdict;

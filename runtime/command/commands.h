@@ -1,5 +1,6 @@
-// The commands as plain structs. A command names objects by pointer; whoever records keeps them alive until the commands
-// have run (Vulkan's own rule; the mini API holds references for its user). Spans point into the command buffer's arena.
+// The commands as plain structs. A command names objects by pointer; whoever records keeps them alive until the
+// commands have run (Vulkan's own rule; the mini API holds references for its user). Spans point into the command
+// buffer's arena.
 #pragma once
 
 #include <vulkan/vulkan_core.h>

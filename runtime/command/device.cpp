@@ -92,7 +92,9 @@ void Queue::waitIdle() {
     impl_->completed.wait(target);
 }
 
-bool Queue::lost() const { return impl_->lost; }
+bool Queue::lost() const {
+    return impl_->lost;
+}
 
 Device::Device(const DeviceDesc& desc)
     : desc_(desc),

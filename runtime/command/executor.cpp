@@ -72,8 +72,10 @@ bool Executor::run(const CommandBuffer& commands) {
 void Executor::runAll(const CommandBuffer& commands) {
     for (const CommandHeader* header = commands.first(); header; header = header->next) {
         switch (header->type) {
-#define VERNIER_COMMAND(name) \
-    case CommandType::name: run(*static_cast<const command::name*>(header->payload)); break;
+#define VERNIER_COMMAND(name)                                     \
+    case CommandType::name:                                       \
+        run(*static_cast<const command::name*>(header->payload)); \
+        break;
 #include "runtime/command/commands.def"
 #undef VERNIER_COMMAND
         }
@@ -150,9 +152,10 @@ void Executor::run(const command::SetDepthBounds& command) {
 
 void Executor::run(const command::SetStencil& command) {
     using Field = command::SetStencil::Field;
-    uint32_t DynamicState::StencilFace::*field = command.field == Field::compareMask ? &DynamicState::StencilFace::compareMask
-                                                 : command.field == Field::writeMask ? &DynamicState::StencilFace::writeMask
-                                                                                     : &DynamicState::StencilFace::reference;
+    uint32_t DynamicState::StencilFace::*field =
+        command.field == Field::compareMask ? &DynamicState::StencilFace::compareMask
+        : command.field == Field::writeMask ? &DynamicState::StencilFace::writeMask
+                                            : &DynamicState::StencilFace::reference;
     if (command.faces & VK_STENCIL_FACE_FRONT_BIT) dynamic_.stencilFront.*field = command.value;
     if (command.faces & VK_STENCIL_FACE_BACK_BIT) dynamic_.stencilBack.*field = command.value;
     dynamicSnapshot_ = nullptr;
@@ -188,7 +191,9 @@ void Executor::draw(const command::Draw& command, uint32_t drawIndex) {
     pass_.draw(call);
 }
 
-void Executor::run(const command::Draw& command) { draw(command, 0); }
+void Executor::run(const command::Draw& command) {
+    draw(command, 0);
+}
 
 void Executor::run(const command::DrawIndirect& command) {
     uint32_t count = command.drawCount;
@@ -221,6 +226,8 @@ void Executor::run(const command::SetEvent& command) {
     command.event->notify_all();
 }
 
-void Executor::run(const command::WaitEvent& command) { command.event->wait(false, std::memory_order_acquire); }
+void Executor::run(const command::WaitEvent& command) {
+    command.event->wait(false, std::memory_order_acquire);
+}
 
 }  // namespace vernier

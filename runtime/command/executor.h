@@ -18,7 +18,8 @@ class Executor {
     explicit Executor(Device& device);
     ~Executor();
 
-    /// State set by commands (pipeline, descriptors, dynamic state) starts anew. False: a shader ran out of its loop budget.
+    /// State set by commands (pipeline, descriptors, dynamic state) starts anew. False: a shader ran out of its loop
+    /// budget.
     bool run(const CommandBuffer& commands);
 
   private:

@@ -101,10 +101,10 @@ void Executor::run(const command::ClearAttachments& command) {
 }
 
 /// The transfer commands: one call per region.
-#define VERNIER_PER_REGION(Name, items, call)                            \
-    void Executor::run(const command::Name& command) {                   \
-        const TransferContext context{device_.pool(), device_.isa()};    \
-        for (const auto& item : command.items) call;                     \
+#define VERNIER_PER_REGION(Name, items, call)                         \
+    void Executor::run(const command::Name& command) {                \
+        const TransferContext context{device_.pool(), device_.isa()}; \
+        for (const auto& item : command.items) call;                  \
     }
 VERNIER_PER_REGION(CopyBuffer, regions, copyBuffer(context, *command.source, *command.destination, item))
 VERNIER_PER_REGION(CopyImage, regions, copyImage(context, *command.source, *command.destination, item))
@@ -120,9 +120,13 @@ void Executor::run(const command::FillBuffer& command) {
     fillBuffer({device_.pool(), device_.isa()}, *command.buffer, command.offset, command.size, command.value);
 }
 
-void Executor::run(const command::UpdateBuffer& command) { updateBuffer(*command.buffer, command.offset, command.bytes); }
+void Executor::run(const command::UpdateBuffer& command) {
+    updateBuffer(*command.buffer, command.offset, command.bytes);
+}
 
-PassStatistics Executor::totals() const { return inPass_ ? add(finished_, pass_.statistics()) : finished_; }
+PassStatistics Executor::totals() const {
+    return inPass_ ? add(finished_, pass_.statistics()) : finished_;
+}
 
 void Executor::run(const command::BeginQuery& command) {
     if (inPass_) pass_.flush();
@@ -144,7 +148,9 @@ void Executor::run(const command::WriteTimestamp& command) {
     command.pool->writeTimestamp(command.query, nowNanoseconds());
 }
 
-void Executor::run(const command::ResetQueries& command) { command.pool->reset(command.first, command.count); }
+void Executor::run(const command::ResetQueries& command) {
+    command.pool->reset(command.first, command.count);
+}
 
 void Executor::run(const command::CopyQueryResults& command) {
     const Buffer& buffer = *command.buffer;

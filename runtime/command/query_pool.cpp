@@ -9,13 +9,20 @@ namespace {
 /// The value of one bit of VkQueryPipelineStatisticFlags.
 uint64_t statisticOf(VkQueryPipelineStatisticFlags bit, const PassStatistics& s) {
     switch (bit) {
-        case VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_VERTICES_BIT: return s.inputVertices;
-        case VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_PRIMITIVES_BIT: return s.inputPrimitives;
-        case VK_QUERY_PIPELINE_STATISTIC_VERTEX_SHADER_INVOCATIONS_BIT: return s.vertexInvocations;
-        case VK_QUERY_PIPELINE_STATISTIC_CLIPPING_INVOCATIONS_BIT: return s.clippingInvocations;
-        case VK_QUERY_PIPELINE_STATISTIC_CLIPPING_PRIMITIVES_BIT: return s.rasterPrimitives;
-        case VK_QUERY_PIPELINE_STATISTIC_FRAGMENT_SHADER_INVOCATIONS_BIT: return s.fragmentInvocations;
-        default: return 0;  // stages that do not exist run no invocations
+        case VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_VERTICES_BIT:
+            return s.inputVertices;
+        case VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_PRIMITIVES_BIT:
+            return s.inputPrimitives;
+        case VK_QUERY_PIPELINE_STATISTIC_VERTEX_SHADER_INVOCATIONS_BIT:
+            return s.vertexInvocations;
+        case VK_QUERY_PIPELINE_STATISTIC_CLIPPING_INVOCATIONS_BIT:
+            return s.clippingInvocations;
+        case VK_QUERY_PIPELINE_STATISTIC_CLIPPING_PRIMITIVES_BIT:
+            return s.rasterPrimitives;
+        case VK_QUERY_PIPELINE_STATISTIC_FRAGMENT_SHADER_INVOCATIONS_BIT:
+            return s.fragmentInvocations;
+        default:
+            return 0;  // stages that do not exist run no invocations
     }
 }
 

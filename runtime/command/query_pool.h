@@ -24,8 +24,8 @@ class QueryPool {
     void write(uint32_t query, const PassStatistics& difference);
     void writeTimestamp(uint32_t query, uint64_t nanoseconds);
 
-    /// vkGetQueryPoolResults into `data`. VK_NOT_READY when something is missing and no wait was asked for; a wait is for
-    /// the caller to do.
+    /// vkGetQueryPoolResults into `data`. VK_NOT_READY when something is missing and no wait was asked for; a wait is
+    /// for the caller to do.
     VkResult results(uint32_t first, uint32_t count, std::byte* data, size_t size, VkDeviceSize stride,
                      VkQueryResultFlags flags) const;
 

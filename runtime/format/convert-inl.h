@@ -90,8 +90,8 @@ HWY_INLINE VU encodeUnormV(VF x, int bits) {
     // 24 bits. Products of 2^23 and above are rounded to integers by the multiplication itself, smaller ones
     // by adding 2^23.
     const VF magic = splatFloat(0x1p23f);
-    const VI small = hn::Sub(hn::BitCast(I32(), fusedMulAdd(F32(), clamped, splatFloat(max), magic)),
-                             hn::BitCast(I32(), magic));
+    const VI small =
+        hn::Sub(hn::BitCast(I32(), fusedMulAdd(F32(), clamped, splatFloat(max), magic)), hn::BitCast(I32(), magic));
     const VI large = hn::ConvertTo(I32(), hn::Mul(clamped, splatFloat(max)));
     const auto isLarge = hn::RebindMask(I32(), hn::Gt(clamped, splatFloat(0.5f)));
     return hn::BitCast(U32(), hn::IfThenElse(isLarge, large, small));
@@ -105,8 +105,7 @@ HWY_INLINE VF decodeSnormV(VU code, int bits) {
 
 HWY_INLINE VU encodeSnormV(VF x, int bits) {
     const VF clamped = clampOrLowV(zeroIfNaN(x), splatFloat(-1.0f), splatFloat(1.0f));
-    return hn::BitCast(U32(),
-                       roundProduct(clamped, static_cast<float>(lowBits(static_cast<uint32_t>(bits - 1)))));
+    return hn::BitCast(U32(), roundProduct(clamped, static_cast<float>(lowBits(static_cast<uint32_t>(bits - 1)))));
 }
 
 /// Floats with 5 exponent bits over kMantissa bits, no sign.
@@ -127,14 +126,12 @@ HWY_INLINE VU encodeSmallFloatV(VU bits) {  // of a positive float
     const I32 di;
     const VI ordered = hn::BitCast(di, bits);
     constexpr uint32_t kMagic = (127u + 9u - kMantissa) << 23;
-    const VU denormal =
-        hn::Sub(bitsOf(hn::Add(floatOf(bits), floatOf(splatBits(kMagic)))), splatBits(kMagic));
+    const VU denormal = hn::Sub(bitsOf(hn::Add(floatOf(bits), floatOf(splatBits(kMagic)))), splatBits(kMagic));
     const VU odd = hn::And(hn::ShiftRight<kShift>(bits), splatBits(1));
     const VU biased = hn::Add(hn::Sub(bits, splatBits((112u << 23) - lowBits(kShift - 1))), odd);
     const VU rounded =
         hn::Min(hn::ShiftRight<kShift>(biased), splatBits(kOverflowToInfinity ? kInfinity : kInfinity - 1));
-    VU result =
-        hn::IfThenElse(hn::RebindMask(U32(), hn::Lt(ordered, hn::Set(di, 113 << 23))), denormal, rounded);
+    VU result = hn::IfThenElse(hn::RebindMask(U32(), hn::Lt(ordered, hn::Set(di, 113 << 23))), denormal, rounded);
     const VU fraction = hn::And(hn::ShiftRight<kShift>(bits), splatBits(lowBits(kMantissa)));
     const VU nan = hn::Or(fraction, splatBits(kInfinity | 1u << (kMantissa - 1)));
     result = hn::IfThenElse(hn::RebindMask(U32(), hn::Gt(ordered, hn::Set(di, 0x7f800000))), nan, result);
@@ -185,8 +182,7 @@ HWY_INLINE VU decodeV(VU code, int bits) {
     if constexpr (kKind == ComponentKind::unorm) return bitsOf(decodeUnormV(code, bits));
     if constexpr (kKind == ComponentKind::snorm) return bitsOf(decodeSnormV(code, bits));
     if constexpr (kKind == ComponentKind::uscaled) return bitsOf(toFloatV(code));
-    if constexpr (kKind == ComponentKind::sscaled)
-        return bitsOf(hn::ConvertTo(F32(), signExtendV(code, bits)));
+    if constexpr (kKind == ComponentKind::sscaled) return bitsOf(hn::ConvertTo(F32(), signExtendV(code, bits)));
     if constexpr (kKind == ComponentKind::uint) return code;
     if constexpr (kKind == ComponentKind::sint) return hn::BitCast(U32(), signExtendV(code, bits));
     if constexpr (kKind == ComponentKind::ufloat) return bitsOf(decodeUfloatV(code, bits));
@@ -212,8 +208,7 @@ HWY_INLINE VU encodeV(VU value, int bits) {
     if constexpr (kKind == ComponentKind::uint) return hn::Min(value, splatBits(max));
     if constexpr (kKind == ComponentKind::sint) {
         const auto high = static_cast<int32_t>(max >> 1);
-        const VI clamped =
-            hn::Min(hn::Max(hn::BitCast(I32(), value), hn::Set(I32(), -high - 1)), hn::Set(I32(), high));
+        const VI clamped = hn::Min(hn::Max(hn::BitCast(I32(), value), hn::Set(I32(), -high - 1)), hn::Set(I32(), high));
         return hn::BitCast(U32(), clamped);
     }
     if constexpr (kKind == ComponentKind::ufloat) return encodeUfloatV(floatOf(value), bits);

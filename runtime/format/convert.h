@@ -65,8 +65,7 @@ inline uint32_t encodeUscaled(float x, uint32_t bits) {
 inline uint32_t encodeSscaled(float x, uint32_t bits) {
     if (x != x) return 0;
     const auto high = static_cast<float>(lowBits(bits - 1));
-    return static_cast<uint32_t>(static_cast<int32_t>(roundToEven(clampOrLow(x, -high - 1, high)))) &
-           lowBits(bits);
+    return static_cast<uint32_t>(static_cast<int32_t>(roundToEven(clampOrLow(x, -high - 1, high)))) & lowBits(bits);
 }
 
 // Small floats: 5 bits of exponent (bias 15) over `mantissa` bits; 10 with a sign for half, 6 and 5 without.

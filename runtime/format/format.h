@@ -73,9 +73,7 @@ struct FormatInfo {
 
     /// `aspect` is one bit of `aspects`.
     const TexelLayout& layout(VkImageAspectFlags aspect) const {
-        return aspect == VK_IMAGE_ASPECT_STENCIL_BIT ? stencil
-               : aspect == VK_IMAGE_ASPECT_DEPTH_BIT ? depth
-                                                     : color;
+        return aspect == VK_IMAGE_ASPECT_STENCIL_BIT ? stencil : aspect == VK_IMAGE_ASPECT_DEPTH_BIT ? depth : color;
     }
 };
 
@@ -119,14 +117,10 @@ struct FormatOps {
     PackFn packFn = nullptr;
 
     /// planes[c] receives n floats, uint32s or int32s (layout.type); a null plane is skipped.
-    void unpack(const void* texels, size_t n, void* const planes[4]) const {
-        unpackFn(layout, texels, n, planes);
-    }
+    void unpack(const void* texels, size_t n, void* const planes[4]) const { unpackFn(layout, texels, n, planes); }
     /// Planes of components that the format lacks may be null and are not read. A layout with keepOtherBits
     /// reads and rewrites the texels' other bits.
-    void pack(const void* const planes[4], size_t n, void* texels) const {
-        packFn(layout, planes, n, texels);
-    }
+    void pack(const void* const planes[4], size_t n, void* texels) const { packFn(layout, planes, n, texels); }
     /// As unpack, from one pointer per texel: vertices with a stride, texels of a footprint.
     void unpackEach(const std::byte* const* texels, size_t n, void* const planes[4]) const;
     /// Depth or stencil of n texels: the R plane alone.
@@ -150,8 +144,7 @@ FormatOps formatOps(VkFormat format, Isa isa);
 /// Bytes per texel in a buffer that receives one aspect: colour as in the image, D16 2, D24 4 (depth in the
 /// low 24 bits, the rest zero), D32 4, stencil 1.
 uint32_t bufferTexelBytes(const FormatInfo& info, VkImageAspectFlags aspect);
-void copyTexelsToBuffer(const FormatInfo& info, VkImageAspectFlags aspect, const void* texels, size_t n,
-                        void* buffer);
+void copyTexelsToBuffer(const FormatInfo& info, VkImageAspectFlags aspect, const void* texels, size_t n, void* buffer);
 /// Leaves the other aspect of the texels alone.
 void copyTexelsFromBuffer(const FormatInfo& info, VkImageAspectFlags aspect, const void* buffer, size_t n,
                           void* texels);

@@ -48,11 +48,9 @@ struct Uses {
     VkFormatFeatureFlags image, buffer;
 };
 
-constexpr VkFormatFeatureFlags kReadable =
-    VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_BLIT_SRC_BIT |
-    VK_FORMAT_FEATURE_TRANSFER_SRC_BIT | VK_FORMAT_FEATURE_TRANSFER_DST_BIT;
-constexpr VkFormatFeatureFlags kTarget =
-    VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT | VK_FORMAT_FEATURE_BLIT_DST_BIT;
+constexpr VkFormatFeatureFlags kReadable = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_BLIT_SRC_BIT |
+                                           VK_FORMAT_FEATURE_TRANSFER_SRC_BIT | VK_FORMAT_FEATURE_TRANSFER_DST_BIT;
+constexpr VkFormatFeatureFlags kTarget = VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT | VK_FORMAT_FEATURE_BLIT_DST_BIT;
 constexpr VkFormatFeatureFlags kFiltered = VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
 constexpr VkFormatFeatureFlags kBlend = VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT;
 constexpr VkFormatFeatureFlags kStorage = VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
@@ -78,8 +76,7 @@ constexpr ValueType valueType(ComponentKind kind) {
     return kind == uint ? ValueType::uint : kind == sint ? ValueType::sint : ValueType::floating;
 }
 
-constexpr FormatInfo colorFormat(VkFormat format, const char* name, const Shape& shape, ComponentKind kind,
-                                 Uses uses) {
+constexpr FormatInfo colorFormat(VkFormat format, const char* name, const Shape& shape, ComponentKind kind, Uses uses) {
     FormatInfo info{};
     info.format = format;
     info.name = name;
@@ -127,9 +124,9 @@ constexpr FormatInfo depthStencilFormat(VkFormat format, const char* name, uint8
 #define SCALED(NAME, SHAPE, SUFFIX)                             \
     COLOR(NAME##_USCALED##SUFFIX, SHAPE, uscaled, kVertexOnly), \
         COLOR(NAME##_SSCALED##SUFFIX, SHAPE, sscaled, kVertexOnly)
-#define NORM(NAME, SHAPE, SUFFIX, UNORM_USES, SNORM_USES)  \
-    COLOR(NAME##_UNORM##SUFFIX, SHAPE, unorm, UNORM_USES), \
-        COLOR(NAME##_SNORM##SUFFIX, SHAPE, snorm, SNORM_USES), SCALED(NAME, SHAPE, SUFFIX)
+#define NORM(NAME, SHAPE, SUFFIX, UNORM_USES, SNORM_USES)                                                         \
+    COLOR(NAME##_UNORM##SUFFIX, SHAPE, unorm, UNORM_USES), COLOR(NAME##_SNORM##SUFFIX, SHAPE, snorm, SNORM_USES), \
+        SCALED(NAME, SHAPE, SUFFIX)
 #define INT(NAME, SHAPE, SUFFIX, USES) \
     COLOR(NAME##_UINT##SUFFIX, SHAPE, uint, USES), COLOR(NAME##_SINT##SUFFIX, SHAPE, sint, USES)
 constexpr Component part(uint8_t bits, uint8_t offset, ComponentKind kind) {

@@ -38,8 +38,7 @@ HWY_INLINE void loadWords(const uint8_t* texels, VU (&words)[4]) {
         words[0] = hn::PromoteTo(d, hn::LoadU(hn::Rebind<uint8_t, U32>(), texels));
     } else if constexpr (kBytes == 2) {
         const hn::Rebind<uint16_t, U32> d16;
-        words[0] =
-            hn::PromoteTo(d, hn::BitCast(d16, hn::LoadU(hn::Repartition<uint8_t, decltype(d16)>(), texels)));
+        words[0] = hn::PromoteTo(d, hn::BitCast(d16, hn::LoadU(hn::Repartition<uint8_t, decltype(d16)>(), texels)));
     } else {
         const auto* const source = reinterpret_cast<const uint32_t*>(texels);
         if constexpr (kBytes == 4) words[0] = hn::LoadU(d, source);
@@ -75,13 +74,11 @@ HWY_INLINE void storeWords(const VU (&words)[4], uint8_t* texels) {
 
 /// sRGB formats keep A linear.
 template <ComponentKind kKind, int kComponent>
-inline constexpr ComponentKind kKindOf =
-    kKind == ComponentKind::srgb&& kComponent == 3 ? ComponentKind::unorm : kKind;
+inline constexpr ComponentKind kKindOf = kKind == ComponentKind::srgb&& kComponent == 3 ? ComponentKind::unorm : kKind;
 
 /// One vector of texels. `offset` counts values in the planes.
 template <ComponentKind kKind, int kBytes, bool kShared>
-HWY_INLINE void unpackVector(const TexelLayout& layout, const uint8_t* texels, void* const planes[4],
-                             size_t offset) {
+HWY_INLINE void unpackVector(const TexelLayout& layout, const uint8_t* texels, void* const planes[4], size_t offset) {
     VU words[4];
     loadWords<kBytes>(texels, words);
     const auto component = [&]<int kC>(std::integral_constant<int, kC>) {
@@ -89,9 +86,9 @@ HWY_INLINE void unpackVector(const TexelLayout& layout, const uint8_t* texels, v
         const Component& part = layout.rgba[kC];
         VU value = hn::Zero(U32());
         if (part.bits != 0) {
-            const VU code = hn::And(
-                hn::ShiftRightSame(words[part.offset / 32 % Memory<kBytes>::kWords], part.offset % 32),
-                splatBits(lowBits(part.bits)));
+            const VU code =
+                hn::And(hn::ShiftRightSame(words[part.offset / 32 % Memory<kBytes>::kWords], part.offset % 32),
+                        splatBits(lowBits(part.bits)));
             if constexpr (kShared) {
                 // fraction * 2^(exponent - 24), both factors exact.
                 const VU exponent = hn::Add(hn::ShiftRight<27>(words[0]), splatBits(127 - 24));
@@ -125,14 +122,12 @@ void unpackRow(const TexelLayout& layout, const void* texels, size_t n, void* co
     unpackVector<kKind, kBytes, kShared>(layout, rest, valuePlanes, 0);
     for (int c = 0; c < 4; ++c) {
         if (planes[c] == nullptr) continue;
-        std::memcpy(static_cast<uint8_t*>(planes[c]) + i * sizeof(uint32_t), values[c],
-                    (n - i) * sizeof(uint32_t));
+        std::memcpy(static_cast<uint8_t*>(planes[c]) + i * sizeof(uint32_t), values[c], (n - i) * sizeof(uint32_t));
     }
 }
 
 template <ComponentKind kKind, int kBytes>
-HWY_INLINE void packVector(const TexelLayout& layout, const void* const planes[4], size_t offset,
-                           uint8_t* texels) {
+HWY_INLINE void packVector(const TexelLayout& layout, const void* const planes[4], size_t offset, uint8_t* texels) {
     VU words[4] = {hn::Zero(U32()), hn::Zero(U32()), hn::Zero(U32()), hn::Zero(U32())};
     if (layout.keepOtherBits) {
         loadWords<kBytes>(texels, words);

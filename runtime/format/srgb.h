@@ -19,8 +19,7 @@ extern const std::array<float, 256> kSrgbToLinear;
 /// bucket.
 inline constexpr uint32_t kSrgbFirstBits = 114u << 23;  // 2^-13, below the first threshold
 inline constexpr uint32_t kSrgbFirstBucket = kSrgbFirstBits >> 16;
-inline constexpr std::size_t kSrgbBuckets =
-    (0x3f800000u >> 16) - kSrgbFirstBucket + 1;  // the last is that of 1.0
+inline constexpr std::size_t kSrgbBuckets = (0x3f800000u >> 16) - kSrgbFirstBucket + 1;  // the last is that of 1.0
 extern const std::array<uint32_t, kSrgbBuckets> kSrgbFromLinear;
 
 /// Clamps to [0, 1]; NaN gives 0.

@@ -99,13 +99,11 @@ uint32_t encodeSharedExponent(const float (&rgb)[4]) {
     float clamped[3];
     for (int c = 0; c < 3; ++c) clamped[c] = clampOrLow(rgb[c], 0.0f, kSharedMax);
     const float largest = std::max({clamped[0], clamped[1], clamped[2]});
-    const int log2Floor =
-        static_cast<int>(std::bit_cast<uint32_t>(largest) >> 23) - 127;  // denormals end far below
+    const int log2Floor = static_cast<int>(std::bit_cast<uint32_t>(largest) >> 23) - 127;  // denormals end far below
     int exponent = std::max(-kSharedBias - 1, log2Floor) + 1 + kSharedBias;
     // floor(x / 2^(exponent - B - N) + 0.5), exact in double; the cast truncates.
     const auto scaled = [&](float x) {
-        return static_cast<uint32_t>(double{x} * double{exp2i(kSharedBias + kSharedMantissa - exponent)} +
-                                     0.5);
+        return static_cast<uint32_t>(double{x} * double{exp2i(kSharedBias + kSharedMantissa - exponent)} + 0.5);
     };
     if (scaled(largest) == 1u << kSharedMantissa) ++exponent;
     return scaled(clamped[0]) | scaled(clamped[1]) << 9 | scaled(clamped[2]) << 18 |
@@ -213,8 +211,7 @@ void FormatOps::unpackEach(const std::byte* const* texels, size_t n, void* const
         }
         void* part[4];
         for (int c = 0; c < 4; ++c) {
-            part[c] = planes[c] == nullptr ? nullptr
-                                           : static_cast<std::byte*>(planes[c]) + first * sizeof(uint32_t);
+            part[c] = planes[c] == nullptr ? nullptr : static_cast<std::byte*>(planes[c]) + first * sizeof(uint32_t);
         }
         unpack(packed, count, part);
     }
@@ -226,8 +223,7 @@ uint32_t bufferTexelBytes(const FormatInfo& info, VkImageAspectFlags aspect) {
     return info.bytesPerTexel;
 }
 
-void copyTexelsToBuffer(const FormatInfo& info, VkImageAspectFlags aspect, const void* texels, size_t n,
-                        void* buffer) {
+void copyTexelsToBuffer(const FormatInfo& info, VkImageAspectFlags aspect, const void* texels, size_t n, void* buffer) {
     const TexelLayout& layout = info.layout(aspect);
     const uint32_t bufferBytes = bufferTexelBytes(info, aspect);
     const bool partOfTexel = layout.keepOtherBits || info.format == VK_FORMAT_X8_D24_UNORM_PACK32;
@@ -236,8 +232,8 @@ void copyTexelsToBuffer(const FormatInfo& info, VkImageAspectFlags aspect, const
         return;
     }
     for (size_t i = 0; i < n; ++i) {
-        const uint32_t code = extract(
-            loadWords(layout, static_cast<const std::byte*>(texels) + i * layout.bytes), layout.rgba[0]);
+        const uint32_t code =
+            extract(loadWords(layout, static_cast<const std::byte*>(texels) + i * layout.bytes), layout.rgba[0]);
         std::memcpy(static_cast<std::byte*>(buffer) + i * bufferBytes, &code, bufferBytes);
     }
 }

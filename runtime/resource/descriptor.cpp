@@ -9,7 +9,9 @@ bool isDynamic(VkDescriptorType type) {
     return type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC || type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC;
 }
 
-uint32_t clampSize(VkDeviceSize size) { return static_cast<uint32_t>(std::min<VkDeviceSize>(size, UINT32_MAX)); }
+uint32_t clampSize(VkDeviceSize size) {
+    return static_cast<uint32_t>(std::min<VkDeviceSize>(size, UINT32_MAX));
+}
 
 enum class Table : uint8_t { buffers, images, samplers };
 
@@ -17,9 +19,12 @@ Table tableOf(ir::ResourceKind kind) {
     switch (kind) {
         case ir::ResourceKind::uniformBuffer:
         case ir::ResourceKind::storageBuffer:
-        case ir::ResourceKind::pushConstants: return Table::buffers;
-        case ir::ResourceKind::sampler: return Table::samplers;
-        default: return Table::images;
+        case ir::ResourceKind::pushConstants:
+            return Table::buffers;
+        case ir::ResourceKind::sampler:
+            return Table::samplers;
+        default:
+            return Table::images;
     }
 }
 
@@ -122,9 +127,15 @@ ResourceBindings resolveBindings(const ir::Program& program, const BoundDescript
         const Found found = find(resource, bound);
         for (uint32_t i = 0; i < count[r]; ++i) {
             switch (tableOf(resource.kind)) {
-                case Table::buffers: buffers[base[r] + i] = bufferOf(found, i); break;
-                case Table::images: images[base[r] + i] = bindingOf(found.slots[i].texture); break;
-                case Table::samplers: samplers[base[r] + i] = found.slots[i].sampler; break;
+                case Table::buffers:
+                    buffers[base[r] + i] = bufferOf(found, i);
+                    break;
+                case Table::images:
+                    images[base[r] + i] = bindingOf(found.slots[i].texture);
+                    break;
+                case Table::samplers:
+                    samplers[base[r] + i] = found.slots[i].sampler;
+                    break;
             }
         }
     }

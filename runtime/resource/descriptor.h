@@ -20,8 +20,8 @@ struct DescriptorBinding {
     uint32_t binding = 0;
     VkDescriptorType type = VK_DESCRIPTOR_TYPE_SAMPLER;
     uint32_t count = 0;
-    uint32_t firstSlot = 0;      // into DescriptorSet::slots
-    uint32_t firstDynamic = 0;   // into the dynamic offsets of the set, for *_DYNAMIC types
+    uint32_t firstSlot = 0;                              // into DescriptorSet::slots
+    uint32_t firstDynamic = 0;                           // into the dynamic offsets of the set, for *_DYNAMIC types
     std::vector<const SamplerState*> immutableSamplers;  // empty or `count`
 };
 
@@ -36,10 +36,10 @@ struct DescriptorSetLayout {
 
 /// One descriptor; plain data, copied freely. Which fields count follows from the type of its binding.
 struct Descriptor {
-    BufferBinding buffer;             // uniform and storage buffers
-    VkDeviceSize bufferBytesLeft = 0; // from buffer.data to the end of the buffer, for dynamic offsets
+    BufferBinding buffer;              // uniform and storage buffers
+    VkDeviceSize bufferBytesLeft = 0;  // from buffer.data to the end of the buffer, for dynamic offsets
     const SamplerState* sampler = nullptr;
-    TextureUnit texture;              // images, combined image samplers, texel buffers
+    TextureUnit texture;  // images, combined image samplers, texel buffers
 };
 
 class DescriptorSet {
@@ -52,8 +52,8 @@ class DescriptorSet {
 
     /// `buffer` nullptr: an empty binding. `range` may be VK_WHOLE_SIZE.
     void writeBuffer(uint32_t slot, const Buffer* buffer, VkDeviceSize offset, VkDeviceSize range);
-    /// Either may be nullptr (separate images and samplers; null descriptors). Both must outlive the descriptor. Resolves
-    /// image and sampler to their routines; fails, leaving an empty binding, if the pair cannot be sampled.
+    /// Either may be nullptr (separate images and samplers; null descriptors). Both must outlive the descriptor.
+    /// Resolves image and sampler to their routines; fails, leaving an empty binding, if the pair cannot be sampled.
     Status writeImage(uint32_t slot, const TextureView* view, const SamplerState* sampler, Isa isa);
 
   private:

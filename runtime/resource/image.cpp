@@ -14,7 +14,9 @@ constexpr VkImageUsageFlags kAttachmentUsage =
 constexpr uint32_t kRowAlignment = 16;  // bytes
 constexpr VkDeviceSize kLevelAlignment = 64;
 
-uint64_t alignUp(uint64_t value, uint64_t alignment) { return (value + alignment - 1) / alignment * alignment; }
+uint64_t alignUp(uint64_t value, uint64_t alignment) {
+    return (value + alignment - 1) / alignment * alignment;
+}
 
 Error wrong(const std::string& field, uint64_t value, const std::string& rule) {
     return invalidArgument("image: " + field + " is " + std::to_string(value) + ", " + rule);

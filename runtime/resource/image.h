@@ -29,11 +29,11 @@ struct ImageInfo {
 
 /// Where one mip level lies inside a layer of the image.
 struct LevelLayout {
-    VkDeviceSize offset = 0;      // from the start of the layer
-    VkExtent3D extent{};          // texels: max(1, size >> level)
-    uint32_t rowPitch = 0;        // bytes
-    VkDeviceSize slicePitch = 0;  // bytes from one depth slice to the next
-    VkDeviceSize samplePitch = 0; // bytes from one sample plane to the next
+    VkDeviceSize offset = 0;       // from the start of the layer
+    VkExtent3D extent{};           // texels: max(1, size >> level)
+    uint32_t rowPitch = 0;         // bytes
+    VkDeviceSize slicePitch = 0;   // bytes from one depth slice to the next
+    VkDeviceSize samplePitch = 0;  // bytes from one sample plane to the next
 };
 
 /// The rows of an attachment are padded to whole blocks of this many texels in both directions, so that the rasteriser

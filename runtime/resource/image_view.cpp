@@ -5,19 +5,24 @@
 namespace vernier {
 namespace {
 
-Error wrong(const std::string& what) { return invalidArgument("image view: " + what); }
+Error wrong(const std::string& what) {
+    return invalidArgument("image view: " + what);
+}
 
 bool typeFits(VkImageViewType view, const ImageInfo& image) {
     switch (view) {
         case VK_IMAGE_VIEW_TYPE_1D:
-        case VK_IMAGE_VIEW_TYPE_1D_ARRAY: return image.type == VK_IMAGE_TYPE_1D;
-        case VK_IMAGE_VIEW_TYPE_3D: return image.type == VK_IMAGE_TYPE_3D;
+        case VK_IMAGE_VIEW_TYPE_1D_ARRAY:
+            return image.type == VK_IMAGE_TYPE_1D;
+        case VK_IMAGE_VIEW_TYPE_3D:
+            return image.type == VK_IMAGE_TYPE_3D;
         case VK_IMAGE_VIEW_TYPE_2D:
         case VK_IMAGE_VIEW_TYPE_2D_ARRAY:
             // VK_KHR_maintenance1: the slices of a 3D image seen as layers.
             if (image.type == VK_IMAGE_TYPE_3D) return (image.flags & VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT) != 0;
             [[fallthrough]];
-        default: return image.type == VK_IMAGE_TYPE_2D;
+        default:
+            return image.type == VK_IMAGE_TYPE_2D;
     }
 }
 

@@ -13,13 +13,13 @@ constexpr size_t kAlignment = 64;
 
 void* HostAllocator::get(size_t bytes, size_t alignment) const {
     if (allocate) return allocate(user, bytes, alignment);
-    return ::operator new(bytes, std::align_val_t{kAlignment}, std::nothrow);
+    return ::operator new (bytes, std::align_val_t{kAlignment}, std::nothrow);
 }
 
 void HostAllocator::put(void* memory, size_t bytes) const {
     if (!memory) return;
     if (release) return release(user, memory, bytes);
-    ::operator delete(memory, std::align_val_t{kAlignment});
+    ::operator delete (memory, std::align_val_t{kAlignment});
 }
 
 Result<std::unique_ptr<Memory>> Memory::create(const HostAllocator& allocator, VkDeviceSize size) {
@@ -32,6 +32,8 @@ Result<std::unique_ptr<Memory>> Memory::create(const HostAllocator& allocator, V
     return std::unique_ptr<Memory>(new Memory(allocator, data, size));
 }
 
-Memory::~Memory() { allocator_.put(data_, size_ + kSlack); }
+Memory::~Memory() {
+    allocator_.put(data_, size_ + kSlack);
+}
 
 }  // namespace vernier

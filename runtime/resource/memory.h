@@ -21,8 +21,8 @@ struct HostAllocator {
     void put(void* memory, size_t bytes) const;
 };
 
-/// One allocation of device memory, 64-byte aligned, with kMemorySlack readable bytes after its end so that a vector load
-/// of the last element stays inside. Zeroed at creation: no program sees another's data.
+/// One allocation of device memory, 64-byte aligned, with kMemorySlack readable bytes after its end so that a vector
+/// load of the last element stays inside. Zeroed at creation: no program sees another's data.
 class Memory {
   public:
     static constexpr size_t kSlack = 64;

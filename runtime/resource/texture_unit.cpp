@@ -11,9 +11,15 @@ namespace {
 
 constexpr std::array<float, kMaxSampleLanes> kZeroLanes{};
 
-const float* asFloat(const uint32_t* lanes) { return reinterpret_cast<const float*>(lanes); }
-const int32_t* asInt(const uint32_t* lanes) { return reinterpret_cast<const int32_t*>(lanes); }
-float* asFloat(uint32_t* lanes) { return reinterpret_cast<float*>(lanes); }
+const float* asFloat(const uint32_t* lanes) {
+    return reinterpret_cast<const float*>(lanes);
+}
+const int32_t* asInt(const uint32_t* lanes) {
+    return reinterpret_cast<const int32_t*>(lanes);
+}
+float* asFloat(uint32_t* lanes) {
+    return reinterpret_cast<float*>(lanes);
+}
 
 void fill(uint32_t* lanes, uint32_t count, uint32_t value) {
     if (lanes) std::fill_n(lanes, count, value);
@@ -133,21 +139,33 @@ void runStore(const TextureUnit& unit, const ImageCall& call) {
 uint32_t applyAtomic(ir::AtomicOp op, std::atomic_ref<uint32_t> memory, uint32_t value, uint32_t comparator) {
     const auto update = [&](auto combine) {
         uint32_t old = memory.load();
-        while (!memory.compare_exchange_weak(old, combine(old))) {}
+        while (!memory.compare_exchange_weak(old, combine(old))) {
+        }
         return old;
     };
     const auto asSigned = [](uint32_t bits) { return static_cast<int32_t>(bits); };
     switch (op) {
-        case ir::AtomicOp::add: return memory.fetch_add(value);
-        case ir::AtomicOp::sub: return memory.fetch_sub(value);
-        case ir::AtomicOp::iand: return memory.fetch_and(value);
-        case ir::AtomicOp::ior: return memory.fetch_or(value);
-        case ir::AtomicOp::ixor: return memory.fetch_xor(value);
-        case ir::AtomicOp::exchange: return memory.exchange(value);
-        case ir::AtomicOp::store: memory.store(value); return value;
-        case ir::AtomicOp::load: return memory.load();
-        case ir::AtomicOp::umin: return update([&](uint32_t old) { return std::min(old, value); });
-        case ir::AtomicOp::umax: return update([&](uint32_t old) { return std::max(old, value); });
+        case ir::AtomicOp::add:
+            return memory.fetch_add(value);
+        case ir::AtomicOp::sub:
+            return memory.fetch_sub(value);
+        case ir::AtomicOp::iand:
+            return memory.fetch_and(value);
+        case ir::AtomicOp::ior:
+            return memory.fetch_or(value);
+        case ir::AtomicOp::ixor:
+            return memory.fetch_xor(value);
+        case ir::AtomicOp::exchange:
+            return memory.exchange(value);
+        case ir::AtomicOp::store:
+            memory.store(value);
+            return value;
+        case ir::AtomicOp::load:
+            return memory.load();
+        case ir::AtomicOp::umin:
+            return update([&](uint32_t old) { return std::min(old, value); });
+        case ir::AtomicOp::umax:
+            return update([&](uint32_t old) { return std::max(old, value); });
         case ir::AtomicOp::smin:
             return update([&](uint32_t old) { return asSigned(old) < asSigned(value) ? old : value; });
         case ir::AtomicOp::smax:
@@ -185,18 +203,29 @@ void runUnit(const TextureUnit& unit, const ImageCall& call) {
         return;
     }
     switch (call.op->kind) {
-        case Kind::sampleImplicit: return runSample(unit, unit.sample, call, LodMode::implicitLod, false);
-        case Kind::sampleLod: return runSample(unit, unit.sample, call, LodMode::explicitLod, false);
-        case Kind::sampleGrad: return runSample(unit, unit.sample, call, LodMode::gradients, false);
-        case Kind::gather: return runSample(unit, unit.gather, call, LodMode::base, true);
-        case Kind::queryLod: return runSample(unit, unit.queryLod, call, LodMode::implicitLod, false);
+        case Kind::sampleImplicit:
+            return runSample(unit, unit.sample, call, LodMode::implicitLod, false);
+        case Kind::sampleLod:
+            return runSample(unit, unit.sample, call, LodMode::explicitLod, false);
+        case Kind::sampleGrad:
+            return runSample(unit, unit.sample, call, LodMode::gradients, false);
+        case Kind::gather:
+            return runSample(unit, unit.gather, call, LodMode::base, true);
+        case Kind::queryLod:
+            return runSample(unit, unit.queryLod, call, LodMode::implicitLod, false);
         case Kind::fetch:
-        case Kind::read: return runFetch(unit, call);
-        case Kind::store: return runStore(unit, call);
-        case Kind::atomic: return runAtomic(unit, call);
-        case Kind::querySize: return runQuerySize(unit, call);
-        case Kind::queryLevels: return fill(call.result[0], call.lanes, unit.view->levelCount);
-        case Kind::querySamples: return fill(call.result[0], call.lanes, unit.view->samples);
+        case Kind::read:
+            return runFetch(unit, call);
+        case Kind::store:
+            return runStore(unit, call);
+        case Kind::atomic:
+            return runAtomic(unit, call);
+        case Kind::querySize:
+            return runQuerySize(unit, call);
+        case Kind::queryLevels:
+            return fill(call.result[0], call.lanes, unit.view->levelCount);
+        case Kind::querySamples:
+            return fill(call.result[0], call.lanes, unit.view->samples);
     }
 }
 
@@ -227,7 +256,9 @@ Result<TextureUnit> makeTextureUnit(const TextureView* view, const SamplerState*
     return unit;
 }
 
-ImageBinding bindingOf(const TextureUnit& unit) { return {&unit, unit.sampler, callUnit}; }
+ImageBinding bindingOf(const TextureUnit& unit) {
+    return {&unit, unit.sampler, callUnit};
+}
 
 ImageBinding combineBinding(const ImageBinding& image, const void* sampler) {
     if (!image.image) return {};

@@ -42,8 +42,7 @@ constexpr CubeTexel foldOverEdge(CubeTexel texel, int32_t size) {
     for (int32_t face = 0; face < 6; ++face) {
         const CubeFace& to = kCubeFaces[face];
         if (point[to.majorAxis] * to.majorSign != size) continue;
-        return {face, (point[to.sAxis] * to.sSign + size - 1) / 2,
-                (point[to.tAxis] * to.tSign + size - 1) / 2};
+        return {face, (point[to.sAxis] * to.sSign + size - 1) / 2, (point[to.tAxis] * to.tSign + size - 1) / 2};
     }
     return texel;
 }

@@ -85,8 +85,7 @@ HWY_INLINE FaceChoice chooseFace(VF x, VF y, VF z) {
     const VF major = hn::IfThenElse(choice.z, z, hn::IfThenElse(choice.y, y, x));
     choice.negative = hn::Lt(major, hn::Zero(F32()));
     const auto whole = [](hn::Mask<F32> m) { return hn::RebindMask(I32(), m); };
-    const VI axis =
-        hn::IfThenElse(whole(choice.z), splatInt(4), hn::IfThenElseZero(whole(choice.y), splatInt(2)));
+    const VI axis = hn::IfThenElse(whole(choice.z), splatInt(4), hn::IfThenElseZero(whole(choice.y), splatInt(2)));
     choice.face = hn::Add(axis, hn::IfThenElseZero(whole(choice.negative), splatInt(1)));
     return choice;
 }
@@ -123,8 +122,8 @@ struct LevelChoice {
 /// lambda prime: lambda from `request` (through `implicitLambda` where derivatives are asked for) plus the
 /// biases.
 template <class Lambda>
-HWY_INLINE VF biasedLambda(const SamplerState& sampler, const SampleRequest& request, uint32_t first,
-                           uint32_t count, Lambda implicitLambda) {
+HWY_INLINE VF biasedLambda(const SamplerState& sampler, const SampleRequest& request, uint32_t first, uint32_t count,
+                           Lambda implicitLambda) {
     VF lambda = hn::Zero(F32()), bias = splatFloat(sampler.mipLodBias);
     switch (request.lodMode) {
         case LodMode::implicitLod:
@@ -140,8 +139,7 @@ HWY_INLINE VF biasedLambda(const SamplerState& sampler, const SampleRequest& req
         case LodMode::base:
             break;
     }
-    return hn::Add(lambda,
-                   clampOrLowV(bias, splatFloat(-kMaxSamplerLodBias), splatFloat(kMaxSamplerLodBias)));
+    return hn::Add(lambda, clampOrLowV(bias, splatFloat(-kMaxSamplerLodBias), splatFloat(kMaxSamplerLodBias)));
 }
 
 HWY_INLINE LevelChoice chooseLevels(const TextureView& view, const SamplerState& sampler, VF lambdaPrime) {

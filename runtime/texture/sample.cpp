@@ -34,8 +34,7 @@ void runQueryLod(const TextureView& view, const SamplerState& sampler, const Sam
 
 Shape shapeOf(VkImageViewType type) {
     if (type == VK_IMAGE_VIEW_TYPE_3D) return Shape::volume;
-    return type == VK_IMAGE_VIEW_TYPE_CUBE || type == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY ? Shape::cube
-                                                                                    : Shape::flat;
+    return type == VK_IMAGE_VIEW_TYPE_CUBE || type == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY ? Shape::cube : Shape::flat;
 }
 
 /// Gathers address texels by a signed 32-bit offset from the level's first one.
@@ -45,8 +44,7 @@ bool offsetsFitInt32(const TextureView& view) {
         const uint64_t slices = view.type == VK_IMAGE_VIEW_TYPE_3D ? level.depth : view.layerCount;
         const uint64_t end = (slices - 1) * level.slicePitch + uint64_t{level.height} * level.rowPitch;
         constexpr uint64_t kLimit = std::numeric_limits<int32_t>::max();
-        if (end > kLimit || (slices > 1 && level.slicePitch > kLimit) || level.rowPitch > kLimit)
-            return false;
+        if (end > kLimit || (slices > 1 && level.slicePitch > kLimit) || level.rowPitch > kLimit) return false;
     }
     return true;
 }
@@ -64,12 +62,10 @@ SampleFn selectRgba8(const TextureView& view, const SamplerState& sampler) {
             break;
     }
     if (!offsetsFitInt32(view)) return runSample<Wide, Shape::flat, Wrap::any>;
-    const bool oneDimensional =
-        view.type == VK_IMAGE_VIEW_TYPE_1D || view.type == VK_IMAGE_VIEW_TYPE_1D_ARRAY;
+    const bool oneDimensional = view.type == VK_IMAGE_VIEW_TYPE_1D || view.type == VK_IMAGE_VIEW_TYPE_1D_ARRAY;
     const VkSamplerAddressMode u = sampler.addressMode[0], v = oneDimensional ? u : sampler.addressMode[1];
     if (u == v && u == VK_SAMPLER_ADDRESS_MODE_REPEAT) return runSample<Narrow, Shape::flat, Wrap::repeat>;
-    if (u == v && u == VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE)
-        return runSample<Narrow, Shape::flat, Wrap::clampToEdge>;
+    if (u == v && u == VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE) return runSample<Narrow, Shape::flat, Wrap::clampToEdge>;
     return runSample<Narrow, Shape::flat, Wrap::any>;
 }
 

@@ -84,16 +84,15 @@ class Sampler {
         Coordinates at;
         at.s = coordinate(0, first, count);
         // A 1D image is one row, met in the middle.
-        const bool oneDimensional =
-            view_.type == VK_IMAGE_VIEW_TYPE_1D || view_.type == VK_IMAGE_VIEW_TYPE_1D_ARRAY;
+        const bool oneDimensional = view_.type == VK_IMAGE_VIEW_TYPE_1D || view_.type == VK_IMAGE_VIEW_TYPE_1D_ARRAY;
         at.t = oneDimensional ? splatFloat(0.5f) : coordinate(1, first, count);
         at.r = kShape == Shape::flat ? hn::Zero(F32()) : coordinate(2, first, count);
         at.slice = hn::Zero(I32());
         at.dref = hn::Zero(F32());
         if (view_.layerCount > 1 && kShape != Shape::volume) {
             const uint32_t layers = kShape == Shape::cube ? view_.layerCount / 6 : view_.layerCount;
-            const VF layer = clampOrLowV(coordinate(3, first, count), hn::Zero(F32()),
-                                         splatFloat(static_cast<float>(layers - 1)));
+            const VF layer =
+                clampOrLowV(coordinate(3, first, count), hn::Zero(F32()), splatFloat(static_cast<float>(layers - 1)));
             at.slice = hn::NearestInt(layer);
         }
         if constexpr (kShape == Shape::cube) {
@@ -163,8 +162,8 @@ class Sampler {
     }
 
     template <int kTaps>
-    HWY_INLINE void load(const TextureLevel& level, const TexelPosition (&at)[kTaps],
-                         const VI (&inside)[kTaps], VF dref, Texel (&texels)[kTaps]) const {
+    HWY_INLINE void load(const TextureLevel& level, const TexelPosition (&at)[kTaps], const VI (&inside)[kTaps],
+                         VF dref, Texel (&texels)[kTaps]) const {
         source_.load(view_, level, at, neededComponents_, texels);
         if constexpr (kWrap == Wrap::any && kShape != Shape::cube) {
             unrolled<kTaps>([&](auto t) VERNIER_INLINE_LAMBDA {
@@ -176,9 +175,8 @@ class Sampler {
         }
         if constexpr (!Source::kFinite) {
             if (!compare_) return;
-            unrolled<kTaps>([&](auto t) VERNIER_INLINE_LAMBDA {
-                texels[t][0] = compareTexel(dref, floatOf(texels[t][0]));
-            });
+            unrolled<kTaps>([&](auto t)
+                                VERNIER_INLINE_LAMBDA { texels[t][0] = compareTexel(dref, floatOf(texels[t][0])); });
         }
     }
 
@@ -224,8 +222,7 @@ class Sampler {
             nearestTap<kWrap>(at.t, axis(1, level.height), y);
         }
         position[0] = {x.index[0], y.index[0], at.slice};
-        if constexpr (kWrap == Wrap::any && kShape != Shape::cube)
-            inside[0] = hn::And(x.inside[0], y.inside[0]);
+        if constexpr (kWrap == Wrap::any && kShape != Shape::cube) inside[0] = hn::And(x.inside[0], y.inside[0]);
         if constexpr (kShape == Shape::volume) {
             nearestTap<kWrap>(at.r, axis(2, level.depth), z);
             position[0].slice = z.index[0];
@@ -244,8 +241,7 @@ class Sampler {
             VI corner[4];
             cubeTaps(level, at, position, corner, wx, wy);
             load(level, position, inside, at.dref, texels);
-            for (int t = 0; t < 4; ++t)
-                fillCorner(corner[t], texels[t], texels[t ^ 1], texels[t ^ 2], texels[t ^ 3]);
+            for (int t = 0; t < 4; ++t) fillCorner(corner[t], texels[t], texels[t ^ 1], texels[t ^ 2], texels[t ^ 3]);
         } else {
             AxisTaps x, y;
             linearTaps<kWrap>(at.s, axis(0, level.width), x);
@@ -316,9 +312,8 @@ class Sampler {
             return hn::ConvertTo(I32(), whole);  // -1 .. size - 1
         };
         const VI x0 = tap(at.s, wx), y0 = tap(at.t, wy), one = splatInt(1);
-        const auto outside = [&](VI i) HWY_ATTR {
-            return hn::Or(hn::Lt(i, hn::Zero(I32())), hn::Gt(i, splatInt(size - 1)));
-        };
+        const auto outside = [&](VI i)
+                                 HWY_ATTR { return hn::Or(hn::Lt(i, hn::Zero(I32())), hn::Gt(i, splatInt(size - 1))); };
         for (int t = 0; t < 4; ++t) {
             const VI x = (t & 1) != 0 ? hn::Add(x0, one) : x0, y = (t & 2) != 0 ? hn::Add(y0, one) : y0;
             const auto outX = outside(x), outY = outside(y);
@@ -350,8 +345,7 @@ class Sampler {
     }
 
     /// Where `corner` is set, the mean of the other three texels; exactly that value where they are equal.
-    HWY_INLINE void fillCorner(VI corner, Texel& texel, const Texel& a, const Texel& b,
-                               const Texel& c) const {
+    HWY_INLINE void fillCorner(VI corner, Texel& texel, const Texel& a, const Texel& b, const Texel& c) const {
         const auto isCorner = hn::MaskFromVec(hn::BitCast(U32(), corner));
         if (hn::AllFalse(U32(), isCorner)) return;
         for (int p = 0; p < Source::kPlanes; ++p) {
@@ -429,8 +423,8 @@ class Sampler {
     HWY_INLINE void write(const Texel& texel, uint32_t first, uint32_t count) const {
         for (uint32_t i = 0; i < outputCount_; ++i) {
             const Output& output = outputs_[i];
-            const VU value = output.plane == kConstantPlane ? splatBits(output.constant)
-                                                            : source_.finish(texel[output.plane]);
+            const VU value =
+                output.plane == kConstantPlane ? splatBits(output.constant) : source_.finish(texel[output.plane]);
             storeLanes(value, output.target, first, count);
         }
     }
@@ -445,8 +439,7 @@ class Sampler {
             constexpr int kOrder[4] = {2, 3, 1, 0};  // (0,1), (1,1), (1,0), (0,0)
             VU result[4];
             auto done = hn::MaskFromVec(hn::Zero(I32()));
-            for (int c = 0; c < 4; ++c)
-                result[c] = splatBits(constantBits(view_.ops.layout, route == Route::one));
+            for (int c = 0; c < 4; ++c) result[c] = splatBits(constantBits(view_.ops.layout, route == Route::one));
             while (route <= Route::a && !hn::AllTrue(I32(), done)) {
                 const int32_t level = index[hn::FindFirstTrue(I32(), hn::Not(done))];
                 const auto here = hn::Eq(choice.high, splatInt(level));

@@ -76,21 +76,18 @@ struct Rgba8Source {
 
     void borderPlanes(const VkClearColorValue& color, uint32_t (&planes)[4]) const {
         for (int c = 0; c < 4; ++c) {
-            planes[planeOf[c]] =
-                std::bit_cast<uint32_t>(kSrgb ? color.float32[c] : 255.0f * color.float32[c]);
+            planes[planeOf[c]] = std::bit_cast<uint32_t>(kSrgb ? color.float32[c] : 255.0f * color.float32[c]);
         }
     }
 
     template <int kTaps>
-    HWY_INLINE void load(const TextureView&, const TextureLevel& level, const TexelPosition (&at)[kTaps],
-                         uint32_t, Texel (&texels)[kTaps]) const {
-        unrolled<kTaps>([&](auto t)
-                            VERNIER_INLINE_LAMBDA { unpack(loadWord<kWide>(level, at[t]), texels[t]); });
+    HWY_INLINE void load(const TextureView&, const TextureLevel& level, const TexelPosition (&at)[kTaps], uint32_t,
+                         Texel (&texels)[kTaps]) const {
+        unrolled<kTaps>([&](auto t) VERNIER_INLINE_LAMBDA { unpack(loadWord<kWide>(level, at[t]), texels[t]); });
     }
 
     HWY_INLINE VU finish(VU plane) const {
-        return kSrgb ? plane
-                     : bitsOf(divideExact(floatOf(plane), splatFloat(255.0f), splatFloat(1.0f / 255)));
+        return kSrgb ? plane : bitsOf(divideExact(floatOf(plane), splatFloat(255.0f), splatFloat(1.0f / 255)));
     }
 
   private:
@@ -114,13 +111,11 @@ struct R32Source {
 
     explicit R32Source(const TextureView&) {}
 
-    void borderPlanes(const VkClearColorValue& color, uint32_t (&planes)[4]) const {
-        planes[0] = color.uint32[0];
-    }
+    void borderPlanes(const VkClearColorValue& color, uint32_t (&planes)[4]) const { planes[0] = color.uint32[0]; }
 
     template <int kTaps>
-    HWY_INLINE void load(const TextureView&, const TextureLevel& level, const TexelPosition (&at)[kTaps],
-                         uint32_t, Texel (&texels)[kTaps]) const {
+    HWY_INLINE void load(const TextureView&, const TextureLevel& level, const TexelPosition (&at)[kTaps], uint32_t,
+                         Texel (&texels)[kTaps]) const {
         unrolled<kTaps>([&](auto t) VERNIER_INLINE_LAMBDA {
             const VU word = loadWord<false>(level, at[t]);
             texels[t][0] = kFixed24 ? bitsOf(decodeUnormV(hn::And(word, splatBits(0xffffff)), 24)) : word;
@@ -135,8 +130,7 @@ template <int kPlaneCount>
 struct AnySource {
     static constexpr bool kFinite = false;
     static constexpr int kPlanes = kPlaneCount;
-    static constexpr uint8_t planeOf[4] = {0, kPlanes > 1 ? 1 : kConstantPlane,
-                                           kPlanes > 2 ? 2 : kConstantPlane,
+    static constexpr uint8_t planeOf[4] = {0, kPlanes > 1 ? 1 : kConstantPlane, kPlanes > 2 ? 2 : kConstantPlane,
                                            kPlanes > 3 ? 3 : kConstantPlane};
     TexelLayout layout;
 
@@ -151,8 +145,8 @@ struct AnySource {
 
     /// `needed`: bit c set = component c is wanted.
     template <int kTaps>
-    HWY_NOINLINE void load(const TextureView& view, const TextureLevel& level,
-                           const TexelPosition (&at)[kTaps], uint32_t needed, Texel (&texels)[kTaps]) const {
+    HWY_NOINLINE void load(const TextureView& view, const TextureLevel& level, const TexelPosition (&at)[kTaps],
+                           uint32_t needed, Texel (&texels)[kTaps]) const {
         const std::byte* pointers[kTaps * kVectorLanes];
         for (int t = 0; t < kTaps; ++t) {
             alignas(64) int32_t x[kVectorLanes], y[kVectorLanes], slice[kVectorLanes];
@@ -162,8 +156,7 @@ struct AnySource {
             for (uint32_t i = 0; i < kVectorLanes; ++i) {
                 pointers[static_cast<uint32_t>(t) * kVectorLanes + i] =
                     level.data + static_cast<uint64_t>(slice[i]) * level.slicePitch +
-                    static_cast<uint64_t>(y[i]) * level.rowPitch +
-                    static_cast<uint64_t>(x[i]) * view.texelPitch;
+                    static_cast<uint64_t>(y[i]) * level.rowPitch + static_cast<uint64_t>(x[i]) * view.texelPitch;
             }
         }
         alignas(64) uint32_t values[kPlanes][kTaps * kVectorLanes];
@@ -173,8 +166,7 @@ struct AnySource {
         view.ops.unpackEach(pointers, kTaps * kVectorLanes, planes);
         unrolled<kTaps>([&](auto t) VERNIER_INLINE_LAMBDA {
             unrolled<kPlanes>([&](auto c) VERNIER_INLINE_LAMBDA {
-                texels[t][c] =
-                    planes[c] == nullptr ? hn::Zero(U32()) : hn::Load(U32(), values[c] + t * kVectorLanes);
+                texels[t][c] = planes[c] == nullptr ? hn::Zero(U32()) : hn::Load(U32(), values[c] + t * kVectorLanes);
             });
         });
     }
@@ -203,8 +195,7 @@ HWY_INLINE VF lerpAny(VF a, VF b, VF t) {
 
 template <class Source>
 HWY_INLINE VU lerpPlane(VU a, VU b, VF t) {
-    return bitsOf(Source::kFinite ? lerpFinite(floatOf(a), floatOf(b), t)
-                                  : lerpAny(floatOf(a), floatOf(b), t));
+    return bitsOf(Source::kFinite ? lerpFinite(floatOf(a), floatOf(b), t) : lerpAny(floatOf(a), floatOf(b), t));
 }
 
 }  // namespace HWY_NAMESPACE

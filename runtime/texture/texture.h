@@ -33,7 +33,7 @@ inline constexpr uint32_t kMaxTextureSize = 1u << 15;
 inline constexpr uint32_t kMaxSampleLanes = 128;
 
 struct TextureLevel {
-    const std::byte* data = nullptr;  // texel (0, 0) of the view's first layer (z = 0 of a 3D image)
+    const std::byte* data = nullptr;            // texel (0, 0) of the view's first layer (z = 0 of a 3D image)
     uint32_t width = 1, height = 1, depth = 1;  // in texels, of this level
     uint32_t rowPitch = 0;                      // bytes from a row to the next
     uint64_t slicePitch = 0;                    // bytes from an array layer, cube face or z slice to the next
@@ -48,8 +48,7 @@ struct TextureView {
     uint32_t levelCount = 1;
     uint32_t layerCount = 1;  // array layers of the view; 6 per cube
     uint32_t samples = 1;
-    uint32_t texelPitch =
-        0;  // bytes from a texel to its right neighbour: bytesPerTexel unless samples are interleaved
+    uint32_t texelPitch = 0;  // bytes from a texel to its right neighbour: bytesPerTexel unless samples are interleaved
     uint64_t samplePitch = 0;                            // bytes from a sample of a texel to the next
     std::array<TextureLevel, kMaxTextureLevels> levels;  // [0] is the view's base level
     FormatOps ops;  // formatOps(format, aspect, isa), the isa given to the select functions
@@ -84,11 +83,10 @@ enum class LodMode : uint8_t {
 /// One sampling instruction for up to kMaxSampleLanes lanes. Lanes 4q .. 4q+3 are the pixels (0,0), (1,0),
 /// (0,1), (1,1) of a quad. Every array has `lanes` values. Plain data.
 struct SampleRequest {
-    uint32_t lanes = 0;  // a multiple of 4
-    const uint32_t* mask =
-        nullptr;                  // 0 or ~0 per lane, null = all active; out of inactive lanes is unspecified
-    const float* coord[4] = {};   // s, t, r, layer; the ones that the view type has not may be null
-    const float* dref = nullptr;  // comparison value, read when the sampler compares
+    uint32_t lanes = 0;              // a multiple of 4
+    const uint32_t* mask = nullptr;  // 0 or ~0 per lane, null = all active; out of inactive lanes is unspecified
+    const float* coord[4] = {};      // s, t, r, layer; the ones that the view type has not may be null
+    const float* dref = nullptr;     // comparison value, read when the sampler compares
     LodMode lodMode = LodMode::implicitLod;
     const float* lod = nullptr;
     const float* gradX[3] = {};

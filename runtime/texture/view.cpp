@@ -32,17 +32,14 @@ Status checkLevel(const TextureView& view, const TextureLevel& level, uint32_t i
         return invalidArgument(fieldError(name.c_str(), "height", level.height, "must be 1 in a 1D view"));
     }
     if (view.type != VK_IMAGE_VIEW_TYPE_3D && level.depth != 1) {
-        return invalidArgument(
-            fieldError(name.c_str(), "depth", level.depth, "must be 1 unless the view is 3D"));
+        return invalidArgument(fieldError(name.c_str(), "depth", level.depth, "must be 1 unless the view is 3D"));
     }
     if (isCube(view.type) && level.width != level.height) {
-        return invalidArgument(
-            fieldError(name.c_str(), "height", level.height, "must equal the width in a cube view"));
+        return invalidArgument(fieldError(name.c_str(), "height", level.height, "must equal the width in a cube view"));
     }
     const uint64_t rowBytes = uint64_t{level.width - 1} * view.texelPitch + view.ops.layout.bytes;
     if (level.height > 1 && level.rowPitch < rowBytes) {
-        return invalidArgument(
-            fieldError(name.c_str(), "rowPitch", level.rowPitch, "must hold a row of texels"));
+        return invalidArgument(fieldError(name.c_str(), "rowPitch", level.rowPitch, "must hold a row of texels"));
     }
     const uint64_t slices = view.type == VK_IMAGE_VIEW_TYPE_3D ? level.depth : view.layerCount;
     if (slices > 1 && level.slicePitch < uint64_t{level.height - 1} * level.rowPitch + rowBytes) {
@@ -90,29 +87,24 @@ SamplerState makeSamplerState(const VkSamplerCreateInfo& info) {
 Status checkView(const TextureView& view) {
     const FormatInfo* const info = findFormat(view.format);
     if (info == nullptr) {
-        return unsupported(
-            fieldError("TextureView", "format", static_cast<uint32_t>(view.format), "unknown format"));
+        return unsupported(fieldError("TextureView", "format", static_cast<uint32_t>(view.format), "unknown format"));
     }
     if ((info->optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT) == 0) {
         return unsupported(std::string("TextureView.format is ") + info->name + ": cannot be sampled");
     }
-    const bool oneAspect = view.aspect == VK_IMAGE_ASPECT_COLOR_BIT ||
-                           view.aspect == VK_IMAGE_ASPECT_DEPTH_BIT ||
+    const bool oneAspect = view.aspect == VK_IMAGE_ASPECT_COLOR_BIT || view.aspect == VK_IMAGE_ASPECT_DEPTH_BIT ||
                            view.aspect == VK_IMAGE_ASPECT_STENCIL_BIT;
     if (!oneAspect || (info->aspects & view.aspect) == 0) {
-        return invalidArgument(
-            fieldError("TextureView", "aspect", view.aspect, "must be one aspect of the format"));
+        return invalidArgument(fieldError("TextureView", "aspect", view.aspect, "must be one aspect of the format"));
     }
     if (view.ops.unpackFn == nullptr || view.ops.layout.bytes != info->bytesPerTexel) {
         return invalidArgument("TextureView.ops is not that of TextureView.format");
     }
     if (view.type > VK_IMAGE_VIEW_TYPE_CUBE_ARRAY) {
-        return unsupported(
-            fieldError("TextureView", "type", static_cast<uint32_t>(view.type), "unknown view type"));
+        return unsupported(fieldError("TextureView", "type", static_cast<uint32_t>(view.type), "unknown view type"));
     }
     if (view.levelCount < 1 || view.levelCount > kMaxTextureLevels) {
-        return invalidArgument(
-            fieldError("TextureView", "levelCount", view.levelCount, "must be from 1 to 16"));
+        return invalidArgument(fieldError("TextureView", "levelCount", view.levelCount, "must be from 1 to 16"));
     }
     if (view.layerCount < 1 || (isCube(view.type) && view.layerCount % 6 != 0)) {
         return invalidArgument(fieldError("TextureView", "layerCount", view.layerCount,
@@ -146,9 +138,8 @@ Status checkSampling(const TextureView& view, const SamplerState& sampler) {
         return unsupported(
             fieldError("SamplerState", "addressMode", static_cast<uint32_t>(mode), "unknown address mode"));
     }
-    const bool filterable =
-        (info.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT) != 0 &&
-        view.ops.layout.type == ValueType::floating;
+    const bool filterable = (info.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT) != 0 &&
+                            view.ops.layout.type == ValueType::floating;
     if (linear && !filterable) {
         return invalidArgument(std::string("SamplerState asks for linear filtering of ") + info.name +
                                ", which cannot be filtered");
@@ -159,8 +150,7 @@ Status checkSampling(const TextureView& view, const SamplerState& sampler) {
     }
     if (sampler.unnormalizedCoordinates) {
         const bool flat = view.type == VK_IMAGE_VIEW_TYPE_1D || view.type == VK_IMAGE_VIEW_TYPE_2D;
-        if (!flat || view.levelCount != 1 || sampler.magFilter != sampler.minFilter ||
-            sampler.compareEnable) {
+        if (!flat || view.levelCount != 1 || sampler.magFilter != sampler.minFilter || sampler.compareEnable) {
             return invalidArgument(
                 "SamplerState.unnormalizedCoordinates needs a 1D or 2D view of one level, equal filters "
                 "and no comparison");

@@ -59,7 +59,9 @@ struct Axis {
 };
 
 /// Equal values stay what they are, bit for bit; a weight of 0 keeps infinities of the other texel out.
-float mix(float a, float b, float weight) { return weight == 0 || a == b ? a : a + weight * (b - a); }
+float mix(float a, float b, float weight) {
+    return weight == 0 || a == b ? a : a + weight * (b - a);
+}
 
 class Blitter {
   public:

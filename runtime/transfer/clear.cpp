@@ -18,8 +18,8 @@ void fillRow(std::byte* row, uint32_t n, uint32_t texelBytes, const std::byte* t
 }
 
 /// All texels of the range get the clear value's aspects.
-void clearRange(const TransferContext& context, const Image& image, VkImageAspectFlags aspects, const VkClearValue& value,
-                const VkImageSubresourceRange& range) {
+void clearRange(const TransferContext& context, const Image& image, VkImageAspectFlags aspects,
+                const VkClearValue& value, const VkImageSubresourceRange& range) {
     const FormatInfo& format = image.format();
     aspects &= format.aspects;
     if (aspects == 0) return;
@@ -39,8 +39,9 @@ void clearRange(const TransferContext& context, const Image& image, VkImageAspec
         const uint32_t mip = range.baseMipLevel + i;
         const VkExtent3D& extent = image.level(mip).extent;
         const VkImageSubresourceLayers layers{aspects, mip, range.baseArrayLayer, range.layerCount};
-        const TexelBox box = clipBox(image, layers, {0, 0, 0},
-                                     {extent.width, extent.height, image.info().type == VK_IMAGE_TYPE_3D ? extent.depth : 1});
+        const TexelBox box =
+            clipBox(image, layers, {0, 0, 0},
+                    {extent.width, extent.height, image.info().type == VK_IMAGE_TYPE_3D ? extent.depth : 1});
         for (uint32_t sample = 0; sample < image.info().samples; ++sample) {
             forEachRow(context, box, [&](uint32_t y, uint32_t z) {
                 std::byte* row = rowAddress(image, mip, y, box.z + z, sample);
@@ -67,7 +68,8 @@ void clearDepthStencilImage(const TransferContext& context, const Image& image, 
                             const VkImageSubresourceRange& range) {
     VkClearValue clear;
     clear.depthStencil = value;
-    clearRange(context, image, range.aspectMask & (VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT), clear, range);
+    clearRange(context, image, range.aspectMask & (VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT), clear,
+               range);
 }
 
 void fillBuffer(const TransferContext&, const Buffer& buffer, VkDeviceSize offset, VkDeviceSize size, uint32_t value) {

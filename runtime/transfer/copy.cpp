@@ -8,8 +8,8 @@ namespace {
 constexpr uint64_t kCopyStep = 1 << 20;  // bytes a thread copies at a time
 
 /// Copies one row of n texels between images, of the named aspects.
-void copyTexelRow(const FormatInfo& source, const FormatInfo& destination, VkImageAspectFlags aspects, const std::byte* from,
-                  std::byte* to, uint32_t n) {
+void copyTexelRow(const FormatInfo& source, const FormatInfo& destination, VkImageAspectFlags aspects,
+                  const std::byte* from, std::byte* to, uint32_t n) {
     if ((aspects & destination.aspects) == destination.aspects)
         return static_cast<void>(std::memmove(to, from, size_t{n} * destination.bytesPerTexel));
     // One aspect of a combined format, through the packing of buffer copies; a chunk at a time on the stack.
@@ -33,8 +33,8 @@ void forEachBufferRow(const TransferContext& context, const Image& image, const 
     const uint64_t rowPitch = (region.bufferRowLength ? region.bufferRowLength : box.width) * texel;
     const uint64_t slicePitch = (region.bufferImageHeight ? region.bufferImageHeight : box.height) * rowPitch;
     forEachRow(context, box, [&](uint32_t y, uint32_t z) {
-        std::byte* texels = rowAddress(image, sub.mipLevel, box.y + y, box.z + z, 0) +
-                            uint64_t{box.x} * image.format().bytesPerTexel;
+        std::byte* texels =
+            rowAddress(image, sub.mipLevel, box.y + y, box.z + z, 0) + uint64_t{box.x} * image.format().bytesPerTexel;
         copyRow(texels, buffer.data() + region.bufferOffset + z * slicePitch + y * rowPitch, box.width);
     });
 }
@@ -44,7 +44,8 @@ void forEachBufferRow(const TransferContext& context, const Image& image, const 
 void copyBuffer(const TransferContext& context, const Buffer& source, const Buffer& destination,
                 const VkBufferCopy& region) {
     if (region.srcOffset >= source.size() || region.dstOffset >= destination.size()) return;
-    const uint64_t size = std::min({region.size, source.size() - region.srcOffset, destination.size() - region.dstOffset});
+    const uint64_t size =
+        std::min({region.size, source.size() - region.srcOffset, destination.size() - region.dstOffset});
     const std::byte* from = source.data() + region.srcOffset;
     std::byte* to = destination.data() + region.dstOffset;
     const bool overlap = from < to + size && to < from + size;
@@ -55,7 +56,8 @@ void copyBuffer(const TransferContext& context, const Buffer& source, const Buff
     });
 }
 
-void copyImage(const TransferContext& context, const Image& source, const Image& destination, const VkImageCopy& region) {
+void copyImage(const TransferContext& context, const Image& source, const Image& destination,
+               const VkImageCopy& region) {
     TexelBox from = clipBox(source, region.srcSubresource, region.srcOffset, region.extent);
     TexelBox to = clipBox(destination, region.dstSubresource, region.dstOffset, region.extent);
     if (source.format().bytesPerTexel != destination.format().bytesPerTexel ||

@@ -26,8 +26,8 @@ TexelBox clipBox(const Image& image, const VkImageSubresourceLayers& subresource
     box.z = volume ? static_cast<uint32_t>(offset.z) : subresource.baseArrayLayer;
     box.width = clipSpan(box.x, extent.width, size.width);
     box.height = clipSpan(box.y, extent.height, size.height);
-    const uint32_t slices = volume ? std::max(extent.depth, subresource.layerCount)
-                                   : std::max(subresource.layerCount, extent.depth);
+    const uint32_t slices =
+        volume ? std::max(extent.depth, subresource.layerCount) : std::max(subresource.layerCount, extent.depth);
     box.depth = clipSpan(box.z, slices, volume ? size.depth : image.info().arrayLayers);
     return box;
 }

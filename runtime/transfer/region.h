@@ -18,8 +18,8 @@ struct TexelBox {
     bool empty() const { return width == 0 || height == 0 || depth == 0; }
 };
 
-/// The box a subresource, an offset and an extent name, clipped to the image. For 3D images z counts slices; otherwise it
-/// counts layers, of which there are max(layerCount, extent.depth): copies between 3D images and arrays give both.
+/// The box a subresource, an offset and an extent name, clipped to the image. For 3D images z counts slices; otherwise
+/// it counts layers, of which there are max(layerCount, extent.depth): copies between 3D images and arrays give both.
 TexelBox clipBox(const Image& image, const VkImageSubresourceLayers& subresource, const VkOffset3D& offset,
                  const VkExtent3D& extent);
 
@@ -27,6 +27,7 @@ TexelBox clipBox(const Image& image, const VkImageSubresourceLayers& subresource
 std::byte* rowAddress(const Image& image, uint32_t mip, uint32_t y, uint32_t z, uint32_t sample);
 
 /// Calls row(y, z) for every row of the box, y and z relative to it, on all threads when the box is big.
-void forEachRow(const TransferContext& context, const TexelBox& box, const std::function<void(uint32_t y, uint32_t z)>& row);
+void forEachRow(const TransferContext& context, const TexelBox& box,
+                const std::function<void(uint32_t y, uint32_t z)>& row);
 
 }  // namespace vernier

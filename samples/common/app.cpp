@@ -4,8 +4,8 @@
 #include <stb/stb_image_write.h>
 #include <vernier/vernier_glsl.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
 #define GLM_FORCE_DEPTH_ZERO_TO_ONE
@@ -24,7 +24,9 @@ void must(VnResult result) {
     if (result != VN_SUCCESS) std::exit(1);
 }
 
-void printMessage(void*, VnSeverity, const char* text) { std::fprintf(stderr, "%s\n", text); }
+void printMessage(void*, VnSeverity, const char* text) {
+    std::fprintf(stderr, "%s\n", text);
+}
 
 VnShader compile(VnDevice device, VkShaderStageFlagBits stage, const std::string& source) {
     VnGlslDesc glsl{};
@@ -89,7 +91,9 @@ App::App(const AppOptions& options) : options_(options) {
     pixels_.resize(size_t{options.width} * options.height);
 }
 
-App::~App() { vnDestroyDevice(device_); }
+App::~App() {
+    vnDestroyDevice(device_);
+}
 
 void App::drawFrame(const glm::vec4& background, const std::function<void(double)>& frame, double seconds) {
     VnPassDesc pass{};
@@ -121,8 +125,8 @@ int App::runHeadless(const glm::vec4& background, const std::function<void(doubl
 int App::runWindow(const glm::vec4& background, const std::function<void(double)>& frame) {
     if (SDL_Init(SDL_INIT_VIDEO) != 0) stop(std::string("no window: ") + SDL_GetError() + " (try --headless OUT.png)");
     const auto width = static_cast<int>(options_.width), height = static_cast<int>(options_.height);
-    SDL_Window* window = SDL_CreateWindow(options_.title.c_str(), SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED, width,
-                                          height, 0);
+    SDL_Window* window =
+        SDL_CreateWindow(options_.title.c_str(), SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED, width, height, 0);
     SDL_Surface* image =
         SDL_CreateRGBSurfaceWithFormatFrom(pixels_.data(), width, height, 32, width * 4, SDL_PIXELFORMAT_RGBA32);
     if (!window || !image) stop(std::string("no window: ") + SDL_GetError());
@@ -132,7 +136,8 @@ int App::runWindow(const glm::vec4& background, const std::function<void(double)
         SDL_BlitSurface(image, nullptr, SDL_GetWindowSurface(window), nullptr);
         SDL_UpdateWindowSurface(window);
         for (SDL_Event event; SDL_PollEvent(&event);)
-            open = open && event.type != SDL_QUIT && !(event.type == SDL_KEYDOWN && event.key.keysym.sym == SDLK_ESCAPE);
+            open =
+                open && event.type != SDL_QUIT && !(event.type == SDL_KEYDOWN && event.key.keysym.sym == SDLK_ESCAPE);
     }
     SDL_FreeSurface(image);
     SDL_DestroyWindow(window);

@@ -1,5 +1,5 @@
-// What the samples share: a window or a file to draw to, a frame loop, and short words for creating things. It is a sample
-// itself: read it to see how a C++ program wraps the C API.
+// What the samples share: a window or a file to draw to, a frame loop, and short words for creating things. It is a
+// sample itself: read it to see how a C++ program wraps the C API.
 #pragma once
 
 #include <vernier/vernier.h>
@@ -18,11 +18,12 @@ struct AppOptions {
     double time = 0;       // seconds at which the headless picture is taken
 };
 
-/// Reads --headless OUT.png, --size WxH and --time SECONDS; prints help and exits when asked to or when something is wrong.
+/// Reads --headless OUT.png, --size WxH and --time SECONDS; prints help and exits when asked to or when something is
+/// wrong.
 AppOptions parseOptions(int argc, char** argv, const std::string& title);
 
-/// A device, a context, and a colour and a depth image of the window's size. Any Vernier call that fails ends the program
-/// with the message.
+/// A device, a context, and a colour and a depth image of the window's size. Any Vernier call that fails ends the
+/// program with the message.
 class App {
   public:
     explicit App(const AppOptions& options);

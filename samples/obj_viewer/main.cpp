@@ -1,5 +1,5 @@
-// Shows a Wavefront OBJ file with half-Lambert light: obj_viewer [FILE.obj]. Without a file it shows a torus knot of its
-// own. Normals are computed where the file has none.
+// Shows a Wavefront OBJ file with half-Lambert light: obj_viewer [FILE.obj]. Without a file it shows a torus knot of
+// its own. Normals are computed where the file has none.
 #include <tiny_obj_loader.h>
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// A textured cube with its edges drawn over it: depth test, culling, two programs, index buffers, lines with depth bias.
+// A textured cube with its edges drawn over it: depth test, culling, two programs, index buffers, lines with depth
+// bias.
 #include <array>
 #include <glm/gtc/matrix_transform.hpp>
 

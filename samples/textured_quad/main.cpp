@@ -34,8 +34,8 @@ int main(int argc, char** argv) {
 
     return app.run({0.35f, 0.55f, 0.8f, 1}, [&](double seconds) {
         const auto angle = static_cast<float>(seconds * 0.3);
-        const glm::mat4 view =
-            glm::lookAt(glm::vec3(std::sin(angle) * 6, 1.2f, std::cos(angle) * 6), glm::vec3(0, 0.6f, 0), glm::vec3(0, 1, 0));
+        const glm::mat4 view = glm::lookAt(glm::vec3(std::sin(angle) * 6, 1.2f, std::cos(angle) * 6),
+                                           glm::vec3(0, 0.6f, 0), glm::vec3(0, 1, 0));
         const glm::mat4 transform = samples::perspective(1.0f, app.aspect(), 0.1f, 100) * view;
         VnContext context = app.context();
         vnBindProgram(context, program);

@@ -1,6 +1,6 @@
-// The SSA intermediate form between SPIR-V and the batch interpreter. One Program is one shader stage: a single function
-// (calls inlined), every value a scalar (vectors, matrices and structs taken apart), variables turned into SSA values
-// where their indices are constant and into invocation-local memory where they are not.
+// The SSA intermediate form between SPIR-V and the batch interpreter. One Program is one shader stage: a single
+// function (calls inlined), every value a scalar (vectors, matrices and structs taken apart), variables turned into SSA
+// values where their indices are constant and into invocation-local memory where they are not.
 //
 // Invariants, checked by verify() (ir/verify.h):
 //  - a value is defined once, and its definition dominates its uses (a phi's use is at the end of the predecessor);
@@ -46,13 +46,13 @@ inline constexpr uint32_t kNoIndex = ~0u;
 
 struct Inst {
     Op op = Op::undef;
-    Type type = Type::none;       // of the result(s)
-    bool noContraction = false;   // SPIR-V NoContraction: never fused
-    bool relaxed = false;         // SPIR-V RelaxedPrecision
-    ValueId result = kNoValue;    // the first of opInfo().results consecutive values
-    uint32_t firstOperand = 0;    // into Program::operands
+    Type type = Type::none;      // of the result(s)
+    bool noContraction = false;  // SPIR-V NoContraction: never fused
+    bool relaxed = false;        // SPIR-V RelaxedPrecision
+    ValueId result = kNoValue;   // the first of opInfo().results consecutive values
+    uint32_t firstOperand = 0;   // into Program::operands
     uint16_t operandCount = 0;
-    uint32_t line = 0;            // source line, 0 = unknown
+    uint32_t line = 0;  // source line, 0 = unknown
     uint64_t imm = 0;
 };
 
@@ -70,13 +70,32 @@ enum class Stage : uint8_t { vertex, fragment, compute };
 enum class Builtin : uint8_t {
     user,
     // vertex inputs
-    vertexIndex, instanceIndex, baseVertex, baseInstance, drawIndex, viewIndex,
+    vertexIndex,
+    instanceIndex,
+    baseVertex,
+    baseInstance,
+    drawIndex,
+    viewIndex,
     // vertex outputs (position also the components of gl_Position)
-    position, pointSize, clipDistance, cullDistance, layer, viewportIndex,
+    position,
+    pointSize,
+    clipDistance,
+    cullDistance,
+    layer,
+    viewportIndex,
     // fragment inputs
-    fragCoord, frontFacing, pointCoord, sampleId, samplePosition, sampleMaskIn, primitiveId, helperInvocation,
+    fragCoord,
+    frontFacing,
+    pointCoord,
+    sampleId,
+    samplePosition,
+    sampleMaskIn,
+    primitiveId,
+    helperInvocation,
     // fragment outputs
-    fragDepth, sampleMask, fragStencilRef,
+    fragDepth,
+    sampleMask,
+    fragStencilRef,
 };
 
 enum class Interpolation : uint8_t { smooth, noPerspective, flat };
@@ -85,42 +104,74 @@ enum class Sampling : uint8_t { center, centroid, sample };
 /// One scalar input or output. 64-bit attributes take two 32-bit slots.
 struct InterfaceSlot {
     Builtin builtin = Builtin::user;
-    uint8_t component = 0;   // of the location, or of the builtin vector / array
+    uint8_t component = 0;  // of the location, or of the builtin vector / array
     uint16_t location = 0;
-    uint8_t index = 0;       // dual-source blending
-    Type type = Type::f32;   // b1, i32 or f32
+    uint8_t index = 0;      // dual-source blending
+    Type type = Type::f32;  // b1, i32 or f32
     Interpolation interpolation = Interpolation::smooth;
     Sampling sampling = Sampling::center;
     bool operator==(const InterfaceSlot&) const = default;
 };
 
 enum class ResourceKind : uint8_t {
-    uniformBuffer, storageBuffer, pushConstants,
-    combinedImageSampler, sampledImage, sampler, storageImage, uniformTexelBuffer, storageTexelBuffer, inputAttachment,
+    uniformBuffer,
+    storageBuffer,
+    pushConstants,
+    combinedImageSampler,
+    sampledImage,
+    sampler,
+    storageImage,
+    uniformTexelBuffer,
+    storageTexelBuffer,
+    inputAttachment,
 };
 
 struct Resource {
     ResourceKind kind = ResourceKind::uniformBuffer;
     uint32_t set = 0, binding = 0;
-    uint32_t arraySize = 1;   // descriptors; 0 = runtime-sized
-    uint32_t byteSize = 0;    // push constants: size of the block
-    bool readOnly = false;    // no store or atomic reaches it
+    uint32_t arraySize = 1;  // descriptors; 0 = runtime-sized
+    uint32_t byteSize = 0;   // push constants: size of the block
+    bool readOnly = false;   // no store or atomic reaches it
 };
 
 enum class ImageDim : uint8_t { d1, d2, d3, cube, buffer, subpass };
 
 enum class ImageKind : uint8_t {
-    sampleImplicit, sampleLod, sampleGrad, fetch, gather, read, store, atomic,
-    querySize, queryLevels, querySamples, queryLod,
+    sampleImplicit,
+    sampleLod,
+    sampleGrad,
+    fetch,
+    gather,
+    read,
+    store,
+    atomic,
+    querySize,
+    queryLevels,
+    querySamples,
+    queryLod,
 };
 
-enum class AtomicOp : uint8_t { add, sub, smin, smax, umin, umax, iand, ior, ixor, exchange, compareExchange, load, store };
+enum class AtomicOp : uint8_t {
+    add,
+    sub,
+    smin,
+    smax,
+    umin,
+    umax,
+    iand,
+    ior,
+    ixor,
+    exchange,
+    compareExchange,
+    load,
+    store
+};
 
 /// The static part of an image instruction. Its operands, in this order, those that are there:
-/// descriptor index of the image (i32), descriptor index of the sampler (i32, when samplerResource is another resource),
-/// `coords` coordinates (f32, or i32 for fetch/read/store; array layer last), dref (f32), lod or bias (f32; i32 for fetch
-/// and querySize), gradients d/dx then d/dy (`gradients` f32 each), offsets (`offsets` i32), sample (i32), texel (4 values,
-/// store) or value[, comparator] (atomic).
+/// descriptor index of the image (i32), descriptor index of the sampler (i32, when samplerResource is another
+/// resource), `coords` coordinates (f32, or i32 for fetch/read/store; array layer last), dref (f32), lod or bias (f32;
+/// i32 for fetch and querySize), gradients d/dx then d/dy (`gradients` f32 each), offsets (`offsets` i32), sample
+/// (i32), texel (4 values, store) or value[, comparator] (atomic).
 struct ImageOp {
     ImageKind kind = ImageKind::sampleImplicit;
     uint32_t imageResource = kNoIndex;    // into Program::resources
@@ -145,11 +196,11 @@ struct Program {
     uint32_t localWords = 0;  // invocation-local memory
     // Fragment execution modes and facts that planning needs; recomputed by analyse() (ir/analyse.h) after passes.
     bool earlyFragmentTests = false;
-    bool usesQuads = false;      // derivatives or implicit LOD: helper lanes are needed
-    bool canDiscard = false;     // kill or demote
+    bool usesQuads = false;   // derivatives or implicit LOD: helper lanes are needed
+    bool canDiscard = false;  // kill or demote
     bool writesDepth = false, writesSampleMask = false;
-    bool hasSideEffects = false; // stores or atomics to memory
-    bool perSample = false;      // reads SampleId/SamplePosition or a sample-qualified input
+    bool hasSideEffects = false;  // stores or atomics to memory
+    bool perSample = false;       // reads SampleId/SamplePosition or a sample-qualified input
     std::array<uint32_t, 3> localSize{1, 1, 1};
 
     std::span<const ValueId> operandsOf(const Inst& inst) const {

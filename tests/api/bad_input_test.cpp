@@ -17,7 +17,8 @@ class BadInput : public ApiTest {
     void TearDown() override {
         // Whatever a test did wrong: a white picture can still be drawn.
         const VnImage target = image(VK_FORMAT_R8G8B8A8_UNORM, 9, 7);
-        EXPECT_THAT(drawFullScreen(target, 9, 7, program(kFullScreenVertex, kWhiteFragment)), testing::Each(0xFFFFFFFFu));
+        EXPECT_THAT(drawFullScreen(target, 9, 7, program(kFullScreenVertex, kWhiteFragment)),
+                    testing::Each(0xFFFFFFFFu));
         ApiTest::TearDown();
     }
     void expect(VnResult actual, VnResult expected, const std::string& text) {
@@ -130,11 +131,13 @@ TEST_F(BadInput, RegionsOutsideTheImage) {
     VnRegion region{};
     region.x = 4;
     region.width = 5;
-    expect(vnReadImage(context_, target, &region, pixels.data(), 256), VN_ERROR_INVALID_ARGUMENT, "is not inside the level's 8 x 8");
+    expect(vnReadImage(context_, target, &region, pixels.data(), 256), VN_ERROR_INVALID_ARGUMENT,
+           "is not inside the level's 8 x 8");
     region = {};
     region.mip = 1;
     expect(vnUpdateImage(context_, target, &region, pixels.data(), 256), VN_ERROR_INVALID_ARGUMENT, "mip 1, layer 0");
-    expect(vnUpdateImage(context_, target, nullptr, pixels.data(), 255), VN_ERROR_INVALID_ARGUMENT, "needs 256 bytes, data has 255");
+    expect(vnUpdateImage(context_, target, nullptr, pixels.data(), 255), VN_ERROR_INVALID_ARGUMENT,
+           "needs 256 bytes, data has 255");
     region = {};
     region.x = region.width = 0xFFFFFFFF;
     expect(vnUpdateImage(context_, target, &region, pixels.data(), 256), VN_ERROR_INVALID_ARGUMENT, "is not inside");
@@ -161,7 +164,8 @@ TEST_F(BadInput, PassesThatDoNotFit) {
     expect(vnBeginPass(context_, &none), VN_ERROR_INVALID_ARGUMENT, "there is no attachment");
     VnPassDesc pass = passOn(image(VK_FORMAT_R8G8B8A8_UNORM, 8, 8));
     pass.renderArea = {{4, 4}, {8, 2}};
-    expect(vnBeginPass(context_, &pass), VN_ERROR_INVALID_ARGUMENT, "renderArea is not inside the attachments of 8 x 8");
+    expect(vnBeginPass(context_, &pass), VN_ERROR_INVALID_ARGUMENT,
+           "renderArea is not inside the attachments of 8 x 8");
     pass.renderArea = {};
     pass.depthStencil.view = view(image(VK_FORMAT_D32_SFLOAT, 8, 8, 1, 4));
     expect(vnBeginPass(context_, &pass), VN_ERROR_INVALID_ARGUMENT, "depthStencil has 4 samples, the others have 1");
@@ -171,8 +175,8 @@ TEST_F(BadInput, PassesThatDoNotFit) {
 
 TEST_F(BadInput, NotANumberAndOutOfRangeState) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    const VkViewport viewports[] = {{nan, 0, 8, 8, 0, 1}, {0, 0, 1e9f, 8, 0, 1}, {0, 0, -1, 8, 0, 1},
-                                    {0, 0, 8, 8, nan, 1}, {0, 0, 8, 8, 0, 1.5f}};
+    const VkViewport viewports[] = {
+        {nan, 0, 8, 8, 0, 1}, {0, 0, 1e9f, 8, 0, 1}, {0, 0, -1, 8, 0, 1}, {0, 0, 8, 8, nan, 1}, {0, 0, 8, 8, 0, 1.5f}};
     const char* texts[] = {"is nan", "beyond", "width is -1", "depth range nan", "depth range 0.000000 .. 1.5"};
     for (size_t i = 0; i < std::size(viewports); ++i)
         expect(vnSetViewport(context_, &viewports[i]), VN_ERROR_INVALID_ARGUMENT, texts[i]);
@@ -188,7 +192,8 @@ TEST_F(BadInput, NotANumberAndOutOfRangeState) {
     VnDepthStencilStateDesc depth{};
     depth.depthWrite = 1;
     VnDepthStencilState depthState{};
-    expect(vnCreateDepthStencilState(device_, &depth, &depthState), VN_ERROR_INVALID_ARGUMENT, "depthWrite needs depthTest");
+    expect(vnCreateDepthStencilState(device_, &depth, &depthState), VN_ERROR_INVALID_ARGUMENT,
+           "depthWrite needs depthTest");
     const uint32_t data[80] = {};
     expect(vnPushConstants(context_, 200, data, 60), VN_ERROR_INVALID_ARGUMENT, "offset 200, size 60");
 }
@@ -305,7 +310,8 @@ void main() { gl_Position = gl_VertexIndex == 1 ? value : vec4(vec2(gl_VertexInd
         ASSERT_EQ(vnPushConstants(context_, 0, value, sizeof value), VN_SUCCESS);
         EXPECT_THAT(drawFullScreen(target, 8, 8, strange), testing::Each(0u));
     }
-    const float extremes[][4] = {{inf, 0, 0, 1}, {3, -1, 0.5f, inf}, {1e38f, -1e38f, 1e38f, 1e-38f}, {3, -1, 0.5f, -0.0f}};
+    const float extremes[][4] = {
+        {inf, 0, 0, 1}, {3, -1, 0.5f, inf}, {1e38f, -1e38f, 1e38f, 1e-38f}, {3, -1, 0.5f, -0.0f}};
     for (const auto& value : extremes) {
         ASSERT_EQ(vnPushConstants(context_, 0, value, sizeof value), VN_SUCCESS);
         drawFullScreen(image(VK_FORMAT_R8G8B8A8_UNORM, 8, 8), 8, 8, strange);
@@ -339,7 +345,8 @@ struct FailingAllocator {
     int left = 0;
     static void* allocate(void* user, size_t bytes, size_t alignment) {
         auto* self = static_cast<FailingAllocator*>(user);
-        return self->left-- > 0 ? std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment) : nullptr;
+        return self->left-- > 0 ? std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment)
+                                : nullptr;
     }
     static void release(void*, void* memory, size_t) { std::free(memory); }
 };

@@ -73,7 +73,8 @@ void main() { color = value; })");
     ASSERT_EQ(vnBindBuffer(context_, 0, 0, 0, second, 0, 0), VN_SUCCESS);
     draw();
     ASSERT_EQ(vnEndPass(context_), VN_SUCCESS);
-    ASSERT_EQ(vnUpdateBuffer(context_, first, 0, green, sizeof green), VN_SUCCESS);  // after the draws: no effect on them
+    ASSERT_EQ(vnUpdateBuffer(context_, first, 0, green, sizeof green),
+              VN_SUCCESS);  // after the draws: no effect on them
     const std::vector<uint32_t> pixels = read(target, 8, 2);
     for (uint32_t i = 0; i < pixels.size(); ++i) ASSERT_EQ(pixels[i], i % 8 < 4 ? kRed : kGreen) << i;
 }
@@ -112,7 +113,8 @@ void main() { gl_Position = vec4((column + corner.x) * 0.5 - 1.0, corner.y * 2.0
     VnVertexLayout layout{};
     ASSERT_EQ(vnCreateVertexLayout(device_, &layoutDesc, &layout), VN_SUCCESS);
     const VkDrawIndexedIndirectCommand arguments{6, 2, 1, 1, 1};
-    const VnBuffer vertexBuffer = buffer(corners, sizeof corners), instanceBuffer = buffer(instanceColumns, sizeof instanceColumns);
+    const VnBuffer vertexBuffer = buffer(corners, sizeof corners),
+                   instanceBuffer = buffer(instanceColumns, sizeof instanceColumns);
     const VnBuffer indexBuffer = buffer(indices, sizeof indices), indirect = buffer(&arguments, sizeof arguments);
     for (const bool viaBuffer : {false, true}) {
         const VnImage target = image(VK_FORMAT_R8G8B8A8_UNORM, 4, 3);
@@ -174,7 +176,8 @@ void main() { gl_Position = vec4(vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) *
 }
 
 TEST_F(Draw, MultisampledTriangleResolvesToCoverage) {
-    const VnImage samples = image(VK_FORMAT_R8G8B8A8_UNORM, 8, 8, 1, 4), resolved = image(VK_FORMAT_R8G8B8A8_UNORM, 8, 8);
+    const VnImage samples = image(VK_FORMAT_R8G8B8A8_UNORM, 8, 8, 1, 4),
+                  resolved = image(VK_FORMAT_R8G8B8A8_UNORM, 8, 8);
     const VnProgram diagonal = program(R"(#version 450
 const vec2 corners[3] = vec2[](vec2(-1, -1), vec2(1, -1), vec2(-1, 1));
 void main() { gl_Position = vec4(corners[gl_VertexIndex], 0, 1); })",
@@ -192,7 +195,8 @@ void main() { gl_Position = vec4(corners[gl_VertexIndex], 0, 1); })",
 }
 
 TEST_F(Draw, RenderToTextureWithMipmaps) {
-    const VnImage texture = image(VK_FORMAT_R8G8B8A8_UNORM, 16, 16, VN_ALL_MIPS), target = image(VK_FORMAT_R8G8B8A8_UNORM, 4, 4);
+    const VnImage texture = image(VK_FORMAT_R8G8B8A8_UNORM, 16, 16, VN_ALL_MIPS),
+                  target = image(VK_FORMAT_R8G8B8A8_UNORM, 4, 4);
     VnViewDesc baseDesc{};
     baseDesc.image = texture;
     baseDesc.mipCount = 1;

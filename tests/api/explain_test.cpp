@@ -19,7 +19,8 @@ class Explain : public ApiTest {
         return text;
     }
     /// Draws one full-screen triangle and returns what it took.
-    VnStatistics run(VnProgram with, VnBlendState blend = {}, VnDepthStencilState depth = {}, std::string* text = nullptr) {
+    VnStatistics run(VnProgram with, VnBlendState blend = {}, VnDepthStencilState depth = {},
+                     std::string* text = nullptr) {
         const VnImage target = image(VK_FORMAT_R8G8B8A8_UNORM, kSize, kSize);
         VnPassDesc pass = passOn(target);
         pass.depthStencil.view = view(image(VK_FORMAT_D32_SFLOAT, kSize, kSize));

@@ -1,4 +1,5 @@
-// The fused multiply-add of base/simd-inl.h gives the bits of fmaf on every instruction set, the emulation on SSE4 included.
+// The fused multiply-add of base/simd-inl.h gives the bits of fmaf on every instruction set, the emulation on SSE4
+// included.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tests/base/fused_multiply_add_test.cpp"
 #include "base/simd_targets.h"
@@ -36,7 +37,9 @@ namespace vernier {
 namespace {
 
 using FuseFn = void (*)(const float*, const float*, const float*, float*, size_t);
-FuseFn fuseFor(Isa isa) { VERNIER_SELECT_ISA(isa, fuseAll) }
+FuseFn fuseFor(Isa isa) {
+    VERNIER_SELECT_ISA(isa, fuseAll)
+}
 
 void expectFused(const std::vector<float>& a, const std::vector<float>& b, const std::vector<float>& c) {
     std::vector<float> result(a.size());

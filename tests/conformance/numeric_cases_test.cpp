@@ -1,5 +1,5 @@
-// The numeric hard cases on Vernier, to its own declared promise, and on lavapipe for the record: what lavapipe gets wrong
-// is printed and decides nothing.
+// The numeric hard cases on Vernier, to its own declared promise, and on lavapipe for the record: what lavapipe gets
+// wrong is printed and decides nothing.
 #include <gtest/gtest.h>
 
 #include <cstdio>

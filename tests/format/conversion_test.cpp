@@ -260,8 +260,7 @@ TEST(SharedExponent, FollowsTheSpecification) {
         ASSERT_EQ(value.float32[3], 1.0f);
         uint32_t again = 0;
         packTexel(layout, value, &again);
-        const VkClearColorValue back =
-            unpackTexel(layout, &again);  // another exponent may express the same values
+        const VkClearColorValue back = unpackTexel(layout, &again);  // another exponent may express the same values
         for (int c = 0; c < 3; ++c) ASSERT_EQ(back.float32[c], value.float32[c]);
     }
 }

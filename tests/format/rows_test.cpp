@@ -82,8 +82,7 @@ TEST_P(Rows, UnpackEqualsScalarOnEveryIsa) {
         // In pieces of all lengths, at all alignments.
         for (size_t first = 0, length = 1; first < n; first += length, length = length % 41 + 1) {
             length = std::min(length, n - first);
-            void* const part[4] = {&planes[0][first], &planes[1][first], &planes[2][first],
-                                   &planes[3][first]};
+            void* const part[4] = {&planes[0][first], &planes[1][first], &planes[2][first], &planes[3][first]};
             ops.unpack(&texels[first * info->bytesPerTexel], length, part);
         }
         EXPECT_TRUE(planes == expected) << info->name << " on " << isaName(isa);
@@ -93,8 +92,7 @@ TEST_P(Rows, UnpackEqualsScalarOnEveryIsa) {
         void* const whole[4] = {reversed[0].data(), nullptr, reversed[2].data(), reversed[3].data()};
         ops.unpackEach(pointers.data(), n, whole);
         for (const int c : {0, 2, 3}) {
-            EXPECT_TRUE(std::equal(reversed[c].rbegin(), reversed[c].rend(), expected[c].begin()))
-                << info->name;
+            EXPECT_TRUE(std::equal(reversed[c].rbegin(), reversed[c].rend(), expected[c].begin())) << info->name;
         }
         EXPECT_EQ(reversed[1][n / 2], 0xdeadbeefu);
     }
@@ -159,15 +157,13 @@ std::vector<uint32_t> valuesToTry(const Component& part) {
         const double middle = (code * (part.bits > 16 ? 256.0 : 1.0) + 0.5) / max;
         add(middle);
         if (part.kind == ComponentKind::snorm || part.kind == ComponentKind::sscaled) add(-middle);
-        if (part.kind == ComponentKind::sfloat && part.bits == 16)
-            add((decodeHalf(code) + decodeHalf(code + 1)) / 2.0);
+        if (part.kind == ComponentKind::sfloat && part.bits == 16) add((decodeHalf(code) + decodeHalf(code + 1)) / 2.0);
         if (part.kind == ComponentKind::ufloat) {
             add((double{decodeUfloat(code, part.bits)} + decodeUfloat(code + 1, part.bits)) / 2);
         }
     }
     for (uint64_t bits = 0; bits < 1ull << 32; bits += 65521) values.push_back(static_cast<uint32_t>(bits));
-    for (const float x :
-         {0.0f, -0.0f, 1.0f, -1.0f, INFINITY, -INFINITY, NAN, -NAN, 65504.0f, 65520.0f, 0.0031308f}) {
+    for (const float x : {0.0f, -0.0f, 1.0f, -1.0f, INFINITY, -INFINITY, NAN, -NAN, 65504.0f, 65520.0f, 0.0031308f}) {
         add(x);
     }
     return values;
@@ -201,8 +197,8 @@ TEST_P(Rows, PackEqualsScalarOnEveryIsa) {
         }
         for (size_t i = 0; i < n; ++i) {
             ASSERT_EQ(0, std::memcmp(&texels[i * bytes], &expected[i * bytes], bytes))
-                << info->name << " on " << isaName(isa) << ": value " << std::hex << planes[0][i] << " "
-                << planes[1][i] << " " << planes[2][i] << " " << planes[3][i];
+                << info->name << " on " << isaName(isa) << ": value " << std::hex << planes[0][i] << " " << planes[1][i]
+                << " " << planes[2][i] << " " << planes[3][i];
         }
     }
 }

@@ -40,8 +40,7 @@ TEST(FormatTable, ComponentsFitTheTexelWithoutOverlap) {
                 ++components;
                 ASSERT_LE(part.offset + part.bits, info.bytesPerTexel * 8) << info.name;
                 EXPECT_EQ(part.offset / 32, (part.offset + part.bits - 1) / 32) << info.name;
-                for (int b = part.offset; b < part.offset + part.bits; ++b)
-                    EXPECT_EQ(owner[b]++, 0) << info.name;
+                for (int b = part.offset; b < part.offset + part.bits; ++b) EXPECT_EQ(owner[b]++, 0) << info.name;
             }
         }
         EXPECT_EQ(components, info.componentCount) << info.name;
@@ -57,8 +56,7 @@ struct Requirement {
 TEST(FormatTable, MandatoryFeatures) {
     constexpr VkFormatFeatureFlags kS = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_BLIT_SRC_BIT;
     constexpr VkFormatFeatureFlags kL = VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
-    constexpr VkFormatFeatureFlags kC =
-        VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT | VK_FORMAT_FEATURE_BLIT_DST_BIT;
+    constexpr VkFormatFeatureFlags kC = VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT | VK_FORMAT_FEATURE_BLIT_DST_BIT;
     constexpr VkFormatFeatureFlags kB = VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT;
     constexpr VkFormatFeatureFlags kI = VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
     constexpr VkFormatFeatureFlags kA = VK_FORMAT_FEATURE_STORAGE_IMAGE_ATOMIC_BIT;
@@ -132,8 +130,7 @@ TEST(FormatTable, MandatoryFeatures) {
 // Integer formats can be neither filtered nor blended, whatever else the table grows.
 TEST(FormatTable, IntegersAreNotFilteredOrBlended) {
     for (const FormatInfo& info : allFormats()) {
-        if ((info.aspects & VK_IMAGE_ASPECT_COLOR_BIT) == 0 || info.color.type == ValueType::floating)
-            continue;
+        if ((info.aspects & VK_IMAGE_ASPECT_COLOR_BIT) == 0 || info.color.type == ValueType::floating) continue;
         EXPECT_EQ(info.optimalTilingFeatures & (VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT |
                                                 VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT),
                   0u)
@@ -164,8 +161,7 @@ TEST(FormatTable, ComponentOrderOfPackedFormats) {
 
 TEST(FormatTable, ComponentBitsFollowTheWriteMask) {
     uint32_t bits = 0;
-    componentBits(*findFormat(VK_FORMAT_B8G8R8A8_UNORM), VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_A_BIT,
-                  &bits);
+    componentBits(*findFormat(VK_FORMAT_B8G8R8A8_UNORM), VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_A_BIT, &bits);
     EXPECT_EQ(bits, 0xffff0000u);
     componentBits(*findFormat(VK_FORMAT_A2B10G10R10_UNORM_PACK32), VK_COLOR_COMPONENT_G_BIT, &bits);
     EXPECT_EQ(bits, 0x3ffu << 10);

@@ -32,10 +32,9 @@ TEST_P(EveryScene, IsDecided) {
                 sum += p.high[c] - p.low[c];
             }
         }
-        std::cout << GetParam().name << " output " << i << ": " << seconds.count() << " s, "
-                  << image.pixels.size() << " pixels, " << self.edges << " edge, " << self.unknown
-                  << " unknown, mean width " << sum / (4.0 * static_cast<double>(image.pixels.size()))
-                  << ", widest " << widest << "\n";
+        std::cout << GetParam().name << " output " << i << ": " << seconds.count() << " s, " << image.pixels.size()
+                  << " pixels, " << self.edges << " edge, " << self.unknown << " unknown, mean width "
+                  << sum / (4.0 * static_cast<double>(image.pixels.size())) << ", widest " << widest << "\n";
         EXPECT_EQ(self.outside, 0u) << "the declared value is always permitted";
         EXPECT_EQ(self.unknown, 0u);
         EXPECT_LT(self.edges, image.pixels.size() / 10);

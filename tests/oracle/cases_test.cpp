@@ -108,8 +108,7 @@ TEST(Fault, ClippedEdgeDrawnTwice) {
 }
 
 TEST(Fault, ScalingChangesABit) {
-    const std::string wrong =
-        failure("W06", [](CaseImages& i) { byteAt(i[3][0], 20, 20, 1) ^= std::byte{1}; });
+    const std::string wrong = failure("W06", [](CaseImages& i) { byteAt(i[3][0], 20, 20, 1) ^= std::byte{1}; });
     EXPECT_NE(wrong.find("scaled by 2^120, pixel (20, 20) channel G"), std::string::npos) << wrong;
 }
 
@@ -158,8 +157,7 @@ TEST(Fault, WrongCodes) {
     EXPECT_NE(failure("B01", [](CaseImages& i) { byteAt(i[1][0], 9, 9, 2) = std::byte{63}; }), "")
         << "not the same everywhere";
     for (const char* name : {"B03", "B04"}) {
-        EXPECT_NE(failure(name, [](CaseImages& i) { byteAt(i[0][0], 200, 0, 1) ^= std::byte{1}; })
-                      .find("came back as"),
+        EXPECT_NE(failure(name, [](CaseImages& i) { byteAt(i[0][0], 200, 0, 1) ^= std::byte{1}; }).find("came back as"),
                   std::string::npos);
     }
 }

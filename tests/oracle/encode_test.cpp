@@ -56,8 +56,7 @@ TEST(Encode, Half) {
     // 1 + 2^-11 is the tie between 0x3c00 and 0x3c01; below and above swap with the sign.
     expectCodes(encode(kHalf, 1 + powerOfTwo(-11)), 0x3c00, 0x3c01, 0x3c00);
     expectCodes(encode(kHalf, -1 - powerOfTwo(-12)), 0xbc01, 0xbc00, 0xbc00);
-    for (uint64_t code = 0; code < 0x7c00; ++code)
-        EXPECT_EQ(encode(kHalf, *decode(kHalf, code)).nearest, code);
+    for (uint64_t code = 0; code < 0x7c00; ++code) EXPECT_EQ(encode(kHalf, *decode(kHalf, code)).nearest, code);
     EXPECT_FALSE(decode(kHalf, 0x7c00));
     EXPECT_EQ(encode(kFloat, rational(1)).nearest, 0x3f800000u);
     EXPECT_EQ(encode(kFloat, powerOfTwo(-149)).nearest, 1u);
@@ -70,10 +69,8 @@ TEST(Encode, PackedFloats) {
     EXPECT_EQ(*decode(kFloat11, 1), powerOfTwo(-20));
     EXPECT_EQ(*decode(kFloat10, 1), powerOfTwo(-19));
     expectCodes(encode(kFloat11, rational(-5)), 0, 0, 0);
-    for (uint64_t code = 0; code < 0x7c0; ++code)
-        EXPECT_EQ(encode(kFloat11, *decode(kFloat11, code)).nearest, code);
-    for (uint64_t code = 0; code < 0x3e0; ++code)
-        EXPECT_EQ(encode(kFloat10, *decode(kFloat10, code)).nearest, code);
+    for (uint64_t code = 0; code < 0x7c0; ++code) EXPECT_EQ(encode(kFloat11, *decode(kFloat11, code)).nearest, code);
+    for (uint64_t code = 0; code < 0x3e0; ++code) EXPECT_EQ(encode(kFloat10, *decode(kFloat10, code)).nearest, code);
 }
 
 // B13: a channel of 511.75 quanta rounds to 512 and raises the exponent.
@@ -83,8 +80,7 @@ TEST(Encode, SharedExponentBump) {
     EXPECT_EQ(code >> 27, 16u);
     EXPECT_EQ(code & 511u, 256u);
     EXPECT_EQ(decodeSharedExponent(code)[0], 1);
-    EXPECT_EQ(decodeSharedExponent(encodeSharedExponent({rational(1e9), rational(-1), rational(1)}))[0],
-              65408);
+    EXPECT_EQ(decodeSharedExponent(encodeSharedExponent({rational(1e9), rational(-1), rational(1)}))[0], 65408);
     EXPECT_EQ(encodeSharedExponent({Rational(0), Rational(0), Rational(0)}), 0u);
 }
 
@@ -164,8 +160,7 @@ TEST(Blend, AdditiveStepsCount) {
     const auto state = blendState(VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_ONE);
     Codes codes{};
     const Rational one = fraction(1, 255);
-    for (int i = 0; i < 255; ++i)
-        codes = blendExactly(format, state, {}, {one, one, one, one}, codes).nearest;
+    for (int i = 0; i < 255; ++i) codes = blendExactly(format, state, {}, {one, one, one, one}, codes).nearest;
     EXPECT_EQ(codes[0], 255u);
     EXPECT_EQ(codes[3], 255u);
 }

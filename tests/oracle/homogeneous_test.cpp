@@ -12,8 +12,7 @@ using Q = Rational;
 constexpr VkViewport kViewport{0, 0, 8, 8, 0, 1};
 
 HomogeneousTriangle<Q> triangle(const std::array<Clip<Q>, 3>& p, const VkViewport& viewport = kViewport) {
-    return HomogeneousTriangle<Q>(
-        {toWindow(p[0], viewport), toWindow(p[1], viewport), toWindow(p[2], viewport)});
+    return HomogeneousTriangle<Q>({toWindow(p[0], viewport), toWindow(p[1], viewport), toWindow(p[2], viewport)});
 }
 
 TEST(Viewport, CornersAndNegativeHeight) {
@@ -90,8 +89,7 @@ TEST(Clipping, SharedEdgeGetsTheSameNewVertex) {
 // C07: vertices on the planes are inside; W03: behind the eye is nothing.
 TEST(Clipping, PlanesAreInside) {
     EXPECT_EQ(clipNearFar<Q>({Clip<Q>{0, 0, 0, 1}, Clip<Q>{1, 0, 1, 1}, Clip<Q>{0, 1, 0, 1}}).size(), 3u);
-    EXPECT_TRUE(
-        clipNearFar<Q>({Clip<Q>{0, 0, -1, -1}, Clip<Q>{1, 0, -1, -2}, Clip<Q>{0, 1, -1, -1}}).empty());
+    EXPECT_TRUE(clipNearFar<Q>({Clip<Q>{0, 0, -1, -1}, Clip<Q>{1, 0, -1, -2}, Clip<Q>{0, 1, -1, -1}}).empty());
     const auto cut =
         clipBehindEye<Q>({Clip<Q>{0, 0, 0, 1}, Clip<Q>{4, 0, 0, -1}, Clip<Q>{0, 4, 0, 1}}, powerOfTwo(-20));
     EXPECT_EQ(cut.size(), 4u);

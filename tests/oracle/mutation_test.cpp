@@ -20,19 +20,16 @@ std::vector<uint32_t> draw(const std::vector<GridTriangle>& triangles, const Cov
     std::vector<uint32_t> counts(16 * 16);
     for (uint32_t y = 0; y < 16; ++y) {
         for (uint32_t x = 0; x < 16; ++x) {
-            const bool in =
-                static_cast<int>(x) >= scissor.offset.x && static_cast<int>(y) >= scissor.offset.y &&
-                x < scissor.offset.x + scissor.extent.width && y < scissor.offset.y + scissor.extent.height;
-            for (const GridTriangle& t : triangles)
-                counts[y * 16 + x] += in && covered(t, kGrid.sample(x, y));
+            const bool in = static_cast<int>(x) >= scissor.offset.x && static_cast<int>(y) >= scissor.offset.y &&
+                            x < scissor.offset.x + scissor.extent.width && y < scissor.offset.y + scissor.extent.height;
+            for (const GridTriangle& t : triangles) counts[y * 16 + x] += in && covered(t, kGrid.sample(x, y));
         }
     }
     return counts;
 }
 
 // The edge test with a choice of what happens on the edge itself.
-CoverageFunction withTies(const std::function<bool(const GridPoint&, const GridPoint&)>& owned,
-                          GridPoint shift = {}) {
+CoverageFunction withTies(const std::function<bool(const GridPoint&, const GridPoint&)>& owned, GridPoint shift = {}) {
     return [owned, shift](const GridTriangle& triangle, const GridPoint& sample) {
         const GridPoint p{sample.x + shift.x, sample.y + shift.y};
         GridTriangle t = triangle;
@@ -61,8 +58,7 @@ TEST(Mutation, TheRightRulePasses) {
 }
 
 TEST(Mutation, ShiftedTieRuleIsCaughtInDeclaredModeOnly) {
-    const auto bottomRight =
-        withTies([](const GridPoint& a, const GridPoint& b) { return !isTopLeft(a, b); });
+    const auto bottomRight = withTies([](const GridPoint& a, const GridPoint& b) { return !isTopLeft(a, b); });
     const auto counts = draw(diagonalQuad(), bottomRight);
     const std::string wrong = checkDeclaredCoverage(diagonalQuad(), kGrid, kEverything, counts);
     EXPECT_NE(wrong.find("tie"), std::string::npos) << wrong;
@@ -93,16 +89,14 @@ TEST(Mutation, SamplesShiftedByThreeSubUnitsAreIllegal) {
     const auto counts = draw(diagonalQuad(), shifted);
     EXPECT_NE(checkDeclaredCoverage(diagonalQuad(), kGrid, kEverything, counts), "");
     // Every pixel of the border columns is within reach of a legal snapping only for shifts of one sub-unit.
-    const std::vector<GridTriangle> offGrid{
-        {GridPoint{640 - 2, 600}, GridPoint{3000, 600}, GridPoint{640 - 2, 3000}}};
+    const std::vector<GridTriangle> offGrid{{GridPoint{640 - 2, 600}, GridPoint{3000, 600}, GridPoint{640 - 2, 3000}}};
     EXPECT_EQ(checkLegalCoverage(offGrid, kGrid, draw(offGrid, covers)), "");
     EXPECT_NE(checkLegalCoverage(offGrid, kGrid, draw(offGrid, withTies(isTopLeft, {-5, 0}))), "");
 }
 
 TEST(Mutation, ScissorOffByOne) {
     const VkRect2D scissor{{3, 3}, {6, 6}}, wide{{3, 3}, {7, 6}}, narrow{{3, 3}, {5, 6}};
-    EXPECT_EQ(checkDeclaredCoverage(diagonalQuad(), kGrid, scissor, draw(diagonalQuad(), covers, scissor)),
-              "");
+    EXPECT_EQ(checkDeclaredCoverage(diagonalQuad(), kGrid, scissor, draw(diagonalQuad(), covers, scissor)), "");
     const std::string outside =
         checkDeclaredCoverage(diagonalQuad(), kGrid, scissor, draw(diagonalQuad(), covers, wide));
     EXPECT_NE(outside.find("outside the scissor"), std::string::npos) << outside;

@@ -110,8 +110,8 @@ TEST(Scene, DiagonalQuadIsAmbiguousOnItsEdgesOnly) {
 }
 
 TEST(Scene, SmoothColoursFollowThePlane) {
-    const OracleImage image = render(drawScene(
-        {vertex(0, 0, {0, 0, 0, 1}), vertex(16, 0, {1, 0, 0, 1}), vertex(0, 16, {0, 1, 0, 1})}, kSmooth));
+    const OracleImage image = render(
+        drawScene({vertex(0, 0, {0, 0, 0, 1}), vertex(16, 0, {1, 0, 0, 1}), vertex(0, 16, {0, 1, 0, 1})}, kSmooth));
     for (uint32_t y = 0; y < 15; ++y) {
         for (uint32_t x = 0; x + y < 15; ++x) {
             const OraclePixel& p = at(image, x, y);
@@ -138,8 +138,8 @@ TEST(Scene, PerspectiveByHand) {
 }
 
 TEST(Scene, FourSamplesAtTheStandardPlaces) {
-    Scene scene = drawScene({vertex(-8, -8, kRed), vertex(4.5f, -8, kRed), vertex(4.5f, 40, kRed),
-                             vertex(-8, -8, kRed), vertex(4.5f, 40, kRed), vertex(-8, 40, kRed)},
+    Scene scene = drawScene({vertex(-8, -8, kRed), vertex(4.5f, -8, kRed), vertex(4.5f, 40, kRed), vertex(-8, -8, kRed),
+                             vertex(4.5f, 40, kRed), vertex(-8, 40, kRed)},
                             kFlat, [](Scene& s) {
                                 SceneImage samples = s.images[0];
                                 samples.samples = VK_SAMPLE_COUNT_4_BIT;
@@ -159,8 +159,7 @@ TEST(Scene, FourSamplesAtTheStandardPlaces) {
 
 TEST(Scene, DepthDecidesAndTiesAreOpen) {
     const auto three = [](std::array<float, 4> color, float z0, float z1) {
-        return std::vector<Vertex>{vertex(0, 0, color, z0), vertex(32, 0, color, z1),
-                                   vertex(0, 32, color, z0)};
+        return std::vector<Vertex>{vertex(0, 0, color, z0), vertex(32, 0, color, z1), vertex(0, 32, color, z0)};
     };
     std::vector<Vertex> v = three(kRed, 0.25f, 0.75f);
     const auto second = three(kGreen, 0.75f, 0.25f);
@@ -204,8 +203,8 @@ TEST(Scene, MipsAndBlitsAverage) {
 }
 
 TEST(Scene, UnsupportedIsRefusedInWords) {
-    const auto images = renderOracle(drawScene(
-        diagonalQuad(), kFlat, [](Scene& s) { s.pipelines[0].topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST; }));
+    const auto images = renderOracle(
+        drawScene(diagonalQuad(), kFlat, [](Scene& s) { s.pipelines[0].topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST; }));
     ASSERT_FALSE(images.ok());
     EXPECT_EQ(images.error().code, ErrorCode::unsupported);
     const auto broken =
@@ -215,9 +214,8 @@ TEST(Scene, UnsupportedIsRefusedInWords) {
 }
 
 TEST(Scene, UndefinedContentsAreUnknown) {
-    const OracleImage image = render(drawScene(diagonalQuad(), kFlat, [](Scene& s) {
-        passOf(s).colors[0].loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
-    }));
+    const OracleImage image = render(drawScene(
+        diagonalQuad(), kFlat, [](Scene& s) { passOf(s).colors[0].loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE; }));
     EXPECT_TRUE(at(image, 0, 0).flags & kOracleUnknown);
     EXPECT_FALSE(at(image, 5, 5).flags & kOracleUnknown);
 }
@@ -255,9 +253,8 @@ TEST(Mutation, ScissorOffByOne) {
 
 TEST(Mutation, ViewportShifted) {
     const auto moved = [](float x) {
-        return drawScene(
-            {vertex(0, 0, {0, 0, 0, 1}), vertex(16, 0, {1, 0, 0, 1}), vertex(0, 16, {0, 1, 0, 1})}, kSmooth,
-            [x](Scene& s) { passOf(s).draws[0].viewport.x = x; });
+        return drawScene({vertex(0, 0, {0, 0, 0, 1}), vertex(16, 0, {1, 0, 0, 1}), vertex(0, 16, {0, 1, 0, 1})},
+                         kSmooth, [x](Scene& s) { passOf(s).draws[0].viewport.x = x; });
     };
     EXPECT_GT(judge(moved(0), moved(1)).outside, 100u);
     EXPECT_GT(judge(moved(0), moved(0.25f)).outside, 100u) << "four codes";

@@ -35,8 +35,7 @@ bool exercise(const Words& words) {
     }
     bool ran = true;
     for (const EntryPoint& entry : module->entryPoints()) {
-        const auto interpreter =
-            Interpreter<float>::create(*module, entry.model, entry.name, {.stepBudget = 5000});
+        const auto interpreter = Interpreter<float>::create(*module, entry.model, entry.name, {.stepBudget = 5000});
         if (!interpreter) return false;
         TestBuffers<float> buffers;
         buffers.buffers[{0, 0, 0}] = std::vector<std::byte>(300);
@@ -86,15 +85,13 @@ TEST(BrokenModule, WordsReplaced) {
 TEST(BrokenModule, InstructionsDroppedAndDoubled) {
     const Words words = sampleModule();
     std::vector<std::pair<size_t, size_t>> instructions;
-    for (size_t at = 5; at < words.size(); at += words[at] >> 16)
-        instructions.emplace_back(at, words[at] >> 16);
+    for (size_t at = 5; at < words.size(); at += words[at] >> 16) instructions.emplace_back(at, words[at] >> 16);
     for (const auto& [at, length] : instructions) {
         Words dropped = words, doubled = words;
         const auto begin = words.begin() + static_cast<ptrdiff_t>(at);
         dropped.erase(dropped.begin() + static_cast<ptrdiff_t>(at),
                       dropped.begin() + static_cast<ptrdiff_t>(at + length));
-        doubled.insert(doubled.begin() + static_cast<ptrdiff_t>(at), begin,
-                       begin + static_cast<ptrdiff_t>(length));
+        doubled.insert(doubled.begin() + static_cast<ptrdiff_t>(at), begin, begin + static_cast<ptrdiff_t>(length));
         exercise(dropped);
         exercise(doubled);
     }
@@ -111,8 +108,8 @@ TEST(BrokenModule, HugeAndDeepTypes) {
             "%v = OpVariable %ptr Function\n%x = OpLoad " +
             type + " %v\nOpReturn\nOpFunctionEnd");
     };
-    EXPECT_FALSE(exercise(
-        program("%a = OpTypeArray %float %big\n%b = OpTypeArray %a %big\n%c = OpTypeArray %b %big\n", "%c")));
+    EXPECT_FALSE(
+        exercise(program("%a = OpTypeArray %float %big\n%b = OpTypeArray %a %big\n%c = OpTypeArray %b %big\n", "%c")));
     // Every struct holds the one before twice: 2^60 floats.
     std::string doubling = "%s0 = OpTypeStruct %float\n";
     for (int k = 1; k <= 60; ++k) {

@@ -12,9 +12,8 @@ std::array<int32_t, 4> run(std::string_view declarations, std::string_view body,
 using Ints = std::array<int32_t, 4>;
 
 TEST(ControlFlow, IfElse) {
-    EXPECT_EQ(
-        run("", "if (i.x > 5) { if (i.y > 0) ri.x = 1; else ri.x = 2; } else ri.x = 3; ri.yzw = ivec3(0);"),
-        (Ints{2, 0, 0, 0}));
+    EXPECT_EQ(run("", "if (i.x > 5) { if (i.y > 0) ri.x = 1; else ri.x = 2; } else ri.x = 3; ri.yzw = ivec3(0);"),
+              (Ints{2, 0, 0, 0}));
 }
 
 TEST(ControlFlow, Loops) {
@@ -32,8 +31,7 @@ TEST(ControlFlow, SwitchWithFallThrough) {
         int y = 0;
         switch (x) { case 1: y += 1; case -2: y += 10; break; case 3: return 77; default: y = -1; }
         return y; })";
-    EXPECT_EQ(run(declarations, "ri = ivec4(f(i.x - 6), f(i.x - 9), f(i.x - 4), f(i.x));"),
-              (Ints{11, 10, 77, -1}));
+    EXPECT_EQ(run(declarations, "ri = ivec4(f(i.x - 6), f(i.x - 9), f(i.x - 4), f(i.x));"), (Ints{11, 10, 77, -1}));
 }
 
 TEST(ControlFlow, EarlyReturnFromLoop) {
@@ -96,18 +94,16 @@ TEST(ControlFlow, Phis) {
 }
 
 TEST(ControlFlow, ShortCircuit) {
-    EXPECT_EQ(
-        run("int calls = 0; bool f(bool x) { calls++; return x; }",
-            "bool a = f(i.x > 0) || f(true); bool b = f(i.x < 0) && f(true); ri = ivec4(calls, a, b, 0);"),
-        (Ints{2, 1, 0, 0}));
+    EXPECT_EQ(run("int calls = 0; bool f(bool x) { calls++; return x; }",
+                  "bool a = f(i.x > 0) || f(true); bool b = f(i.x < 0) && f(true); ri = ivec4(calls, a, b, 0);"),
+              (Ints{2, 1, 0, 0}));
 }
 
 TEST(ControlFlow, DiscardEndsTheInvocation) {
     // 1.1 emits OpKill, 1.3 OpTerminateInvocation.
     for (const int vulkanMinor : {0, 1, 2, 3}) {
         Resources<float> none;
-        const Words words =
-            compileFragment(fragmentSource("", "r = v; if (i.x == 7) discard; ri = i;"), vulkanMinor);
+        const Words words = compileFragment(fragmentSource("", "r = v; if (i.x == 7) discard; ri = i;"), vulkanMinor);
         const auto outcome = runFragment<float>(words, standardInputs<float>(), none);
         EXPECT_TRUE(outcome.discarded);
         EXPECT_FALSE(outcome.outputs.locations.contains(Location(1)));
@@ -126,8 +122,7 @@ TEST(ControlFlow, DemoteGoesOn) {
 }
 
 TEST(ControlFlow, InfiniteLoopIsAnError) {
-    const auto module =
-        Module::parse(compileFragment(fragmentSource("", "r = v; while (i.x == 7) r += v; ri = i;")));
+    const auto module = Module::parse(compileFragment(fragmentSource("", "r = v; while (i.x == 7) r += v; ri = i;")));
     ASSERT_TRUE(module.ok());
     Resources<float> none;
     const auto outcome = interpreterOf<float>(*module, spv::ExecutionModelFragment, {.stepBudget = 10000})
@@ -150,8 +145,8 @@ TEST(ControlFlow, RecursionAndUnreachableAreErrors) {
             )") + body + "\nOpFunctionEnd");
     };
     for (const auto& [body, text] :
-         {std::pair{"%x = OpFunctionCall %void %main\nOpReturn", "deep"},
-          std::pair{"OpUnreachable", "OpUnreachable"}, std::pair{"OpEmitVertex\nOpReturn", "OpEmitVertex"}}) {
+         {std::pair{"%x = OpFunctionCall %void %main\nOpReturn", "deep"}, std::pair{"OpUnreachable", "OpUnreachable"},
+          std::pair{"OpEmitVertex\nOpReturn", "OpEmitVertex"}}) {
         const auto module = Module::parse(program(body));
         ASSERT_TRUE(module.ok()) << module.error().message;
         Resources<float> none;

@@ -42,8 +42,7 @@ const FloatCase kFloatCases[] = {
     {"mat2 m = inverse(mat2(v.x, v.y, v.z, v.w)); r = vec4(m[0], m[1]);", {0.75, 0.3125, -0.5, 0.125}},
     {"mat3 m = mat3(2, 0, 0, 0, 4, 0, 1, 0, v.x); m = inverse(m); r = vec4(m[0].x, m[1].y, m[2].x, m[2].z);",
      {0.5, 0.25, -1, 2}},
-    {"mat4 m = mat4(v.z); m[3] = vec4(1, 2, 3, 1); r = vec4(determinant(m), inverse(m)[3].xyz);",
-     {8, -0.5, -1, -1.5}},
+    {"mat4 m = mat4(v.z); m[3] = vec4(1, 2, 3, 1); r = vec4(determinant(m), inverse(m)[3].xyz);", {8, -0.5, -1, -1.5}},
     {"r = vec4(float(i.x), float(i.y), float(u.z), float(u.w));", {7, -3, 2147483649.0, 4294967295.0}},
     {"r = vec4(i.w, v.x > 0.0, v.y > 0.0, 0);", {-2147483648.0, 1, 0, 0}},
     {"r = v.x > v.y ? v : -v;", {0.5, -1.25, 2, 3}},
@@ -67,12 +66,10 @@ const FloatCase kFloatCases[] = {
     {"r = sin(v);", {0.47942553860420301, -0.94898461935558621, 0.90929742682568171, 0.14112000805986721}},
     {"r = cos(v);", {0.87758256189037276, 0.31532236239526867, -0.41614683654714241, -0.98999249660044542}},
     {"r = tan(v);", {0.54630248984379048, -3.0095696738628313, -2.1850398632615189, -0.1425465430742778}},
-    {"r = asin(v / 4.0);",
-     {0.12532783116806540, -0.31782370392788067, 0.52359877559829893, 0.84806207898148100}},
+    {"r = asin(v / 4.0);", {0.12532783116806540, -0.31782370392788067, 0.52359877559829893, 0.84806207898148100}},
     {"r = acos(v / 4.0);", {1.4454684956268312, 1.8886200307227771, 1.0471975511965979, 0.72273424781341566}},
     {"r = atan(v);", {0.46364760900080609, -0.89605538457134393, 1.1071487177940904, 1.2490457723982544}},
-    {"r = atan(v, v.wwxy);",
-     {0.16514867741462683, -0.39479111969976155, 1.3258176636680326, 1.9655874464946581}},
+    {"r = atan(v, v.wwxy);", {0.16514867741462683, -0.39479111969976155, 1.3258176636680326, 1.9655874464946581}},
     {"r = sinh(v);", {0.52109530549374738, -1.6019190803008256, 3.6268604078470190, 10.017874927409903}},
     {"r = cosh(v);", {1.1276259652063807, 1.8884238771610159, 3.7621956910836314, 10.067661995777765}},
     {"r = tanh(v);", {0.46211715726000973, -0.84828363995751289, 0.96402758007581690, 0.99505475368673046}},
@@ -81,14 +78,12 @@ const FloatCase kFloatCases[] = {
      {1.3169578969248166, 1.7627471740390859, 0.54930614433405489, -0.73316853439671351}},
     {"r = pow(v.zwxz, v.wzxx);", {8, 9, 0.70710678118654757, 1.4142135623730951}},
     {"r = exp(v);", {1.6487212707001282, 0.28650479686019009, 7.3890560989306504, 20.085536923187668}},
-    {"r = log(abs(v));",
-     {-0.69314718055994529, 0.22314355131420976, 0.69314718055994529, 1.0986122886681098}},
+    {"r = log(abs(v));", {-0.69314718055994529, 0.22314355131420976, 0.69314718055994529, 1.0986122886681098}},
     {"r = exp2(v);", {1.4142135623730951, 0.42044820762685725, 4, 8}},
     {"r = log2(abs(v));", {-1, 0.32192809488736235, 1, 1.5849625007211561}},
     {"r = sqrt(abs(v) * vec4(2, 5, 2, 3));", {1, 2.5, 2, 3}},
     {"r = inversesqrt(vec4(4.0 * v.z * v.x, v.z * 2.0, 16.0 * v.x / 2.0, v.x * v.x));", {0.5, 0.5, 0.5, 2}},
-    {"float whole; r.x = modf(v.y, whole); r.y = whole; r.z = modf(v.w, whole); r.w = whole;",
-     {-0.25, -1, 0, 3}},
+    {"float whole; r.x = modf(v.y, whole); r.y = whole; r.z = modf(v.w, whole); r.w = whole;", {-0.25, -1, 0, 3}},
     {"r = min(v, v.yxwz);", {-1.25, -1.25, 2, 2}},
     {"r = max(v, 1.5);", {1.5, 1.5, 2, 3}},
     {"r = clamp(v, -1.0, 2.5);", {0.5, -1, 2, 2.5}},
@@ -96,8 +91,7 @@ const FloatCase kFloatCases[] = {
     {"r = step(vec4(0.5, 0, 2.5, 3), v);", {1, 0, 0, 1}},
     {"r = smoothstep(vec4(0, 0, 0, 2), vec4(1, 1, 4, 4), v);", {0.5, 0, 0.5, 0.5}},
     {"r = fma(v, v, vec4(1));", {1.25, 2.5625, 5, 10}},
-    {"int e; r.x = frexp(v.y, e); r.y = float(e); r.z = frexp(v.w * 8.0, e); r.w = float(e);",
-     {-0.625, 1, 0.75, 5}},
+    {"int e; r.x = frexp(v.y, e); r.y = float(e); r.z = frexp(v.w * 8.0, e); r.w = float(e);", {-0.625, 1, 0.75, 5}},
     {"r = ldexp(v, ivec4(1, i.y, 10, -1));", {1, -0.15625, 2048, 1.5}},
     {"r = vec4(length(v.zw * vec2(1.5, 4.0 / 3.0)), length(v.y), distance(v.x, v.w), distance(v.xy, v.zw));",
      {5, 1.25, 2.5, 4.5069390943299865}},
@@ -105,12 +99,10 @@ const FloatCase kFloatCases[] = {
     {"r = vec4(normalize(vec2(1.5, v.z)), normalize(v.y), 0);", {0.6, 0.8, -1, 0}},
     {"r = vec4(faceforward(v.xy, v.xy, v.xy), faceforward(v.xy, v.xy, -v.xy));", {-0.5, 1.25, 0.5, -1.25}},
     {"r = vec4(reflect(v.xy, vec2(0, 1)), reflect(v.xy, vec2(1, 0)));", {0.5, 1.25, -0.5, -1.25}},
-    {"r = vec4(refract(vec2(0, -1), vec2(0, 1), v.x), refract(vec2(0.8, -0.6), vec2(0, 1), v.z));",
-     {0, -1, 0, 0}},
+    {"r = vec4(refract(vec2(0, -1), vec2(0, 1), v.x), refract(vec2(0.8, -0.6), vec2(0, 1), v.z));", {0, -1, 0, 0}},
     {"r = unpackSnorm4x8(u.x - 5u + 0x7F81807Fu);", {1, -1, -1, 1}},
     {"r = unpackUnorm4x8(u.x - 5u + 0xFF330066u);", {0.4, 0, 0.2, 1}},
-    {"r = vec4(unpackSnorm2x16(u.x - 5u + 0x80007FFFu), unpackUnorm2x16(u.x - 5u + 0xFFFF3333u));",
-     {1, -1, 0.2, 1}},
+    {"r = vec4(unpackSnorm2x16(u.x - 5u + 0x80007FFFu), unpackUnorm2x16(u.x - 5u + 0xFFFF3333u));", {1, -1, 0.2, 1}},
     {"r = vec4(unpackHalf2x16(u.x - 5u + 0xC1003555u), unpackHalf2x16(u.x - 5u + 0x00017BFFu));",
      {0.333251953125, -2.5, 65504, 5.9604644775390625e-08}},
     {"r.x = float(double(v.x) * double(v.y)); r.y = float(packDouble2x32(uvec2(0, 0x40080000u + u.x - 5u)));"
@@ -161,13 +153,11 @@ const IntCase kIntCases[] = {
     {"ri = findMSB(i); ri.w = findMSB(u.w);", {2, 1, 6, 31}},
     {"ri = ivec4(findMSB(i.x - 7), findMSB(i.y + 2), findMSB(u.x), findMSB(i.w));", {-1, -1, 2, 30}},
     {"ri = bitCount(i);", {3, 31, 3, 1}},
-    {"ri = bitfieldReverse(i);",
-     {static_cast<int32_t>(0xE0000000u), static_cast<int32_t>(0xBFFFFFFFu), 0x26000000, 1}},
+    {"ri = bitfieldReverse(i);", {static_cast<int32_t>(0xE0000000u), static_cast<int32_t>(0xBFFFFFFFu), 0x26000000, 1}},
     {"ri = ivec4(bitfieldExtract(i.y, 0, 4), bitfieldExtract(u.z, 28, 4), bitfieldExtract(i.x, 1, 2),"
      " bitfieldExtract(i.x, 3, 0));",
      {-3, 8, -1, 0}},
-    {"ri = bitfieldInsert(i, ivec4(2), 4, 4);",
-     {0x27, static_cast<int32_t>(0xFFFFFF2Du), 0x24, INT_MIN + 0x20}},
+    {"ri = bitfieldInsert(i, ivec4(2), 4, 4);", {0x27, static_cast<int32_t>(0xFFFFFF2Du), 0x24, INT_MIN + 0x20}},
     {"uint c; uint s = uaddCarry(u.w, u.x, c); uint b; uint d = usubBorrow(u.x, u.y, b); ri = ivec4(s, c, d, "
      "b);",
      {4, 1, -7, 1}},
@@ -190,8 +180,8 @@ TYPED_TEST_SUITE(Expression, Numbers);
 TYPED_TEST(Expression, Floats) {
     for (const FloatCase& c : kFloatCases) {
         Resources<TypeParam> none;
-        const auto outcome = runFragment<TypeParam>(compileFragment(fragmentSource("", c.body)),
-                                                    standardInputs<TypeParam>(), none);
+        const auto outcome =
+            runFragment<TypeParam>(compileFragment(fragmentSource("", c.body)), standardInputs<TypeParam>(), none);
         const auto got = floatsAt(outcome);
         for (size_t k = 0; k < 4; ++k) {
             if (got[k] == c.expected[k]) continue;
@@ -206,8 +196,8 @@ TYPED_TEST(Expression, Floats) {
 TYPED_TEST(Expression, Integers) {
     for (const IntCase& c : kIntCases) {
         Resources<TypeParam> none;
-        const auto outcome = runFragment<TypeParam>(compileFragment(fragmentSource("", c.body)),
-                                                    standardInputs<TypeParam>(), none);
+        const auto outcome =
+            runFragment<TypeParam>(compileFragment(fragmentSource("", c.body)), standardInputs<TypeParam>(), none);
         EXPECT_EQ(intsAt(outcome), c.expected) << c.body;
     }
 }

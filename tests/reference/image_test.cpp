@@ -48,8 +48,8 @@ class Images : public testing::Test {
     /// One fragment with v = (0.5, -1.25, 2, 3); the last request stays in `resources`.
     Outcome<double> run(std::string_view declarations, std::string_view body) {
         resources = {};
-        return runFragment<double>(compileFragment(fragmentSource(declarations, body)),
-                                   standardInputs<double>(), resources);
+        return runFragment<double>(compileFragment(fragmentSource(declarations, body)), standardInputs<double>(),
+                                   resources);
     }
     const ImageRequest<double>& last() {
         if (resources.requests.empty()) {
@@ -84,8 +84,7 @@ TEST_F(Images, ExplicitLodAndGradients) {
     EXPECT_EQ(last().lodMode, LodMode::explicitLod);
     EXPECT_EQ(last().lod, 3);
     EXPECT_TRUE(last().shape.arrayed);
-    run("layout(binding = 0) uniform sampler2DArray s;",
-        "r = textureGradOffset(s, v.xyz, v.xy, v.zw, ivec2(1, -2));");
+    run("layout(binding = 0) uniform sampler2DArray s;", "r = textureGradOffset(s, v.xyz, v.xy, v.zw, ivec2(1, -2));");
     EXPECT_EQ(last().lodMode, LodMode::gradients);
     EXPECT_EQ(last().ddx, (D{0.5, -1.25, 0}));
     EXPECT_EQ(last().ddy, (D{2, 3, 0}));
@@ -93,9 +92,7 @@ TEST_F(Images, ExplicitLodAndGradients) {
 }
 
 TEST_F(Images, DepthComparisonAndProjection) {
-    EXPECT_EQ(
-        floatsAt(run("layout(binding = 0) uniform sampler2DShadow s;", "r = vec4(texture(s, v.xyz));"))[0],
-        1.25);
+    EXPECT_EQ(floatsAt(run("layout(binding = 0) uniform sampler2DShadow s;", "r = vec4(texture(s, v.xyz));"))[0], 1.25);
     EXPECT_EQ(last().dref, 2);
     EXPECT_TRUE(last().shape.depth);
     run("layout(binding = 0) uniform sampler2DShadow s;", "r = vec4(textureProjLod(s, v.xyww, v.z));");
@@ -107,9 +104,9 @@ TEST_F(Images, DepthComparisonAndProjection) {
 }
 
 TEST_F(Images, FetchAndIntegerTexels) {
-    EXPECT_EQ(intsAt(run("layout(binding = 0) uniform isampler2D s;",
-                         "ri = texelFetchOffset(s, i.xy, i.z, ivec2(3, 4));")),
-              (Ints{-1, -2, -3, -4}));
+    EXPECT_EQ(
+        intsAt(run("layout(binding = 0) uniform isampler2D s;", "ri = texelFetchOffset(s, i.xy, i.z, ivec2(3, 4));")),
+        (Ints{-1, -2, -3, -4}));
     EXPECT_EQ(last().texel, (std::array<int32_t, 4>{7, -3, 0, 0}));
     EXPECT_EQ(last().texelLod, 100);
     EXPECT_EQ(last().offset, (std::array<int32_t, 3>{3, 4, 0}));
@@ -143,24 +140,20 @@ TEST_F(Images, SeparateSamplersAndArrays) {
         "layout(set = 1, binding = 3) uniform texture2D t;",
         "r = texelFetch(t, i.xy, 0);");
     EXPECT_EQ(last().image, (Descriptor{1, 3, 0}));
-    run("layout(binding = 3) uniform sampler2D t[4]; vec4 f(sampler2D s) { return texture(s, v.xy); }",
-        "r = f(t[2]);");
+    run("layout(binding = 3) uniform sampler2D t[4]; vec4 f(sampler2D s) { return texture(s, v.xy); }", "r = f(t[2]);");
     EXPECT_EQ(last().image, (Descriptor{0, 3, 2}));
 }
 
 TEST_F(Images, Queries) {
-    EXPECT_EQ(
-        intsAt(run("layout(binding = 0) uniform sampler2DArray s; layout(binding = 1) uniform sampler2DMS m;",
-                   "ri = ivec4(textureSize(s, 1), textureQueryLevels(s) * 10 + textureSamples(m));")),
-        (Ints{320, 240, 7, 98}));
-    EXPECT_EQ(floatsAt(run("layout(binding = 0) uniform sampler2D s;",
-                           "r = vec4(textureQueryLod(s, v.xy), 0, 0);")),
+    EXPECT_EQ(intsAt(run("layout(binding = 0) uniform sampler2DArray s; layout(binding = 1) uniform sampler2DMS m;",
+                         "ri = ivec4(textureSize(s, 1), textureQueryLevels(s) * 10 + textureSamples(m));")),
+              (Ints{320, 240, 7, 98}));
+    EXPECT_EQ(floatsAt(run("layout(binding = 0) uniform sampler2D s;", "r = vec4(textureQueryLod(s, v.xy), 0, 0);")),
               (Floats{1.5, 2.5, 0, 0}));
 }
 
 TEST_F(Images, InputAttachmentsAndStorageImages) {
-    run("layout(input_attachment_index = 3, set = 0, binding = 4) uniform subpassInput s;",
-        "r = subpassLoad(s);");
+    run("layout(input_attachment_index = 3, set = 0, binding = 4) uniform subpassInput s;", "r = subpassLoad(s);");
     EXPECT_EQ(resources.calls, "fetch ");
     EXPECT_EQ(last().shape.dim, spv::DimSubpassData);
     EXPECT_EQ(last().texel[0], 0);
@@ -180,9 +173,8 @@ TEST_F(Images, ImplicitDerivativesComeFromTheQuad) {
     for (int k = 0; k < 4; ++k) inputs[k].setFloat(Location(0), {x[k], 2 * x[k], 0, 2});
     for (const bool coarse : {false, true}) {
         resources = {};
-        const auto outcomes =
-            interpreterOf<double>(*module, spv::ExecutionModelFragment, {.coarseDerivatives = coarse})
-                .runQuad(inputs, {}, resources);
+        const auto outcomes = interpreterOf<double>(*module, spv::ExecutionModelFragment, {.coarseDerivatives = coarse})
+                                  .runQuad(inputs, {}, resources);
         ASSERT_TRUE(outcomes.ok()) << outcomes.error().message;
         ASSERT_EQ(resources.requests.size(), 8u);
         for (const auto& r : resources.requests) {

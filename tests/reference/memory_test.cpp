@@ -15,8 +15,7 @@ std::vector<std::byte> ramp(size_t count) {
 }
 
 Outcome<float> run(std::string_view declarations, std::string_view body, TestBuffers<float>& buffers) {
-    return runFragment<float>(compileFragment(fragmentSource(declarations, body)), standardInputs<float>(),
-                              buffers);
+    return runFragment<float>(compileFragment(fragmentSource(declarations, body)), standardInputs<float>(), buffers);
 }
 
 TEST(Memory, ColumnAndRowMajorMatrices) {
@@ -31,8 +30,7 @@ TEST(Memory, ColumnAndRowMajorMatrices) {
               (Floats{4, 5, 9, 0}));
     EXPECT_EQ(floatsAt(run(declarations, "r = vec4(b.w[1], b.w[2].y, b.w[i.x - 7][1]);", buffers)),
               (Floats{13, 17, 18, 16}));
-    EXPECT_EQ(floatsAt(run(declarations, "mat3x2 m = b.w; r = vec4(m[0], m[2]);", buffers)),
-              (Floats{12, 16, 14, 18}));
+    EXPECT_EQ(floatsAt(run(declarations, "mat3x2 m = b.w; r = vec4(m[0], m[2]);", buffers)), (Floats{12, 16, 14, 18}));
     EXPECT_EQ(floatsAt(run(declarations, "mat2 m = b.rows[i.x - 6]; r = vec4(m[0], m[1]);", buffers)),
               (Floats{28, 32, 29, 33}));
 }
@@ -66,9 +64,8 @@ TEST(Memory, OutOfBoundsReadsGiveZeroAndWritesAreDropped) {
               (Floats{5, 0, 0, 0}));
     EXPECT_EQ(valuesOf<float>(buffers.buffers[{0, 0, 0}]), (std::vector<float>{0, 1, 2, 3, 4, 50}));
     EXPECT_EQ(
-        floatsAt(run(
-            "", "float a[3] = float[](1, 2, 3); a[i.x] = 9; a[i.y] = 8; r = vec4(a[0], a[1], a[2], a[i.x]);",
-            buffers)),
+        floatsAt(run("", "float a[3] = float[](1, 2, 3); a[i.x] = 9; a[i.y] = 8; r = vec4(a[0], a[1], a[2], a[i.x]);",
+                     buffers)),
         (Floats{1, 2, 3, 0}));
 }
 
@@ -77,16 +74,14 @@ TEST(Memory, Stores) {
     buffers.buffers[{0, 0, 0}] = ramp(16);
     run("struct S { vec2 a; float b; };"
         "layout(std430, set = 0, binding = 0) buffer B { layout(row_major) mat2 m; S s[2]; float y; } b;",
-        "b.m = mat2(10, 20, 30, 40); b.m[1].y = 41; b.s[i.x - 6] = S(v.zw, 7); b.s[0].a.y = 8; b.y = v.x;",
-        buffers);
+        "b.m = mat2(10, 20, 30, 40); b.m[1].y = 41; b.s[i.x - 6] = S(v.zw, 7); b.s[0].a.y = 8; b.y = v.x;", buffers);
     EXPECT_EQ(valuesOf<float>(buffers.buffers[{0, 0, 0}]),
               (std::vector<float>{10, 30, 20, 41, 4, 8, 6, 7, 2, 3, 7, 11, 0.5f, 13, 14, 15}));
 }
 
 TEST(Memory, DescriptorArrays) {
     TestBuffers<float> buffers;
-    for (uint32_t k = 0; k < 3; ++k)
-        buffers.buffers[{0, 2, k}] = bytesOf(std::vector<float>{k * 10.0f, k * 10.0f + 1});
+    for (uint32_t k = 0; k < 3; ++k) buffers.buffers[{0, 2, k}] = bytesOf(std::vector<float>{k * 10.0f, k * 10.0f + 1});
     EXPECT_EQ(floatsAt(run("layout(set = 0, binding = 2) uniform B { float a, b; } b[3];",
                            "r = vec4(b[i.x - 5].b, b[1].a, b[0].b, b[i.x].a);", buffers)),
               (Floats{21, 10, 1, 0}));
@@ -98,12 +93,11 @@ TEST(Memory, WholeBlockCopiesBetweenLayouts) {
     buffers.buffers[{0, 1, 0}] = std::vector<std::byte>(64);
     // std140 spreads the array over 16 bytes an element, std430 over 4. From 1.2 on OpCopyLogical is used.
     for (const int vulkanMinor : {0, 2}) {
-        const Words words =
-            compileFragment(fragmentSource("struct S { float a[3]; vec2 b; };"
-                                           "layout(std140, set = 0, binding = 0) uniform A { S s; } a;"
-                                           "layout(std430, set = 0, binding = 1) buffer B { S s; } b;",
-                                           "S s = a.s; s.b += 0.5; b.s = s;"),
-                            vulkanMinor);
+        const Words words = compileFragment(fragmentSource("struct S { float a[3]; vec2 b; };"
+                                                           "layout(std140, set = 0, binding = 0) uniform A { S s; } a;"
+                                                           "layout(std430, set = 0, binding = 1) buffer B { S s; } b;",
+                                                           "S s = a.s; s.b += 0.5; b.s = s;"),
+                                            vulkanMinor);
         runFragment<float>(words, standardInputs<float>(), buffers);
         const auto stored = valuesOf<float>(buffers.buffers[{0, 1, 0}]);
         EXPECT_EQ(std::vector<float>(stored.begin(), stored.begin() + 6),
@@ -121,20 +115,17 @@ TEST(Memory, Atomics) {
         atomicMax(b.u[0], u.w); atomicMin(b.u[1], u.x); atomicAdd(b.a[i.z], 1);)",
                              buffers);
     EXPECT_EQ(intsAt(outcome), (Ints{10, 20, -5, 40}));
-    EXPECT_EQ(valuesOf<int32_t>(buffers.buffers[{0, 0, 0}]),
-              (std::vector<int32_t>{17, -3, 7, 1, 15, 61, 70, -1, 5}));
+    EXPECT_EQ(valuesOf<int32_t>(buffers.buffers[{0, 0, 0}]), (std::vector<int32_t>{17, -3, 7, 1, 15, 61, 70, -1, 5}));
 }
 
 TEST(Memory, PrivateInitialisersAndDynamicIndices) {
     TestBuffers<float> buffers;
-    EXPECT_EQ(
-        floatsAt(
-            run("const float table[4] = float[](1, 2, 4, 8); vec2 g[2] = vec2[](vec2(5, 6), vec2(7, 8));"
-                "struct S { mat2 m[2]; float f; };",
-                R"(S s; s.m[0] = mat2(1); s.m[1] = mat2(g[0], g[1]); s.f = 3; S t = s; t.m[i.x - 6][1].x = 9;
+    EXPECT_EQ(floatsAt(run("const float table[4] = float[](1, 2, 4, 8); vec2 g[2] = vec2[](vec2(5, 6), vec2(7, 8));"
+                           "struct S { mat2 m[2]; float f; };",
+                           R"(S s; s.m[0] = mat2(1); s.m[1] = mat2(g[0], g[1]); s.f = 3; S t = s; t.m[i.x - 6][1].x = 9;
         g[i.x - 7].y += 0.5; r = vec4(table[i.x - 4], t.m[1][1].x, s.m[i.x - 6][1].x, g[0].y);)",
-                buffers)),
-        (Floats{8, 9, 7, 6.5}));
+                           buffers)),
+              (Floats{8, 9, 7, 6.5}));
 }
 
 TEST(Memory, BlocksBetweenStagesAndVertexBuiltIns) {

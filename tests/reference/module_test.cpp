@@ -27,9 +27,8 @@ TEST(Reflection, Interface) {
     EXPECT_TRUE(entry.modes.originUpperLeft && entry.modes.earlyFragmentTests && entry.modes.depthReplacing &&
                 entry.modes.depthGreater);
     EXPECT_FALSE(entry.modes.depthLess);
-    const auto *a = find(*module, "a"), *b = find(*module, "b"), *c = find(*module, "c"),
-               *d = find(*module, "d"), *e = find(*module, "e"), *o = find(*module, "o"),
-               *fragCoord = find(*module, "gl_FragCoord");
+    const auto *a = find(*module, "a"), *b = find(*module, "b"), *c = find(*module, "c"), *d = find(*module, "d"),
+               *e = find(*module, "e"), *o = find(*module, "o"), *fragCoord = find(*module, "gl_FragCoord");
     ASSERT_TRUE(a && b && c && d && e && o && fragCoord);
     EXPECT_TRUE(a->noPerspective && a->centroid && !a->flat && !a->output);
     EXPECT_EQ(a->components, 3u);
@@ -83,12 +82,11 @@ TEST(Reflection, Descriptors) {
 }
 
 TEST(Specialization, ScalarsExpressionsAndArrayLengths) {
-    const Words words =
-        compileFragment(fragmentSource(R"(
+    const Words words = compileFragment(fragmentSource(R"(
         layout(constant_id = 3) const int n = 4; layout(constant_id = 4) const bool flag = false;
         layout(constant_id = 5) const float scale = 1.5; layout(constant_id = 6) const uint mask = 0xF0u;
         const int twice = n * 2 + 1; const ivec2 pair = ivec2(n, twice); const int chosen = flag ? n << 3 : -n;)",
-                                       R"(float a[n]; for (int k = 0; k < a.length(); ++k) a[k] = scale;
+                                                       R"(float a[n]; for (int k = 0; k < a.length(); ++k) a[k] = scale;
         float sum = 0; for (int k = 0; k < n; ++k) sum += a[k];
         r = vec4(sum, scale, flag, 0); ri = ivec4(a.length(), pair.y, chosen, int(mask >> 4 & 3u));)"));
     Resources<double> none;

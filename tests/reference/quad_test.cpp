@@ -25,8 +25,8 @@ Outcomes<double> runQuad(std::string_view declarations, std::string_view body, R
     const auto module = Module::parse(compileFragment(fragmentSource(declarations, body), vulkanMinor));
     EXPECT_TRUE(module.ok()) << module.error().message;
     if (!module) return {};
-    const auto outcome = interpreterOf<double>(*module, spv::ExecutionModelFragment, options)
-                             .runQuad(quadInputs(), helper, resources);
+    const auto outcome =
+        interpreterOf<double>(*module, spv::ExecutionModelFragment, options).runQuad(quadInputs(), helper, resources);
     EXPECT_TRUE(outcome.ok()) << outcome.error().message;
     return outcome ? *outcome : Outcomes<double>{};
 }
@@ -35,8 +35,7 @@ Outcomes<double> runQuad(std::string_view declarations, std::string_view body, R
 Floats runDerivative(std::string_view body, const Options& options = {}) {
     Resources<double> none;
     const auto outcomes = runQuad("", body, none, options);
-    return {floatsAt(outcomes[0])[0], floatsAt(outcomes[1])[0], floatsAt(outcomes[2])[0],
-            floatsAt(outcomes[3])[0]};
+    return {floatsAt(outcomes[0])[0], floatsAt(outcomes[1])[0], floatsAt(outcomes[2])[0], floatsAt(outcomes[3])[0]};
 }
 
 TEST(Quad, AllNineDerivatives) {
@@ -57,8 +56,7 @@ TEST(Quad, AllNineDerivatives) {
 
 TEST(Quad, VectorsOfDerivatives) {
     Resources<double> none;
-    EXPECT_EQ(floatsAt(runQuad("", "r = vec4(dFdx(v.xy), dFdy(v.yx));", none)[3]),
-              (Floats{10, -10, -17, 17}));
+    EXPECT_EQ(floatsAt(runQuad("", "r = vec4(dFdx(v.xy), dFdy(v.yx));", none)[3]), (Floats{10, -10, -17, 17}));
 }
 
 TEST(Quad, DivergentDerivativeUsesThosePresent) {
@@ -66,18 +64,15 @@ TEST(Quad, DivergentDerivativeUsesThosePresent) {
     EXPECT_EQ(runDerivative("r = vec4(-1); if (i.x < 3) r = dFdxFine(v);"), (Floats{2, 2, 0, -1}));
     EXPECT_EQ(runDerivative("r = vec4(-1); if (i.x < 3) r = dFdyCoarse(v);"), (Floats{9, 9, 9, -1}));
     // Both sides of a branch, and together again behind it.
-    EXPECT_EQ(runDerivative(
-                  "float a; if (i.x < 2) a = dFdx(v.x); else a = dFdx(v.x * 2.0); r = vec4(a + dFdy(v.x));"),
+    EXPECT_EQ(runDerivative("float a; if (i.x < 2) a = dFdx(v.x); else a = dFdx(v.x * 2.0); r = vec4(a + dFdy(v.x));"),
               (Floats{2 + 9, 2 + 17, 20 + 9, 20 + 17}));
 }
 
 TEST(Quad, DerivativeInUniformLoopAndFunction) {
-    EXPECT_EQ(
-        runDerivative("float s = 0.0; for (int k = 1; k < 4; ++k) s += dFdx(v.x * float(k)); r = vec4(s);"),
-        (Floats{12, 12, 60, 60}));
+    EXPECT_EQ(runDerivative("float s = 0.0; for (int k = 1; k < 4; ++k) s += dFdx(v.x * float(k)); r = vec4(s);"),
+              (Floats{12, 12, 60, 60}));
     Resources<double> none;
-    const auto outcomes =
-        runQuad("float f(float x) { return dFdx(x); }", "r = vec4(f(v.x) + f(v.y * 3.0));", none);
+    const auto outcomes = runQuad("float f(float x) { return dFdx(x); }", "r = vec4(f(v.x) + f(v.y * 3.0));", none);
     EXPECT_EQ(floatsAt(outcomes[2])[0], 10 - 30);
 }
 
@@ -107,8 +102,8 @@ TEST(Quad, HelpersHaveNoEffects) {
     TestBuffers<double> buffers;
     buffers.buffers[{0, 0, 0}] = bytesOf(std::vector<int32_t>(5));
     const auto outcomes = runQuad("layout(std430, set = 0, binding = 0) buffer B { int n[5]; } b;",
-                                  "b.n[i.x] = 1; atomicAdd(b.n[4], 1); ri = ivec4(gl_HelperInvocation);",
-                                  buffers, {}, {false, true, false, true});
+                                  "b.n[i.x] = 1; atomicAdd(b.n[4], 1); ri = ivec4(gl_HelperInvocation);", buffers, {},
+                                  {false, true, false, true});
     EXPECT_EQ(valuesOf<int32_t>(buffers.buffers[{0, 0, 0}]), (std::vector<int32_t>{1, 0, 1, 0, 2}));
     EXPECT_EQ(intsAt(outcomes[0])[0], 0);
     EXPECT_EQ(intsAt(outcomes[1])[0], 1);
@@ -155,10 +150,8 @@ class Interpolator : public Resources<double> {
 TEST(Quad, InterpolateAt) {
     Interpolator resources;
     const char* declarations = "layout(location = 4) in vec4 w; layout(location = 5) in mat2 m;";
-    EXPECT_EQ(floatsAt(runQuad(declarations, "r = interpolateAtCentroid(w);", resources)[0]),
-              (Floats{4, 0, 0, 0}));
-    EXPECT_EQ(floatsAt(runQuad(declarations, "r = interpolateAtSample(w, 2);", resources)[0]),
-              (Floats{104, 2, 0, 0}));
+    EXPECT_EQ(floatsAt(runQuad(declarations, "r = interpolateAtCentroid(w);", resources)[0]), (Floats{4, 0, 0, 0}));
+    EXPECT_EQ(floatsAt(runQuad(declarations, "r = interpolateAtSample(w, 2);", resources)[0]), (Floats{104, 2, 0, 0}));
     EXPECT_EQ(floatsAt(runQuad(declarations, "r = interpolateAtOffset(w, vec2(0.25, -0.5));", resources)[0]),
               (Floats{204, 0, 0.25, -0.5}));
     EXPECT_EQ(floatsAt(runQuad(declarations,

@@ -42,10 +42,9 @@ Words compileFragment(std::string_view source, int vulkanMinor, bool names) {
 
 Words assemble(std::string_view source) {
     spvtools::SpirvTools tools(SPV_ENV_UNIVERSAL_1_5);
-    tools.SetMessageConsumer(
-        [](spv_message_level_t, const char*, const spv_position_t& at, const char* message) {
-            ADD_FAILURE() << "line " << at.line << ": " << message;
-        });
+    tools.SetMessageConsumer([](spv_message_level_t, const char*, const spv_position_t& at, const char* message) {
+        ADD_FAILURE() << "line " << at.line << ": " << message;
+    });
     Words words;
     EXPECT_TRUE(tools.Assemble(source.data(), source.size(), &words));
     return words;

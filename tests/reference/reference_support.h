@@ -63,8 +63,7 @@ std::vector<T> valuesOf(const std::vector<std::byte>& bytes) {
 }
 
 template <class Number>
-Interpreter<Number> interpreterOf(const Module& module, spv::ExecutionModel model,
-                                  const Options& options = {}) {
+Interpreter<Number> interpreterOf(const Module& module, spv::ExecutionModel model, const Options& options = {}) {
     auto result = Interpreter<Number>::create(module, model, "main", options);
     if (!result) throw std::runtime_error(result.error().message);
     return *result;
@@ -72,14 +71,12 @@ Interpreter<Number> interpreterOf(const Module& module, spv::ExecutionModel mode
 
 /// Runs one fragment; a test failure and empty outputs on an error.
 template <class Number>
-Outcome<Number> runFragment(const Words& words, const InterfaceValues<Number>& inputs,
-                            Resources<Number>& resources, const Options& options = {},
-                            const Module::Specialization& specialization = {}) {
+Outcome<Number> runFragment(const Words& words, const InterfaceValues<Number>& inputs, Resources<Number>& resources,
+                            const Options& options = {}, const Module::Specialization& specialization = {}) {
     const auto module = Module::parse(words, specialization);
     EXPECT_TRUE(module.ok()) << module.error().message;
     if (!module) return {};
-    const auto interpreter =
-        Interpreter<Number>::create(*module, spv::ExecutionModelFragment, "main", options);
+    const auto interpreter = Interpreter<Number>::create(*module, spv::ExecutionModelFragment, "main", options);
     EXPECT_TRUE(interpreter.ok()) << interpreter.error().message;
     if (!interpreter) return {};
     const auto outcome = interpreter->run(inputs, resources);
@@ -101,8 +98,7 @@ std::array<int32_t, 4> intsAt(const Outcome<Number>& outcome, uint32_t location 
     std::array<int32_t, 4> result{};
     const auto found = outcome.outputs.locations.find(Location(location));
     if (found == outcome.outputs.locations.end()) return result;
-    for (size_t k = 0; k < 4; ++k)
-        result[k] = static_cast<int32_t>(static_cast<uint32_t>(found->second[k].bits));
+    for (size_t k = 0; k < 4; ++k) result[k] = static_cast<int32_t>(static_cast<uint32_t>(found->second[k].bits));
     return result;
 }
 

@@ -84,8 +84,7 @@ TEST(QueryPool, WritesTheWidthsAndAvailabilityAskedFor) {
     pool.write(0, statistics);
     EXPECT_EQ(pool.results(0, 1, bytes, sizeof out, 8, VK_QUERY_RESULT_64_BIT), VK_SUCCESS);
     EXPECT_EQ(out[0], 0x1'0000'0005u);
-    EXPECT_EQ(pool.results(0, 2, bytes, sizeof out, 16,
-                           VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WITH_AVAILABILITY_BIT),
+    EXPECT_EQ(pool.results(0, 2, bytes, sizeof out, 16, VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WITH_AVAILABILITY_BIT),
               VK_NOT_READY);
     EXPECT_EQ(out[1], 1u);
     EXPECT_EQ(out[3], 0u);

@@ -7,9 +7,8 @@ namespace vernier::texture_test {
 namespace {
 
 constexpr VkSamplerAddressMode kAllModes[] = {
-    VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT,
-    VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER,
-    VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE};
+    VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+    VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER, VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE};
 
 /// A row of texels 0, 1, 2, ... (uint), so that a sample names the texel it came from.
 Image ramp(uint32_t width) {
@@ -80,8 +79,7 @@ TEST(Address, MirroredRepeatIsSymmetrical) {
         for (int i = 0; i < 64; ++i) {
             const float d = (static_cast<float>(i) + 0.5f) / 64;
             const auto mode = VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT;
-            EXPECT_EQ(texelAt(image, mode, static_cast<float>(k) + d),
-                      texelAt(image, mode, static_cast<float>(k) - d));
+            EXPECT_EQ(texelAt(image, mode, static_cast<float>(k) + d), texelAt(image, mode, static_cast<float>(k) - d));
         }
     }
 }
@@ -108,14 +106,14 @@ TEST(Address, HugeAndSpecialCoordinatesStayInside) {
     for (const VkImageViewType type :
          {VK_IMAGE_VIEW_TYPE_1D, VK_IMAGE_VIEW_TYPE_2D, VK_IMAGE_VIEW_TYPE_3D, VK_IMAGE_VIEW_TYPE_CUBE,
           VK_IMAGE_VIEW_TYPE_2D_ARRAY, VK_IMAGE_VIEW_TYPE_CUBE_ARRAY}) {
-        for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R8_UNORM,
-                                      VK_FORMAT_R32G32B32A32_SFLOAT}) {
+        for (const VkFormat format :
+             {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R8_UNORM, VK_FORMAT_R32G32B32A32_SFLOAT}) {
             const uint32_t layers = type == VK_IMAGE_VIEW_TYPE_CUBE         ? 6
                                     : type == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY ? 12
                                     : type == VK_IMAGE_VIEW_TYPE_2D_ARRAY   ? 3
                                                                             : 1;
-            Image image(type, format, 5, type == VK_IMAGE_VIEW_TYPE_1D ? 1 : 5,
-                        type == VK_IMAGE_VIEW_TYPE_3D ? 5 : 1, layers, 3);
+            Image image(type, format, 5, type == VK_IMAGE_VIEW_TYPE_1D ? 1 : 5, type == VK_IMAGE_VIEW_TYPE_3D ? 5 : 1,
+                        layers, 3);
             image.setAll({.float32 = {0.2f, 0.4f, 0.6f, 0.8f}});
             const VkClearColorValue texel = unpackTexel(image.info().color, image.texel(0, 0, 0, 0));
             for (const VkSamplerAddressMode mode : kAllModes) {
@@ -123,8 +121,7 @@ TEST(Address, HugeAndSpecialCoordinatesStayInside) {
                     const SamplerState sampler = makeSampler(filter, mode, VK_SAMPLER_MIPMAP_MODE_LINEAR);
                     for (const Isa isa : availableIsas()) {
                         const TextureView view = image.view(isa);
-                        for (const LodMode lodMode :
-                             {LodMode::implicitLod, LodMode::explicitLod, LodMode::base}) {
+                        for (const LodMode lodMode : {LodMode::implicitLod, LodMode::explicitLod, LodMode::base}) {
                             Batch batch(128);
                             std::mt19937 random(7);
                             for (uint32_t i = 0; i < batch.lanes; ++i) {
@@ -133,12 +130,10 @@ TEST(Address, HugeAndSpecialCoordinatesStayInside) {
                             }
                             batch.request.lodMode = lodMode;
                             batch.run(selectSampler(view, sampler, isa), view, sampler);
-                            if (mode == VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER &&
-                                type != VK_IMAGE_VIEW_TYPE_CUBE)
+                            if (mode == VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER && type != VK_IMAGE_VIEW_TYPE_CUBE)
                                 continue;
                             if (type == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY) continue;
-                            for (uint32_t i = 0; i < batch.lanes; ++i)
-                                ASSERT_EQ(batch.out[0][i], texel.float32[0]);
+                            for (uint32_t i = 0; i < batch.lanes; ++i) ASSERT_EQ(batch.out[0][i], texel.float32[0]);
                         }
                     }
                 }
@@ -178,8 +173,7 @@ TEST(Address, UnnormalizedCoordinates) {
         texels.unnormalizedCoordinates = true;
         for (int i = -4; i < 100; ++i) {
             const float u = static_cast<float>(i) * 0.125f;
-            EXPECT_EQ(sampleOne(image, texels, u, u * 0.5f),
-                      sampleOne(image, normalized, u / 8, u * 0.5f / 4));
+            EXPECT_EQ(sampleOne(image, texels, u, u * 0.5f), sampleOne(image, normalized, u / 8, u * 0.5f / 4));
         }
     }
 }

@@ -10,8 +10,7 @@ namespace {
 TEST(Cube, AgreesWithTheModel) {
     std::mt19937 random(21);
     std::normal_distribution<float> direction;
-    for (const VkFormat format :
-         {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R16G16B16A16_SFLOAT}) {
+    for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R16G16B16A16_SFLOAT}) {
         Image image(VK_IMAGE_VIEW_TYPE_CUBE_ARRAY, format, 4, 4, 1, 12, 3);
         image.randomize(22);
         for (const VkFilter filter : {VK_FILTER_NEAREST, VK_FILTER_LINEAR}) {
@@ -37,8 +36,7 @@ TEST(Cube, AgreesWithTheModel) {
                     batch.run(selectSampler(view, sampler, isa), view, sampler);
                     if (isa != Isa::sse4) {
                         for (int c = 0; c < 4; ++c) {
-                            ASSERT_EQ(0,
-                                      std::memcmp(reference[c].data(), batch.out[c].data(), 4 * batch.lanes));
+                            ASSERT_EQ(0, std::memcmp(reference[c].data(), batch.out[c].data(), 4 * batch.lanes));
                         }
                         continue;
                     }
@@ -89,8 +87,8 @@ TEST(Cube, FoldingIsAnInvolution) {
     for (const int32_t size : {1, 2, 5}) {
         for (int32_t face = 0; face < 6; ++face) {
             for (int32_t i = 0; i < size; ++i) {
-                for (const CubeTexel start : {CubeTexel{face, -1, i}, CubeTexel{face, size, i},
-                                              CubeTexel{face, i, -1}, CubeTexel{face, i, size}}) {
+                for (const CubeTexel start : {CubeTexel{face, -1, i}, CubeTexel{face, size, i}, CubeTexel{face, i, -1},
+                                              CubeTexel{face, i, size}}) {
                     const CubeTexel there = foldOverEdge(start, size);
                     ASSERT_NE(there.face, face);
                     ASSERT_TRUE(there.x >= 0 && there.x < size && there.y >= 0 && there.y < size);
@@ -98,10 +96,9 @@ TEST(Cube, FoldingIsAnInvolution) {
                     const CubeTexel home{face, std::min(std::max(start.x, 0), size - 1),
                                          std::min(std::max(start.y, 0), size - 1)};
                     int found = 0;
-                    for (const CubeTexel step : {CubeTexel{there.face, there.x - 1, there.y},
-                                                 CubeTexel{there.face, there.x + 1, there.y},
-                                                 CubeTexel{there.face, there.x, there.y - 1},
-                                                 CubeTexel{there.face, there.x, there.y + 1}}) {
+                    for (const CubeTexel step :
+                         {CubeTexel{there.face, there.x - 1, there.y}, CubeTexel{there.face, there.x + 1, there.y},
+                          CubeTexel{there.face, there.x, there.y - 1}, CubeTexel{there.face, there.x, there.y + 1}}) {
                         const bool outside = step.x < 0 || step.y < 0 || step.x >= size || step.y >= size;
                         if (!outside) continue;
                         const CubeTexel back = foldOverEdge(step, size);

@@ -38,11 +38,9 @@ TEST(Fetch, ReadsTexelsOfAllLevelsAndLayers) {
                        h = static_cast<int32_t>(view.levels[level].height);
             for (int32_t y = 0; y < h; ++y) {
                 for (int32_t x = 0; x < w; ++x) {
-                    const Fetched f =
-                        fetch(view, {{{x, x, x, x}, {y, y, y, y}, {}, {layer, layer, layer, layer}}},
-                              {level, level, level, level});
-                    const VkClearColorValue texel =
-                        unpackTexel(image.info().color, image.texel(level, x, y, layer));
+                    const Fetched f = fetch(view, {{{x, x, x, x}, {y, y, y, y}, {}, {layer, layer, layer, layer}}},
+                                            {level, level, level, level});
+                    const VkClearColorValue texel = unpackTexel(image.info().color, image.texel(level, x, y, layer));
                     for (int c = 0; c < 4; ++c) ASSERT_EQ(f.out[c][2], texel.float32[c]);
                 }
             }
@@ -53,8 +51,7 @@ TEST(Fetch, ReadsTexelsOfAllLevelsAndLayers) {
 // T21: outside in any coordinate, level or sample: zero, with alpha 1 where the format has none.
 TEST(Fetch, OutsideGivesZero) {
     const int32_t far = std::numeric_limits<int32_t>::max(), negative = std::numeric_limits<int32_t>::min();
-    for (const VkFormat format :
-         {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8_UNORM, VK_FORMAT_R32G32B32A32_UINT}) {
+    for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8_UNORM, VK_FORMAT_R32G32B32A32_UINT}) {
         Image image(VK_IMAGE_VIEW_TYPE_2D_ARRAY, format, 4, 4, 1, 2, 2);
         image.setAll({.uint32 = {0x3f800000u, 0x3f800000u, 0x3f800000u, 0x3f800000u}});
         const TextureView view = image.view(bestIsa());
@@ -93,8 +90,7 @@ TEST(Fetch, SamplesOfMultisampledImages) {
 TEST(Fetch, SwizzleMayRepeatComponents) {
     Image image(VK_IMAGE_VIEW_TYPE_1D, VK_FORMAT_R8G8B8A8_UINT, 2, 1, 1, 1, 1);
     image.set(0, 1, 0, 0, {.uint32 = {11, 22, 33, 44}});
-    image.swizzle = {VK_COMPONENT_SWIZZLE_G, VK_COMPONENT_SWIZZLE_G, VK_COMPONENT_SWIZZLE_ONE,
-                     VK_COMPONENT_SWIZZLE_R};
+    image.swizzle = {VK_COMPONENT_SWIZZLE_G, VK_COMPONENT_SWIZZLE_G, VK_COMPONENT_SWIZZLE_ONE, VK_COMPONENT_SWIZZLE_R};
     const TextureView view = image.view(bestIsa());
     const Fetched f = fetch(view, {{{1, 1, 1, 1}, {}, {}, {}}}, {0, 0, 0, 0});
     const uint32_t expected[4] = {22, 22, 1, 11};
@@ -108,9 +104,8 @@ TEST(Gather, IsTheLinearFootprint) {
     image.randomize(41);
     for (const Isa isa : availableIsas()) {
         const TextureView view = image.view(isa);
-        for (const VkSamplerAddressMode mode :
-             {VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT,
-              VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER}) {
+        for (const VkSamplerAddressMode mode : {VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT,
+                                                VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER}) {
             const SamplerState sampler = makeSampler(VK_FILTER_LINEAR, mode);
             std::mt19937 random(42);
             std::uniform_real_distribution<float> coordinate(-1, 2);
@@ -182,11 +177,9 @@ TEST(Query, Sizes) {
               (Size{5, 7, 0, 0}));
     EXPECT_EQ(querySize(Image(VK_IMAGE_VIEW_TYPE_3D, VK_FORMAT_R8_UNORM, 5, 4, 3, 1, 2).view(isa), 1),
               (Size{2, 2, 1, 0}));
-    EXPECT_EQ(
-        querySize(Image(VK_IMAGE_VIEW_TYPE_CUBE_ARRAY, VK_FORMAT_R8_UNORM, 4, 4, 1, 12, 1).view(isa), 0),
-        (Size{4, 4, 2, 0}));
-    EXPECT_EQ(querySize(Image(VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R8_UNORM, 5, 3, 1, 1, 1).view(isa), 1),
-              (Size{}));
+    EXPECT_EQ(querySize(Image(VK_IMAGE_VIEW_TYPE_CUBE_ARRAY, VK_FORMAT_R8_UNORM, 4, 4, 1, 12, 1).view(isa), 0),
+              (Size{4, 4, 2, 0}));
+    EXPECT_EQ(querySize(Image(VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R8_UNORM, 5, 3, 1, 1, 1).view(isa), 1), (Size{}));
 }
 
 // Each refusal names the object, the field and the value.
@@ -202,8 +195,7 @@ TEST(Checks, RefuseWithAReason) {
         EXPECT_NE(status.error().message.find(field), std::string::npos) << status.error().message;
     };
     EXPECT_TRUE(checkSampling(image.view(bestIsa()), good).ok());
-    refused([](TextureView& v, SamplerState&) { v.format = VK_FORMAT_BC1_RGB_UNORM_BLOCK; },
-            "TextureView.format");
+    refused([](TextureView& v, SamplerState&) { v.format = VK_FORMAT_BC1_RGB_UNORM_BLOCK; }, "TextureView.format");
     refused([](TextureView& v, SamplerState&) { v.format = VK_FORMAT_R32G32B32_SFLOAT; }, "R32G32B32_SFLOAT");
     refused([](TextureView& v, SamplerState&) { v.aspect = VK_IMAGE_ASPECT_DEPTH_BIT; }, "aspect");
     refused([](TextureView& v, SamplerState&) { v.levelCount = 17; }, "levelCount is 17");

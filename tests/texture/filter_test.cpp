@@ -7,9 +7,8 @@ namespace vernier::texture_test {
 namespace {
 
 constexpr VkSamplerAddressMode kAllModes[] = {
-    VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT,
-    VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER,
-    VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE};
+    VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+    VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER, VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE};
 
 struct FilterSetup {
     VkFilter mag, min;
@@ -24,8 +23,7 @@ constexpr FilterSetup kFilters[] = {
     {VK_FILTER_LINEAR, VK_FILTER_NEAREST, VK_SAMPLER_MIPMAP_MODE_NEAREST},
 };
 
-void fillRandom(Batch& batch, uint32_t seed, float low, float high, float layers, float lodLow,
-                float lodHigh) {
+void fillRandom(Batch& batch, uint32_t seed, float low, float high, float layers, float lodLow, float lodHigh) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> coordinate(low, high), layer(-1, layers + 1), lod(lodLow, lodHigh),
         unit(-0.1f, 1.1f);
@@ -48,8 +46,7 @@ Point pointOf(const Batch& batch, uint32_t i) {
 }
 
 /// Runs the batch on every instruction set; all must agree to the bit, and with the model within `tolerance`.
-void check(const Image& image, const SamplerState& sampler, Batch& batch, double tolerance,
-           const std::string& what) {
+void check(const Image& image, const SamplerState& sampler, Batch& batch, double tolerance, const std::string& what) {
     std::array<std::vector<float>, 4> reference;
     int compared = 0;
     for (const Isa isa : availableIsas()) {
@@ -62,8 +59,7 @@ void check(const Image& image, const SamplerState& sampler, Batch& batch, double
             reference = batch.out;
         } else {
             for (int c = 0; c < outputs; ++c) {
-                ASSERT_EQ(0,
-                          std::memcmp(reference[c].data(), batch.out[c].data(), batch.lanes * sizeof(float)))
+                ASSERT_EQ(0, std::memcmp(reference[c].data(), batch.out[c].data(), batch.lanes * sizeof(float)))
                     << what << " differs between " << isaName(isa) << " and sse4 in component " << c;
             }
             continue;
@@ -75,8 +71,8 @@ void check(const Image& image, const SamplerState& sampler, Batch& batch, double
             const Rgba expected = modelSample(view, sampler, at), actual = batch.result(view, i);
             for (int c = 0; c < outputs; ++c) {
                 ASSERT_NEAR(actual[c], expected[c], tolerance)
-                    << what << " lane " << i << " component " << c << " at (" << at.s << ", " << at.t << ", "
-                    << at.r << ", " << at.layer << ") lod " << at.lambda;
+                    << what << " lane " << i << " component " << c << " at (" << at.s << ", " << at.t << ", " << at.r
+                    << ", " << at.layer << ") lod " << at.lambda;
             }
         }
     }
@@ -108,8 +104,8 @@ constexpr FormatCase kFormats[] = {
 };
 
 std::string describe(const FormatInfo& info, VkSamplerAddressMode mode, const FilterSetup& filter) {
-    return std::string(info.name) + " mode " + std::to_string(mode) + " mag " + std::to_string(filter.mag) +
-           " min " + std::to_string(filter.min) + " mip " + std::to_string(filter.mipmap);
+    return std::string(info.name) + " mode " + std::to_string(mode) + " mag " + std::to_string(filter.mag) + " min " +
+           std::to_string(filter.min) + " mip " + std::to_string(filter.mipmap);
 }
 
 TEST(Filter, TwoDimensionalArraysOfAllFormats) {
@@ -132,8 +128,7 @@ TEST(Filter, TwoDimensionalArraysOfAllFormats) {
 
 TEST(Filter, OneDimensionalAndVolumesAndMixedModes) {
     uint32_t seed = 1000;
-    for (const VkFormat format :
-         {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R16G16_SFLOAT}) {
+    for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R16G16_SFLOAT}) {
         for (const VkSamplerAddressMode mode : kAllModes) {
             for (const FilterSetup& filter : kFilters) {
                 SamplerState sampler = makeSampler(filter.min, mode, filter.mipmap);
@@ -141,11 +136,10 @@ TEST(Filter, OneDimensionalAndVolumesAndMixedModes) {
                 sampler.borderColor = {.float32 = {0, 0, 0, 1}};
                 sampler.addressMode[1] = kAllModes[(static_cast<int>(mode) + 1) % 5];
                 Batch batch(128);
-                for (const auto& [type, w, h, d, layers] :
-                     {std::tuple(VK_IMAGE_VIEW_TYPE_1D, 13u, 1u, 1u, 1u),
-                      std::tuple(VK_IMAGE_VIEW_TYPE_1D_ARRAY, 8u, 1u, 1u, 4u),
-                      std::tuple(VK_IMAGE_VIEW_TYPE_2D, 7u, 9u, 1u, 1u),
-                      std::tuple(VK_IMAGE_VIEW_TYPE_3D, 8u, 6u, 5u, 1u)}) {
+                for (const auto& [type, w, h, d, layers] : {std::tuple(VK_IMAGE_VIEW_TYPE_1D, 13u, 1u, 1u, 1u),
+                                                            std::tuple(VK_IMAGE_VIEW_TYPE_1D_ARRAY, 8u, 1u, 1u, 4u),
+                                                            std::tuple(VK_IMAGE_VIEW_TYPE_2D, 7u, 9u, 1u, 1u),
+                                                            std::tuple(VK_IMAGE_VIEW_TYPE_3D, 8u, 6u, 5u, 1u)}) {
                     Image image(type, format, w, h, d, layers, 3);
                     image.randomize(++seed);
                     fillRandom(batch, ++seed, -1.5f, 2.5f, static_cast<float>(layers), -1.0f, 4.0f);
@@ -202,8 +196,7 @@ TEST(Filter, DepthComparison) {
         image.randomize(++seed);
         for (int op = VK_COMPARE_OP_NEVER; op <= VK_COMPARE_OP_ALWAYS; ++op) {
             for (const FilterSetup& filter : kFilters) {
-                SamplerState sampler =
-                    makeSampler(filter.min, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER, filter.mipmap);
+                SamplerState sampler = makeSampler(filter.min, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER, filter.mipmap);
                 sampler.magFilter = filter.mag;
                 sampler.borderColor = {.float32 = {1, 1, 1, 1}};
                 sampler.compareEnable = true;
@@ -231,8 +224,7 @@ TEST(Filter, DepthComparisonIsExact) {
         EXPECT_EQ(sampleOne(image, sampler, 0.1f, 0.7f, 0, 0, std::nextafter(stored, 1.0f))[0], 0);
         image.setAll({.float32 = {1.0f}});
         sampler.compareOp = VK_COMPARE_OP_LESS_OR_EQUAL;
-        EXPECT_EQ(sampleOne(image, sampler, 0.1f, 0.7f, 0, 0, 1.5f)[0],
-                  format == VK_FORMAT_D16_UNORM ? 1 : 0);
+        EXPECT_EQ(sampleOne(image, sampler, 0.1f, 0.7f, 0, 0, 1.5f)[0], format == VK_FORMAT_D16_UNORM ? 1 : 0);
     }
 }
 
@@ -244,8 +236,7 @@ TEST(Filter, Swizzle) {
                          VK_COMPONENT_SWIZZLE_ZERO};
         Batch batch(32);
         fillRandom(batch, 10, 0, 1, 0, 0, 0);
-        check(image, makeSampler(VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_REPEAT), batch, 1e-6,
-              image.info().name);
+        check(image, makeSampler(VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_REPEAT), batch, 1e-6, image.info().name);
     }
 }
 
@@ -276,8 +267,7 @@ TEST(Filter, ConstantTexturesStayConstant) {
         const float x = static_cast<float>(code) / 255.0f;
         checkConstant(VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R8G8B8A8_UNORM, {.float32 = {x, 1 - x, x, 1 - x}});
         checkConstant(VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R8G8B8A8_SRGB, {.float32 = {x, 1 - x, x * x, 1 - x}});
-        checkConstant(VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R16G16B16A16_UNORM,
-                      {.float32 = {x, 1 - x, x * x, x * 0.37f}});
+        checkConstant(VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R16G16B16A16_UNORM, {.float32 = {x, 1 - x, x * x, x * 0.37f}});
         if (code % 8 != 0) continue;
         checkConstant(VK_IMAGE_VIEW_TYPE_CUBE, VK_FORMAT_R8G8B8A8_UNORM, {.float32 = {x, 1 - x, x, 1 - x}});
         checkConstant(VK_IMAGE_VIEW_TYPE_CUBE, VK_FORMAT_R32G32B32A32_SFLOAT,

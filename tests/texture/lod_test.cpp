@@ -14,8 +14,7 @@ Image levelsImage(uint32_t size, uint32_t levels, VkImageViewType type = VK_IMAG
         const uint32_t extent = std::max(1u, size >> l);
         for (uint32_t f = 0; f < (cube ? 6u : 1u); ++f) {
             for (uint32_t y = 0; y < extent; ++y) {
-                for (uint32_t x = 0; x < extent; ++x)
-                    image.set(l, x, y, f, {.float32 = {static_cast<float>(l)}});
+                for (uint32_t x = 0; x < extent; ++x) image.set(l, x, y, f, {.float32 = {static_cast<float>(l)}});
             }
         }
     }
@@ -27,8 +26,8 @@ struct LodResult {
 };
 
 /// Queries with the derivatives dx, dy (in texels of a 256-wide image) along s.
-LodResult query(const SamplerState& sampler, float dx, float dy, float bias = 0,
-                bool explicitGradients = false, Isa isa = bestIsa()) {
+LodResult query(const SamplerState& sampler, float dx, float dy, float bias = 0, bool explicitGradients = false,
+                Isa isa = bestIsa()) {
     static const Image image = levelsImage(256, 9);
     const TextureView view = image.view(isa);
     Batch batch(8);
@@ -192,8 +191,7 @@ TEST(Lod, QuadsAreIndependent) {
         batch.request.lodMode = LodMode::implicitLod;
         batch.request.lod = nullptr;
         batch.run(selectSampler(view, kNearestLevel, isa), view, kNearestLevel);
-        for (uint32_t i = 0; i < 28; ++i)
-            EXPECT_EQ(batch.out[0][i], static_cast<float>(i / 4)) << isaName(isa);
+        for (uint32_t i = 0; i < 28; ++i) EXPECT_EQ(batch.out[0][i], static_cast<float>(i / 4)) << isaName(isa);
     }
 }
 

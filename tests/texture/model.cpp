@@ -76,8 +76,7 @@ struct ModelLevel {
 
     Rgba compare(const Rgba& texel) const {
         if (!sampler.compareEnable) return texel;
-        const double reference =
-            view.format == VK_FORMAT_D32_SFLOAT ? at.dref : std::clamp(at.dref, 0.0, 1.0);
+        const double reference = view.format == VK_FORMAT_D32_SFLOAT ? at.dref : std::clamp(at.dref, 0.0, 1.0);
         const bool less = reference < texel[0], equal = reference == texel[0];
         bool pass = false;
         switch (sampler.compareOp) {
@@ -171,8 +170,8 @@ Rgba cubeTexel(const ModelLevel& m, int face, int64_t x, int64_t y, int64_t firs
     if (out(x) || out(y)) {
         const auto d = directionOf({face, (x + 0.5) / size, (y + 0.5) / size});
         const FacePoint p = faceOf(d[0], d[1], d[2]);
-        return m.texel(static_cast<int64_t>(std::floor(p.s * size)),
-                       static_cast<int64_t>(std::floor(p.t * size)), firstFace + p.face);
+        return m.texel(static_cast<int64_t>(std::floor(p.s * size)), static_cast<int64_t>(std::floor(p.t * size)),
+                       firstFace + p.face);
     }
     return m.texel(x, y, firstFace + face);
 }
@@ -192,8 +191,7 @@ int64_t layerOf(const TextureView& view, const Point& at) {
 std::array<double, 3> unscaled(const ModelLevel& m) {
     const Point& at = m.at;
     if (m.sampler.unnormalizedCoordinates) return {at.s, at.t, 0};
-    return {at.s * m.level.width, isOneDimensional(m.view) ? 0.5 : at.t * m.level.height,
-            at.r * m.level.depth};
+    return {at.s * m.level.width, isOneDimensional(m.view) ? 0.5 : at.t * m.level.height, at.r * m.level.depth};
 }
 
 Rgba sampleLevel(const ModelLevel& m, bool linear) {
@@ -209,8 +207,7 @@ Rgba sampleLevel(const ModelLevel& m, bool linear) {
         const double u = p.s * size - 0.5, v = p.t * size - 0.5;
         const auto i = static_cast<int64_t>(std::floor(u)), j = static_cast<int64_t>(std::floor(v));
         const auto row = [&](int64_t y) {
-            return mix(cubeTexel(m, p.face, i, y, layer * 6), cubeTexel(m, p.face, i + 1, y, layer * 6),
-                       u - i);
+            return mix(cubeTexel(m, p.face, i, y, layer * 6), cubeTexel(m, p.face, i + 1, y, layer * 6), u - i);
         };
         return mix(row(j), row(j + 1), v - j);
     }
@@ -218,10 +215,9 @@ Rgba sampleLevel(const ModelLevel& m, bool linear) {
     const int64_t sizes[3] = {m.level.width, m.level.height, m.level.depth};
     const bool volume = m.view.type == VK_IMAGE_VIEW_TYPE_3D;
     const auto fetch = [&](int64_t i, int64_t j, int64_t k) {
-        return m.texel(
-            wrap(m.sampler.addressMode[0], i + m.at.offset[0], sizes[0]),
-            isOneDimensional(m.view) ? 0 : wrap(m.sampler.addressMode[1], j + m.at.offset[1], sizes[1]),
-            volume ? wrap(m.sampler.addressMode[2], k + m.at.offset[2], sizes[2]) : layer);
+        return m.texel(wrap(m.sampler.addressMode[0], i + m.at.offset[0], sizes[0]),
+                       isOneDimensional(m.view) ? 0 : wrap(m.sampler.addressMode[1], j + m.at.offset[1], sizes[1]),
+                       volume ? wrap(m.sampler.addressMode[2], k + m.at.offset[2], sizes[2]) : layer);
     };
     const double half = linear ? 0.5 : 0;
     int64_t base[3];
@@ -245,8 +241,7 @@ struct Levels {
 };
 
 Levels levelsOf(const TextureView& view, const SamplerState& sampler, double lambdaPrime) {
-    const double lambda =
-        std::clamp<double>(lambdaPrime, sampler.minLod, std::max(sampler.minLod, sampler.maxLod));
+    const double lambda = std::clamp<double>(lambdaPrime, sampler.minLod, std::max(sampler.minLod, sampler.maxLod));
     const bool linear = (lambda <= 0 ? sampler.magFilter : sampler.minFilter) == VK_FILTER_LINEAR;
     const double d = std::clamp<double>(lambda, 0, view.levelCount - 1);
     if (sampler.mipmapMode == VK_SAMPLER_MIPMAP_MODE_NEAREST) {
@@ -263,8 +258,7 @@ Rgba modelSample(const TextureView& view, const SamplerState& sampler, const Poi
     const Levels levels = levelsOf(view, sampler, at.lambda);
     Rgba rgba = sampleLevel({view, sampler, view.levels[levels.high], at}, levels.linear);
     if (levels.weight != 0) {
-        rgba = mix(rgba, sampleLevel({view, sampler, view.levels[levels.low], at}, levels.linear),
-                   levels.weight);
+        rgba = mix(rgba, sampleLevel({view, sampler, view.levels[levels.low], at}, levels.linear), levels.weight);
     }
     if (sampler.compareEnable) return rgba;
     const VkComponentSwizzle swizzle[4] = {view.swizzle.r, view.swizzle.g, view.swizzle.b, view.swizzle.a};
@@ -320,8 +314,8 @@ double distanceToJump(const TextureView& view, const SamplerState& sampler, cons
     return distance;
 }
 
-Image::Image(VkImageViewType type, VkFormat format, uint32_t width, uint32_t height, uint32_t depth,
-             uint32_t layers, uint32_t levels, VkImageAspectFlags aspect)
+Image::Image(VkImageViewType type, VkFormat format, uint32_t width, uint32_t height, uint32_t depth, uint32_t layers,
+             uint32_t levels, VkImageAspectFlags aspect)
     : type_(type), format_(format), aspect_(aspect), layers_(layers) {
     for (uint32_t l = 0; l < levels; ++l) {
         TextureLevel level;
@@ -372,8 +366,7 @@ void Image::randomize(uint32_t seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> number(-2, 2), depth(0, 1);
     const TexelLayout& layout = info().layout(aspect_);
-    const bool isFloat =
-        layout.rgba[0].kind == ComponentKind::sfloat || layout.rgba[0].kind == ComponentKind::ufloat;
+    const bool isFloat = layout.rgba[0].kind == ComponentKind::sfloat || layout.rgba[0].kind == ComponentKind::ufloat;
     for (std::vector<std::byte>& level : data_) {
         if (!isFloat) {
             for (std::byte& b : level) b = static_cast<std::byte>(random());
@@ -381,8 +374,7 @@ void Image::randomize(uint32_t seed) {
         }
         for (size_t i = 0; i < level.size(); i += info().bytesPerTexel) {
             VkClearColorValue value;
-            for (float& f : value.float32)
-                f = aspect_ == VK_IMAGE_ASPECT_DEPTH_BIT ? depth(random) : number(random);
+            for (float& f : value.float32) f = aspect_ == VK_IMAGE_ASPECT_DEPTH_BIT ? depth(random) : number(random);
             packTexel(layout, value, &level[i]);
         }
     }
@@ -420,8 +412,8 @@ SamplerState makeSampler(VkFilter filter, VkSamplerAddressMode mode, VkSamplerMi
     return sampler;
 }
 
-Rgba sampleOne(const Image& image, const SamplerState& sampler, float s, float t, float r, float layer,
-               float dref, Isa isa) {
+Rgba sampleOne(const Image& image, const SamplerState& sampler, float s, float t, float r, float layer, float dref,
+               Isa isa) {
     const TextureView view = image.view(isa);
     EXPECT_TRUE(checkSampling(view, sampler).ok());
     Batch batch(4);

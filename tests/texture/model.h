@@ -31,8 +31,8 @@ inline std::vector<Isa> availableIsas() {
 /// outside.
 class Image {
   public:
-    Image(VkImageViewType type, VkFormat format, uint32_t width, uint32_t height, uint32_t depth,
-          uint32_t layers, uint32_t levels, VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT);
+    Image(VkImageViewType type, VkFormat format, uint32_t width, uint32_t height, uint32_t depth, uint32_t layers,
+          uint32_t levels, VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT);
 
     const FormatInfo& info() const { return *findFormat(format_); }
     TextureView view(Isa isa) const;
@@ -78,16 +78,14 @@ struct Batch {
     SampleRequest request;
 
     Rgba result(const TextureView& view, uint32_t lane) const;
-    void run(SampleFn fn, const TextureView& view, const SamplerState& sampler) {
-        fn(view, sampler, request);
-    }
+    void run(SampleFn fn, const TextureView& view, const SamplerState& sampler) { fn(view, sampler, request); }
 };
 
 SamplerState makeSampler(VkFilter filter, VkSamplerAddressMode mode,
                          VkSamplerMipmapMode mipmap = VK_SAMPLER_MIPMAP_MODE_NEAREST);
 
 /// Samples s, t in one quad-shaped batch of four equal lanes at lambda 0.
-Rgba sampleOne(const Image& image, const SamplerState& sampler, float s, float t, float r = 0,
-               float layer = 0, float dref = 0, Isa isa = bestIsa());
+Rgba sampleOne(const Image& image, const SamplerState& sampler, float s, float t, float r = 0, float layer = 0,
+               float dref = 0, Isa isa = bestIsa());
 
 }  // namespace vernier::texture_test
