@@ -107,7 +107,7 @@ VkPhysicalDeviceLimits deviceLimits(const VkPhysicalDeviceFeatures& features, co
     limits.framebufferColorSampleCounts = kSampleCounts;
     limits.framebufferDepthSampleCounts = kSampleCounts;
     limits.framebufferStencilSampleCounts = kSampleCounts;
-    limits.framebufferNoAttachmentsSampleCounts = kSampleCounts;
+    limits.framebufferNoAttachmentsSampleCounts = VK_SAMPLE_COUNT_1_BIT;
     limits.maxColorAttachments = kMaxColorAttachments;
     limits.sampledImageColorSampleCounts = kSampleCounts;
     limits.sampledImageIntegerSampleCounts = kSampleCounts;

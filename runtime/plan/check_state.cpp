@@ -96,11 +96,8 @@ Status refuseBuiltins(const ir::Program& program) {
             return unsupported("vertex shader: more than " + number(kMaxClipDistances) + " clip or cull distances");
     }
     for (const ir::InterfaceSlot& slot : program.inputs)
-        if (slot.builtin == ir::Builtin::clipDistance || slot.builtin == ir::Builtin::cullDistance ||
-            slot.builtin == ir::Builtin::layer || slot.builtin == ir::Builtin::viewportIndex)
-            return unsupported(
-                "fragment shader: reading gl_ClipDistance, gl_CullDistance, gl_Layer or gl_ViewportIndex "
-                "is not supported");
+        if (slot.builtin == ir::Builtin::layer || slot.builtin == ir::Builtin::viewportIndex)
+            return unsupported("fragment shader: reading gl_Layer or gl_ViewportIndex is not supported");
     return {};
 }
 

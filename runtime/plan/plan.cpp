@@ -82,17 +82,22 @@ void planVertexOutputs(const ir::Program& vertex, Plan& plan) {
     }
 }
 
+/// Inputs that the vertex stage writes and interpolation carries over; the others are made by the rasteriser.
+bool isInterpolated(ir::Builtin builtin) {
+    return builtin == ir::Builtin::user || builtin == ir::Builtin::clipDistance || builtin == ir::Builtin::cullDistance;
+}
+
 void planVaryings(const ir::Program& vertex, const ir::Program& fragment, Plan& plan) {
     for (uint32_t slot = 0; slot < fragment.inputs.size(); ++slot) {
         const ir::InterfaceSlot& input = fragment.inputs[slot];
-        if (input.builtin != ir::Builtin::user) {
+        if (!isInterpolated(input.builtin)) {
             plan.fragmentBuiltins.push_back({input.builtin, input.component, slot});
             continue;
         }
         Varying varying{kNoSlot, slot, input.interpolation, input.sampling};
         for (uint32_t out = 0; out < vertex.outputs.size(); ++out) {
             const ir::InterfaceSlot& output = vertex.outputs[out];
-            if (output.builtin == ir::Builtin::user && output.location == input.location &&
+            if (output.builtin == input.builtin && output.location == input.location &&
                 output.component == input.component)
                 varying.vertexSlot = out;
         }

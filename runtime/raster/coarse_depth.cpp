@@ -44,7 +44,7 @@ Range depthRange(const DepthPlan& plan, const TrianglePlanes& p, int32_t x, int3
             clamped(p.d.z0 + std::max(x0, x1) + std::max(y0, y1) + margin) + quantum(plan.storage)};
 }
 
-constexpr uint32_t kLess = 1, kEqual = 2, kGreater = 4;
+constexpr uint32_t kLess = 1, kGreater = 4;  // bits of DepthPlan::compare
 
 }  // namespace
 

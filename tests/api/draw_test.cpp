@@ -238,6 +238,57 @@ TEST_F(Draw, ClearsInsideAPassAreOrderedWithDraws) {
     for (uint32_t i = 0; i < 64; ++i) ASSERT_EQ(pixels[i], i / 8 >= 2 && i % 8 < 3 ? kGreen : 0xFFFFFFFFu) << i;
 }
 
+TEST_F(Draw, ClipDistancesCutAndCanBeReadBack) {
+    const VnImage target = image(VK_FORMAT_R8G8B8A8_UNORM, 8, 4);
+    const VnProgram cut = program(R"(#version 450
+out gl_PerVertex { vec4 gl_Position; float gl_ClipDistance[1]; };
+void main() {
+    vec2 corner = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 4.0 - 1.0;
+    gl_Position = vec4(corner, 0.5, 1.0);
+    gl_ClipDistance[0] = corner.x;  // the left half is cut away
+})",
+                                  R"(#version 450
+in float gl_ClipDistance[1];
+layout(location = 0) out vec4 color;
+void main() { color = vec4(gl_ClipDistance[0], 1.0, 0.0, 1.0); })");
+    const std::vector<uint32_t> pixels = drawFullScreen(target, 8, 4, cut);
+    for (uint32_t i = 0; i < pixels.size(); ++i) {
+        const uint32_t x = i % 8;
+        if (x < 4) {
+            ASSERT_EQ(pixels[i], kBlack) << i;
+            continue;
+        }
+        const double red = 255 * (static_cast<double>(x) - 3.5) / 4;  // the distance at the pixel's centre
+        ASSERT_NEAR(pixels[i] & 0xFF, red, 0.51) << i;
+        ASSERT_EQ(pixels[i] >> 8, 0xFF00FFu) << i;
+    }
+}
+
+TEST_F(Draw, StorageBuffersAndImagesAreWritten) {
+    const VnImage target = image(VK_FORMAT_R8G8B8A8_UNORM, 8, 8), storage = image(VK_FORMAT_R32_UINT, 8, 8);
+    const uint32_t zeros[64] = {};
+    const VnBuffer counts = buffer(zeros, sizeof zeros);
+    const VnProgram writes = program(kFullScreenVertex, R"(#version 450
+layout(set = 0, binding = 0) buffer Counts { uint counts[]; };
+layout(set = 0, binding = 1, r32ui) uniform uimage2D stored;
+layout(location = 0) out vec4 color;
+void main() {
+    ivec2 at = ivec2(gl_FragCoord.xy);
+    atomicAdd(counts[at.y], 1u);
+    imageStore(stored, at, uvec4(at.x * 100 + at.y));
+    imageAtomicAdd(stored, ivec2(0, 0), 1u);
+    color = vec4(1.0);
+})");
+    ASSERT_EQ(vnBindBuffer(context_, 0, 0, 0, counts, 0, 0), VN_SUCCESS);
+    ASSERT_EQ(vnBindTexture(context_, 0, 1, 0, view(storage), VnSampler{}), VN_SUCCESS) << lastError();
+    EXPECT_THAT(drawFullScreen(target, 8, 8, writes), testing::Each(0xFFFFFFFFu));
+    uint32_t read8[8];
+    ASSERT_EQ(vnReadBuffer(context_, counts, 0, read8, sizeof read8), VN_SUCCESS);
+    EXPECT_THAT(read8, testing::Each(8u)) << "each pixel counted once";
+    const std::vector<uint32_t> stored = read(storage, 8, 8);
+    for (uint32_t i = 1; i < stored.size(); ++i) ASSERT_EQ(stored[i], i % 8 * 100 + i / 8) << i;
+}
+
 TEST_F(Draw, ManyTinyDrawsKeepTheirOrder) {
     const VnImage target = image(VK_FORMAT_R8G8B8A8_UNORM, 4, 4);
     begin(target);
