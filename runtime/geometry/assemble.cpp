@@ -13,8 +13,7 @@ bool projectVertex(const PreparedDraw& draw, const std::array<double, 4>& clip, 
     const double w = clip[3];
     if (!(w > 0)) return false;
     double window[3];
-    for (uint32_t c = 0; c < 3; ++c)
-        window[c] = clip[c] / w * draw.viewport.scale[c] + draw.viewport.offset[c];
+    for (uint32_t c = 0; c < 3; ++c) window[c] = clip[c] / w * draw.viewport.scale[c] + draw.viewport.offset[c];
     const double subUnits = static_cast<double>(1u << draw.subPixelBits);
     for (uint32_t c = 0; c < 2; ++c) {
         if (!std::isfinite(window[c])) return false;
@@ -57,9 +56,8 @@ void Assembler::number(const PreparedDraw& draw, const PrimitiveRange& range) {
     auto instance = static_cast<uint32_t>(range.first / draw.primitivesPerInstance);
     auto primitive = static_cast<uint32_t>(range.first % draw.primitivesPerInstance);
     const auto runAt = [&](uint32_t p) {
-        return std::upper_bound(
-                   draw.runs.begin(), draw.runs.end(), p,
-                   [](uint32_t value, const VertexRun& run) { return value < run.firstPrimitive; }) -
+        return std::upper_bound(draw.runs.begin(), draw.runs.end(), p,
+                                [](uint32_t value, const VertexRun& run) { return value < run.firstPrimitive; }) -
                1;
     };
     auto run = runAt(primitive);
@@ -70,9 +68,9 @@ void Assembler::number(const PreparedDraw& draw, const PrimitiveRange& range) {
         local.provoking = draw.state->provokingVertexLast ? numbers.provokingLast : numbers.provokingFirst;
         for (uint32_t v = 0; v < vertexCount; ++v) {
             const uint32_t number = run->first + numbers.vertex[v];
-            const uint32_t index =
-                indexed ? fetchIndex(draw.call, number) + static_cast<uint32_t>(draw.call.vertexOffset)
-                        : draw.call.first + number;
+            const uint32_t index = indexed
+                                       ? fetchIndex(draw.call, number) + static_cast<uint32_t>(draw.call.vertexOffset)
+                                       : draw.call.first + number;
             if (shared) {
                 local.vertex[v] = localVertex({index, instance});
             } else {
@@ -101,12 +99,11 @@ void Assembler::addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, ui
     const double w = vertices_.clip[3][v];
     const double x = vertices_.clip[0][v] / w * draw.viewport.scale[0] + draw.viewport.offset[0];
     const double y = vertices_.clip[1][v] / w * draw.viewport.scale[1] + draw.viewport.offset[1];
-    setup_.addPoint(draw, info, windowVertex(v), x, y,
-                    vertices_.pointSize.empty() ? 1.0f : vertices_.pointSize[v]);
+    setup_.addPoint(draw, info, windowVertex(v), x, y, vertices_.pointSize.empty() ? 1.0f : vertices_.pointSize[v]);
 }
 
-void Assembler::clipAndAdd(const PreparedDraw& draw, const PrimitiveInfo& info,
-                           const LocalPrimitive& primitive, uint32_t vertexCount, Chunk& chunk) {
+void Assembler::clipAndAdd(const PreparedDraw& draw, const PrimitiveInfo& info, const LocalPrimitive& primitive,
+                           uint32_t vertexCount, Chunk& chunk) {
     const auto clipCount = static_cast<uint32_t>(draw.plan->clipDistanceSlots.size());
     ClipPolygon polygon;
     polygon.count = vertexCount;
@@ -139,10 +136,8 @@ void Assembler::assemble(const PreparedDraw& draw, uint32_t drawIndex, Chunk& ch
             any |= vertices_.flags[v];
             if (!vertices_.culled.empty()) culled &= vertices_.culled[v];
         }
-        if ((any & kNotFinite) != 0 || (all & (kOutsideVolume | kOutsideUserAll)) != 0 || culled != 0)
-            continue;
-        const PrimitiveInfo info{drawIndex, primitive.primitiveId,
-                                 attributesOf(primitive.vertex[primitive.provoking])};
+        if ((any & kNotFinite) != 0 || (all & (kOutsideVolume | kOutsideUserAll)) != 0 || culled != 0) continue;
+        const PrimitiveInfo info{drawIndex, primitive.primitiveId, attributesOf(primitive.vertex[primitive.provoking])};
         if (vertexCount == 1) {
             addPoint(draw, info, primitive.vertex[0]);
             continue;
@@ -161,8 +156,8 @@ void Assembler::assemble(const PreparedDraw& draw, uint32_t drawIndex, Chunk& ch
     }
 }
 
-bool Assembler::run(std::span<const PreparedDraw> draws, uint64_t token,
-                    std::span<const PrimitiveRange> ranges, const TileGrid& grid, Chunk& chunk) {
+bool Assembler::run(std::span<const PreparedDraw> draws, uint64_t token, std::span<const PrimitiveRange> ranges,
+                    const TileGrid& grid, Chunk& chunk) {
     bool finished = true;
     chunk.clear();
     setup_.begin(chunk, grid);

@@ -50,8 +50,7 @@ double meet(double a, double da, double b, double db) {
 ClipVertex cutEdge(const PreparedDraw& draw, const ClipPlane& plane, const ClipVertex& inside, double dInside,
                    const ClipVertex& outside, double dOutside, Chunk& chunk) {
     ClipVertex v;
-    for (uint32_t c = 0; c < 4; ++c)
-        v.position[c] = meet(inside.position[c], dInside, outside.position[c], dOutside);
+    for (uint32_t c = 0; c < 4; ++c) v.position[c] = meet(inside.position[c], dInside, outside.position[c], dOutside);
     for (uint32_t k = 0; k < draw.plan->clipDistanceSlots.size(); ++k)
         v.distances[k] = meet(inside.distances[k], dInside, outside.distances[k], dOutside);
     if (plane.user < kMaxClipDistances) v.distances[plane.user] = 0;
@@ -97,13 +96,12 @@ bool clipPolygon(const PreparedDraw& draw, ClipPolygon& polygon, Chunk& chunk) {
             const bool in = distance[n] >= 0, nextIn = distance[next] >= 0;
             // Rounding can make a polygon cross a plane more than twice; what exceeds the bound would be a
             // sliver of rounding errors.
-            if (in && result.count < kMaxPolygonVertices)
-                result.vertices[result.count++] = polygon.vertices[n];
+            if (in && result.count < kMaxPolygonVertices) result.vertices[result.count++] = polygon.vertices[n];
             const bool closing = isLine && next == 0;
             if (in == nextIn || closing || result.count == kMaxPolygonVertices) continue;
             const uint32_t i = in ? n : next, o = in ? next : n;
-            result.vertices[result.count++] = cutEdge(draw, planes[p], polygon.vertices[i], distance[i],
-                                                      polygon.vertices[o], distance[o], chunk);
+            result.vertices[result.count++] =
+                cutEdge(draw, planes[p], polygon.vertices[i], distance[i], polygon.vertices[o], distance[o], chunk);
         }
         polygon = result;
         if (polygon.count < (isLine ? 2u : 3u)) polygon.count = 0;

@@ -35,8 +35,7 @@ float depthBias(const PreparedDraw& draw, std::span<const WindowVertex> polygon,
     const auto area = static_cast<double>(doubleArea(a, b, c));
     const double subUnits = static_cast<double>(1u << draw.subPixelBits);
     const double zb = double{b.z} - double{a.z}, zc = double{c.z} - double{a.z};
-    const double abx = double(b.x) - a.x, aby = double(b.y) - a.y, acx = double(c.x) - a.x,
-                 acy = double(c.y) - a.y;
+    const double abx = double(b.x) - a.x, aby = double(b.y) - a.y, acx = double(c.x) - a.x, acy = double(c.y) - a.y;
     const double zx = (zb * acy - zc * aby) * subUnits / area, zy = (zc * abx - zb * acx) * subUnits / area;
     const double slope = std::sqrt(zx * zx + zy * zy);
     double bias = slope * double{dynamic.depthBiasSlope} +

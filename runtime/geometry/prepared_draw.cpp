@@ -58,8 +58,7 @@ PreparedDraw prepareDraw(const DrawCall& call, const VkRect2D& renderArea) {
         draw.depthHigh = unit(std::max(v.minDepth, v.maxDepth));
     }
     draw.runs = vertexRuns(call, draw.state->topology, draw.state->primitiveRestart);
-    if (!draw.runs.empty())
-        draw.primitivesPerInstance = draw.runs.back().firstPrimitive + draw.runs.back().primitives;
+    if (!draw.runs.empty()) draw.primitivesPerInstance = draw.runs.back().firstPrimitive + draw.runs.back().primitives;
     return draw;
 }
 

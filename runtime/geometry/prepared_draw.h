@@ -27,9 +27,8 @@ struct PreparedDraw {
     const Plan* plan = nullptr;
     const GraphicsState* state = nullptr;
     ViewportTransform viewport{};
-    PixelRect
-        triangleArea;  // scissor, render area, and the viewport: what clipping to the view volume leaves
-    PixelRect area;    // scissor and render area, for points and lines
+    PixelRect triangleArea;  // scissor, render area, and the viewport: what clipping to the view volume leaves
+    PixelRect area;          // scissor and render area, for points and lines
     float depthLow = 0, depthHigh = 1;  // what depths are clamped to
     uint32_t subPixelBits = 8;
     std::vector<VertexRun> runs;

@@ -89,8 +89,7 @@ void PrimitiveSetup::addPolygon(const PreparedDraw& draw, const PrimitiveInfo& i
         case VK_POLYGON_MODE_POINT: {
             style.area = &draw.area;
             const double subUnits = static_cast<double>(1u << draw.subPixelBits);
-            for (const WindowVertex& v : polygon)
-                addSquare(draw, info, style, v, v.x / subUnits, v.y / subUnits, 1);
+            for (const WindowVertex& v : polygon) addSquare(draw, info, style, v, v.x / subUnits, v.y / subUnits, 1);
             return;
         }
         default:
@@ -109,8 +108,8 @@ void PrimitiveSetup::addLine(const PreparedDraw& draw, const PrimitiveInfo& info
     addSegment(draw, info, style, a, b);
 }
 
-void PrimitiveSetup::addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& vertex,
-                              double x, double y, float size) {
+void PrimitiveSetup::addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& vertex, double x,
+                              double y, float size) {
     Style style;
     style.area = &draw.area;
     addSquare(draw, info, style, vertex, x, y, size);
@@ -122,8 +121,7 @@ void PrimitiveSetup::addSegment(const PreparedDraw& draw, const PrimitiveInfo& i
     const double ax = a.x / subUnits, ay = a.y / subUnits, bx = b.x / subUnits, by = b.y / subUnits;
     const double length = std::sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay));
     if (length == 0) return;
-    const double halfWidth =
-        0.5 * std::clamp(double{draw.call.dynamic->lineWidth}, 0.125, double{kMaxLineWidth});
+    const double halfWidth = 0.5 * std::clamp(double{draw.call.dynamic->lineWidth}, 0.125, double{kMaxLineWidth});
     const double nx = -(by - ay) / length * halfWidth, ny = (bx - ax) / length * halfWidth;
     const auto corner = [&](const WindowVertex& v, double x, double y) {
         WindowVertex result = v;
@@ -139,10 +137,8 @@ void PrimitiveSetup::addSegment(const PreparedDraw& draw, const PrimitiveInfo& i
 
 void PrimitiveSetup::addSquare(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style,
                                const WindowVertex& vertex, double x, double y, float size) {
-    const double clamped =
-        size >= kMinPointSize ? std::min(size, kMaxPointSize) : kMinPointSize;  // NaN: the least
-    const std::array<float, 3> point{static_cast<float>(x), static_cast<float>(y),
-                                     static_cast<float>(1 / clamped)};
+    const double clamped = size >= kMinPointSize ? std::min(size, kMaxPointSize) : kMinPointSize;  // NaN: the least
+    const std::array<float, 3> point{static_cast<float>(x), static_cast<float>(y), static_cast<float>(1 / clamped)};
     Style square = style;
     square.point = &point;
     const auto corner = [&](double sx, double sy) {
@@ -151,8 +147,7 @@ void PrimitiveSetup::addSquare(const PreparedDraw& draw, const PrimitiveInfo& in
         result.y = snap(y + sy * clamped, draw.subPixelBits);
         return result;
     };
-    const WindowVertex tl = corner(-0.5, -0.5), tr = corner(0.5, -0.5), br = corner(0.5, 0.5),
-                       bl = corner(-0.5, 0.5);
+    const WindowVertex tl = corner(-0.5, -0.5), tr = corner(0.5, -0.5), br = corner(0.5, 0.5), bl = corner(-0.5, 0.5);
     addTriangle(draw, info, square, tl, tr, br);
     addTriangle(draw, info, square, tl, br, bl);
 }
@@ -191,16 +186,14 @@ void PrimitiveSetup::addTriangle(const PreparedDraw& draw, const PrimitiveInfo& 
     p.affine = p.w[0] == p.w[1] && p.w[1] == p.w[2];
     p.depthBias = style.depthBias;
     p.flat = info.flat;
-    p.bounds = {static_cast<int16_t>(x0), static_cast<int16_t>(y0), static_cast<int16_t>(x1),
-                static_cast<int16_t>(y1)};
+    p.bounds = {static_cast<int16_t>(x0), static_cast<int16_t>(y0), static_cast<int16_t>(x1), static_cast<int16_t>(y1)};
     p.draw = info.draw;
     p.primitiveId = info.primitiveId;
     p.front = style.front;
     p.isPoint = style.point != nullptr;
     p.point = p.isPoint ? *style.point : std::array<float, 3>{};
     const auto span = [](const std::array<int32_t, 3>& values) {
-        return int64_t{std::max({values[0], values[1], values[2]})} -
-               std::min({values[0], values[1], values[2]});
+        return int64_t{std::max({values[0], values[1], values[2]})} - std::min({values[0], values[1], values[2]});
     };
     p.smallEdges = std::max(span(p.x), span(p.y)) <= int64_t{1} << kSmallEdgeBits;
     bin(p, index, bits);

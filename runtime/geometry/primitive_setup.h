@@ -44,14 +44,12 @@ class PrimitiveSetup {
   public:
     void begin(Chunk& chunk, const TileGrid& grid);
     /// A convex polygon of at least three vertices, in order: culled, then drawn as the polygon mode says.
-    void addPolygon(const PreparedDraw& draw, const PrimitiveInfo& info,
-                    std::span<const WindowVertex> polygon);
+    void addPolygon(const PreparedDraw& draw, const PrimitiveInfo& info, std::span<const WindowVertex> polygon);
     /// A rectangle of the line width around the segment.
-    void addLine(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& a,
-                 const WindowVertex& b);
+    void addLine(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& a, const WindowVertex& b);
     /// A square around a centre in pixels, not snapped.
-    void addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& vertex, double x,
-                  double y, float size);
+    void addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& vertex, double x, double y,
+                  float size);
     /// Sorts what was added by tile.
     void finish();
 
@@ -65,12 +63,12 @@ class PrimitiveSetup {
         const PixelRect* area = nullptr;
         const std::array<float, 3>* point = nullptr;
     };
-    void addTriangle(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style,
-                     const WindowVertex& a, const WindowVertex& b, const WindowVertex& c);
-    void addSegment(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style,
-                    const WindowVertex& a, const WindowVertex& b);
-    void addSquare(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style,
-                   const WindowVertex& vertex, double x, double y, float size);
+    void addTriangle(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style, const WindowVertex& a,
+                     const WindowVertex& b, const WindowVertex& c);
+    void addSegment(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style, const WindowVertex& a,
+                    const WindowVertex& b);
+    void addSquare(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style, const WindowVertex& vertex,
+                   double x, double y, float size);
     void bin(const Primitive& primitive, uint32_t index, uint32_t subPixelBits);
 
     Chunk* chunk_ = nullptr;

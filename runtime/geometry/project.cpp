@@ -42,15 +42,13 @@ void windowCoordinates(const ProjectionInput& in, const ProjectionOutput& out) {
 void vertexFlags(const ProjectionInput& in, const ProjectionOutput& out) {
     const hn::CappedTag<float, 16> f;
     const hn::RebindToSigned<decltype(f)> i;
-    const int32_t guardLow = kGuardBandMin * (1 << in.subPixelBits),
-                  guardHigh = kGuardBandMax * (1 << in.subPixelBits);
+    const int32_t guardLow = kGuardBandMin * (1 << in.subPixelBits), guardHigh = kGuardBandMax * (1 << in.subPixelBits);
     const auto zero = hn::Zero(f);
     const auto flag = [&](auto mask, uint32_t bit) HWY_ATTR {
         return hn::IfThenElseZero(hn::RebindMask(i, mask), hn::Set(i, static_cast<int32_t>(bit)));
     };
-    const auto flagInt = [&](auto mask, uint32_t bit) HWY_ATTR {
-        return hn::IfThenElseZero(mask, hn::Set(i, static_cast<int32_t>(bit)));
-    };
+    const auto flagInt = [&](auto mask, uint32_t bit)
+                             HWY_ATTR { return hn::IfThenElseZero(mask, hn::Set(i, static_cast<int32_t>(bit))); };
     const uint32_t nearBit = in.depthClip ? uint32_t{kOutsideNear} : 0,
                    farBit = in.depthClip ? uint32_t{kOutsideFar} : 0;
     for (uint32_t n = 0; n < in.count; n += hn::Lanes(f)) {
@@ -70,11 +68,10 @@ void vertexFlags(const ProjectionInput& in, const ProjectionOutput& out) {
             hn::Or(hn::Or(hn::Lt(wx, low), hn::Gt(wx, high)), hn::Or(hn::Lt(wy, low), hn::Gt(wy, high)));
         flags = hn::Or(flags, flagInt(beyond, kOutsideGuard));
         // v - v is 0 for finite v and NaN for the others.
-        const auto sum =
-            hn::Add(hn::Add(hn::Sub(x, x), hn::Sub(y, y)), hn::Add(hn::Sub(z, z), hn::Sub(w, w)));
+        const auto sum = hn::Add(hn::Add(hn::Sub(x, x), hn::Sub(y, y)), hn::Add(hn::Sub(z, z), hn::Sub(w, w)));
         flags = hn::Or(flags, flag(hn::Not(hn::Eq(sum, zero)), kNotFinite));
-        hn::StoreU(hn::BitCast(hn::RebindToUnsigned<decltype(f)>(), flags),
-                   hn::RebindToUnsigned<decltype(f)>(), out.flags + n);
+        hn::StoreU(hn::BitCast(hn::RebindToUnsigned<decltype(f)>(), flags), hn::RebindToUnsigned<decltype(f)>(),
+                   out.flags + n);
     }
 }
 

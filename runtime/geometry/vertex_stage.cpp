@@ -19,17 +19,15 @@ const std::byte* locate(const VertexStream& stream, const AttributeFetch& fetch,
     return offset + fetch.texelBytes <= stream.size ? stream.data + offset : kZeroTexel;
 }
 
-void fetchAttribute(const PreparedDraw& draw, const AttributeFetch& fetch, const VertexRef* refs,
-                    uint32_t count, BatchContext& context) {
+void fetchAttribute(const PreparedDraw& draw, const AttributeFetch& fetch, const VertexRef* refs, uint32_t count,
+                    BatchContext& context) {
     const VertexStream& stream = draw.call.vertexStreams[fetch.binding];
     const std::byte* texels[kMaxBatchLanes];
     for (uint32_t n = 0; n < count; ++n)
-        texels[n] =
-            locate(stream, fetch,
-                   fetch.perInstance ? uint64_t{draw.call.firstInstance} + refs[n].instance : refs[n].index);
+        texels[n] = locate(stream, fetch,
+                           fetch.perInstance ? uint64_t{draw.call.firstInstance} + refs[n].instance : refs[n].index);
     void* planes[4];
-    for (uint32_t c = 0; c < 4; ++c)
-        planes[c] = fetch.slots[c] == kNoSlot ? nullptr : context.input(fetch.slots[c]);
+    for (uint32_t c = 0; c < 4; ++c) planes[c] = fetch.slots[c] == kNoSlot ? nullptr : context.input(fetch.slots[c]);
     if (!fetch.words) {
         fetch.ops.unpackEach(texels, count, planes);
         return;
@@ -64,8 +62,7 @@ uint32_t builtinValue(const PreparedDraw& draw, ir::Builtin builtin, const Verte
 }
 
 void fetchInputs(const PreparedDraw& draw, const VertexRef* refs, uint32_t count, BatchContext& context) {
-    for (const AttributeFetch& fetch : draw.plan->attributes)
-        fetchAttribute(draw, fetch, refs, count, context);
+    for (const AttributeFetch& fetch : draw.plan->attributes) fetchAttribute(draw, fetch, refs, count, context);
     for (const BuiltinSlot& builtin : draw.plan->vertexBuiltins) {
         float* plane = context.input(builtin.slot);
         if (plane == nullptr) continue;
@@ -88,8 +85,7 @@ void copyPlane(const BatchContext& context, uint32_t slot, uint32_t count, float
 void storeOutputs(const Plan& plan, const BatchContext& context, uint32_t first, uint32_t count,
                   ShadedVertices& vertices, Chunk& chunk) {
     for (uint32_t c = 0; c < 4; ++c)
-        copyPlane(context, plan.positionSlots[c], count, c == 3 ? 1.0f : 0.0f,
-                  vertices.clip[c].data() + first);
+        copyPlane(context, plan.positionSlots[c], count, c == 3 ? 1.0f : 0.0f, vertices.clip[c].data() + first);
     if (!vertices.pointSize.empty())
         copyPlane(context, plan.pointSizeSlot, count, 1.0f, vertices.pointSize.data() + first);
 
@@ -108,8 +104,7 @@ void storeOutputs(const Plan& plan, const BatchContext& context, uint32_t first,
         }
         // Bits, not values: a copy must not touch the payload of a NaN.
         const float* plane = context.output(slot);
-        for (uint32_t n = 0; n < count; ++n)
-            std::memcpy(attributes + n * stride + k, plane + n, sizeof(float));
+        for (uint32_t n = 0; n < count; ++n) std::memcpy(attributes + n * stride + k, plane + n, sizeof(float));
     }
 }
 
@@ -160,8 +155,8 @@ void ShadedVertices::resize(uint32_t count, const Plan& plan) {
     pointSize.resize(plan.pointSizeSlot == kNoSlot ? 0 : count);
 }
 
-bool shadeVertices(const PreparedDraw& draw, uint64_t token, const std::vector<VertexRef>& refs,
-                   ContextCache& cache, ShadedVertices& vertices, Chunk& chunk) {
+bool shadeVertices(const PreparedDraw& draw, uint64_t token, const std::vector<VertexRef>& refs, ContextCache& cache,
+                   ShadedVertices& vertices, Chunk& chunk) {
     const Plan& plan = *draw.plan;
     const auto count = static_cast<uint32_t>(refs.size());
     vertices.resize(count, plan);
@@ -193,8 +188,8 @@ bool shadeVertices(const PreparedDraw& draw, uint64_t token, const std::vector<V
         draw.viewport,
         draw.subPixelBits,
         draw.state->depthClipEnable};
-    const ProjectionOutput out{vertices.x.data(), vertices.y.data(), vertices.z.data(),
-                               vertices.inverseW.data(), vertices.flags.data()};
+    const ProjectionOutput out{vertices.x.data(), vertices.y.data(), vertices.z.data(), vertices.inverseW.data(),
+                               vertices.flags.data()};
     projectFunction(draw.call.pipeline->isa())(in, out);
     flagClipDistances(count, static_cast<uint32_t>(plan.clipDistanceSlots.size()), vertices);
     return finished;

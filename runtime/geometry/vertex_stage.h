@@ -51,7 +51,7 @@ struct ShadedVertices {
 
 /// Runs `draw`'s vertex program for `refs`. `token` identifies the draw's bindings for ContextCache. Returns
 /// false when the program ran out of its loop budget.
-bool shadeVertices(const PreparedDraw& draw, uint64_t token, const std::vector<VertexRef>& refs,
-                   ContextCache& cache, ShadedVertices& vertices, Chunk& chunk);
+bool shadeVertices(const PreparedDraw& draw, uint64_t token, const std::vector<VertexRef>& refs, ContextCache& cache,
+                   ShadedVertices& vertices, Chunk& chunk);
 
 }  // namespace vernier

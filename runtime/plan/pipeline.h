@@ -1,5 +1,5 @@
-// A graphics pipeline: state and shaders, planned once. The plan says which stages run, at what rate and accuracy, and why;
-// explain() tells it in words.
+// A graphics pipeline: state and shaders, planned once. The plan says which stages run, at what rate and accuracy, and
+// why; explain() tells it in words.
 #pragma once
 
 #include <memory>

@@ -68,14 +68,13 @@ DynamicState dynamicFor(uint32_t width, uint32_t height);
 /// One pass over the given surfaces.
 class Pass {
   public:
-    Pass(ThreadPool& pool, std::vector<RenderTarget> colors, RenderTarget depth, uint32_t width,
-         uint32_t height, uint32_t samples = 1);
+    Pass(ThreadPool& pool, std::vector<RenderTarget> colors, RenderTarget depth, uint32_t width, uint32_t height,
+         uint32_t samples = 1);
     PassTargets& targets() { return targets_; }
     void begin() { pass_.begin(targets_); }
     /// Draws non-indexed, or indexed when there are indices. Keeps what it needs alive.
     void draw(std::shared_ptr<const GraphicsPipeline> pipeline, const DynamicState& dynamic,
-              const std::vector<Vertex>& vertices, const std::vector<uint32_t>& indices = {},
-              uint32_t instances = 1);
+              const std::vector<Vertex>& vertices, const std::vector<uint32_t>& indices = {}, uint32_t instances = 1);
     RenderPass& pass() { return pass_; }
     void end() { ASSERT_TRUE(pass_.end()); }
 
