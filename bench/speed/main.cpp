@@ -54,7 +54,7 @@ double median(std::vector<double> values) {
 }
 
 struct Measured {
-    std::vector<double> frame, startUp;  // ms, one per round; start-up: first image less one steady frame
+    std::vector<double> frame, startUp;  // ms, one per round; start-up: device to first image, less one steady frame
     std::string driver, failure;
 };
 
@@ -162,7 +162,8 @@ int run(const std::vector<DriverChoice>& choices, const RunOptions& options, con
                 }
                 measured.driver = rendering->driver + " " + rendering->version;
                 measured.frame.push_back(rendering->timing.frame);
-                measured.startUp.push_back(rendering->timing.firstImage - rendering->timing.frame);
+                const Timing& timing = rendering->timing;
+                measured.startUp.push_back(timing.firstImage - timing.startUp - timing.frame);
             }
         table.printRow(scene, row);
         for (const auto& [driver, measured] : row) {
