@@ -9,10 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/scenes/bench_scenes.h"
+#include "bench/scenes/render_bench_scene.h"
 #include "conformance/scene/scene_format.h"
-#include "conformance/tool/child_process.h"
-#include "conformance/tool/driver_choice.h"
-#include "conformance/tool/rendering.h"
+#include "conformance/tool/render_scene.h"
 
 namespace vernier::bench {
 namespace {
@@ -75,27 +74,6 @@ std::vector<Position> positions(const std::vector<DriverChoice>& choices) {
     return result;
 }
 
-/// The child: one position of one scene, or the oracle.
-int render(const DriverPaths& paths, const std::string& driverName, const std::string& sceneName,
-           const std::filesystem::path& out) {
-    const std::vector<DriverChoice> choices = driverChoices(paths);
-    const auto choice =
-        std::find_if(choices.begin(), choices.end(), [&](const DriverChoice& each) { return each.name == driverName; });
-    const SceneEntry* entry = findBenchScene(sceneName);
-    if (choice == choices.end() || !entry) return fail(invalidArgument("no such driver or scene"));
-    const Result<Scene> scene = entry->build();
-    if (!scene) return fail(scene.error());
-    const Result<std::unique_ptr<Driver>> driver = createDriver(*choice, paths, false);
-    if (!driver) return fail(driver.error());
-    Rendering rendering;
-    rendering.scene = sceneName;
-    Result<std::vector<RenderedImage>> images = driver.value()->render(*scene, &rendering.timing);
-    if (!images) return fail(images.error());
-    rendering.images = std::move(images).value();
-    const Status status = saveRendering(rendering, out);
-    return status ? 0 : fail(status.error());
-}
-
 int run(const DriverPaths& paths, const std::filesystem::path& out, const std::string& json) {
     nlohmann::json report;
     bool complete = true;
@@ -108,15 +86,10 @@ int run(const DriverPaths& paths, const std::filesystem::path& out, const std::s
         std::printf("  %-12s %10s %14s %14s %10s %10s\n", "position", "ms/frame", "worst /255", "mean /255", "outside",
                     "judged");
         for (const Position& position : positions(driverChoices(paths))) {
-            const std::filesystem::path folder = out / position.label;
-            std::filesystem::create_directories(folder);
-            const ChildResult child =
-                runChild({"--icd", paths.icd.string(), "--lavapipe", paths.lavapipe.string(), "--swiftshader",
-                          paths.swiftShader.string(), "--profile", position.profile, "render", "--driver",
-                          position.driver, "--scene", scene->name, "--out", folder.string()},
-                         folder / (scene->name + ".log"), 120);
+            DriverPaths positionPaths = paths;
+            positionPaths.profile = position.profile;
             const Result<Rendering> rendering =
-                child.ok ? loadRendering(folder, scene->name) : Result<Rendering>(invalidArgument(child.failure));
+                renderInChild(positionPaths, position.driver, scene->name, out / position.label, 120);
             if (!rendering) {
                 std::printf("  %-12s failed: %s\n", position.label.c_str(), rendering.error().message.c_str());
                 complete = complete && position.driver != "api";
@@ -139,10 +112,7 @@ int main(int argc, char** argv) {
     CLI::App app("Shows what accuracy costs: error against the exact oracle beside time per frame.");
     app.require_subcommand(1);
     DriverPaths paths;
-    app.add_option("--icd", paths.icd, "Manifest (JSON) of Vernier's Vulkan driver");
-    app.add_option("--lavapipe", paths.lavapipe, "Manifest of lavapipe");
-    app.add_option("--swiftshader", paths.swiftShader, "Manifest of SwiftShader");
-    app.add_option("--profile", paths.profile, "Accuracy of the api driver (used by run)");
+    addDriverOptions(app, paths);
     CLI::App* renderCommand = app.add_subcommand("render", "Draw one scene at one position (used by run)");
     std::string driver, scene, json;
     std::filesystem::path renderOut, runOut = "out/accuracy";
@@ -153,7 +123,7 @@ int main(int argc, char** argv) {
     runCommand->add_option("--out", runOut, "Folder for what the children write");
     runCommand->add_option("--json", json, "File for the figures");
     CLI11_PARSE(app, argc, argv);
-    return *renderCommand ? render(paths, driver, scene, renderOut) : run(paths, runOut, json);
+    return *renderCommand ? renderBenchScene(paths, driver, scene, renderOut) : run(paths, runOut, json);
 }
 
 }  // namespace

@@ -13,40 +13,13 @@
 #include "base/cpu_budget.h"
 #include "base/simd.h"
 #include "bench/scenes/bench_scenes.h"
-#include "conformance/tool/child_process.h"
-#include "conformance/tool/driver_choice.h"
-#include "conformance/tool/rendering.h"
+#include "bench/scenes/render_bench_scene.h"
+#include "conformance/tool/render_scene.h"
 
 namespace vernier::bench {
 namespace {
 
 using namespace conformance;
-
-int fail(const Error& error) {
-    std::fprintf(stderr, "vernier-bench: %s\n", error.message.c_str());
-    return 2;
-}
-
-/// The child: one scene on one driver, timings into a file.
-int render(const std::vector<DriverChoice>& choices, const DriverPaths& paths, const std::string& driverName,
-           const std::string& sceneName, const std::filesystem::path& out) {
-    const auto choice =
-        std::find_if(choices.begin(), choices.end(), [&](const DriverChoice& each) { return each.name == driverName; });
-    const SceneEntry* entry = findBenchScene(sceneName);
-    if (choice == choices.end() || !entry) return fail(invalidArgument("no such driver or scene"));
-    const Result<Scene> scene = entry->build();
-    if (!scene) return fail(scene.error());
-    const Result<std::unique_ptr<Driver>> driver = createDriver(*choice, paths, false);
-    if (!driver) return fail(driver.error());
-    Rendering rendering;
-    rendering.scene = sceneName;
-    rendering.driver = driver.value()->name();
-    rendering.version = driver.value()->version();
-    Result<std::vector<RenderedImage>> images = driver.value()->render(*scene, &rendering.timing);
-    if (!images) return fail(images.error());
-    const Status status = saveRendering(rendering, out);
-    return status ? 0 : fail(status.error());
-}
 
 double median(std::vector<double> values) {
     std::sort(values.begin(), values.end());
@@ -125,9 +98,9 @@ struct RunOptions {
     std::string json;
 };
 
-int run(const std::vector<DriverChoice>& choices, const RunOptions& options, const std::vector<std::string>& common) {
+int run(const DriverPaths& paths, const RunOptions& options) {
     std::vector<std::string> drivers;
-    for (const DriverChoice& choice : choices) {
+    for (const DriverChoice& choice : driverChoices(paths)) {
         const bool wanted =
             options.drivers.empty() || std::count(options.drivers.begin(), options.drivers.end(), choice.name);
         if (wanted && choice.present()) drivers.push_back(choice.name);
@@ -148,14 +121,7 @@ int run(const std::vector<DriverChoice>& choices, const RunOptions& options, con
         for (uint32_t round = 0; round < options.rounds; ++round)
             for (const std::string& driver : drivers) {
                 Measured& measured = row[driver];
-                const std::filesystem::path out = options.out / driver;
-                std::vector<std::string> arguments = common;
-                arguments.insert(arguments.end(),
-                                 {"render", "--driver", driver, "--scene", scene, "--out", out.string()});
-                std::filesystem::create_directories(out);
-                const ChildResult child = runChild(arguments, out / (scene + ".log"), 120);
-                const Result<Rendering> rendering =
-                    child.ok ? loadRendering(out, scene) : Result<Rendering>(invalidArgument(child.failure));
+                const Result<Rendering> rendering = renderInChild(paths, driver, scene, options.out / driver, 120);
                 if (!rendering) {
                     measured.failure = rendering.error().message;
                     continue;
@@ -183,10 +149,7 @@ int main(int argc, char** argv) {
     CLI::App app("Times Vernier against other Vulkan drivers.");
     app.require_subcommand(1);
     DriverPaths paths;
-    app.add_option("--icd", paths.icd, "Manifest (JSON) of Vernier's Vulkan driver");
-    app.add_option("--lavapipe", paths.lavapipe, "Manifest of lavapipe");
-    app.add_option("--swiftshader", paths.swiftShader, "Manifest of SwiftShader");
-    app.add_option("--profile", paths.profile, "Accuracy of the api driver");
+    addDriverOptions(app, paths);
     CLI::App* renderCommand = app.add_subcommand("render", "Time one scene on one driver (used by run)");
     std::string driver, scene;
     std::filesystem::path out;
@@ -201,11 +164,7 @@ int main(int argc, char** argv) {
     runCommand->add_option("--out", options.out, "Folder for what the children write");
     runCommand->add_option("--json", options.json, "File for the figures");
     CLI11_PARSE(app, argc, argv);
-    const std::vector<DriverChoice> choices = driverChoices(paths);
-    if (*renderCommand) return render(choices, paths, driver, scene, out);
-    return run(choices, options,
-               {"--icd", paths.icd.string(), "--lavapipe", paths.lavapipe.string(), "--swiftshader",
-                paths.swiftShader.string(), "--profile", paths.profile});
+    return *renderCommand ? renderBenchScene(paths, driver, scene, out) : run(paths, options);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "conformance/scenes/scenes.h"
 #include "conformance/tool/driver_choice.h"
 #include "conformance/tool/oracle_file.h"
+#include "conformance/tool/render_scene.h"
 #include "conformance/tool/rendering.h"
 #include "conformance/tool/run.h"
 
@@ -54,27 +55,14 @@ Status writePictures(const Rendering& rendering, const std::filesystem::path& di
     return {};
 }
 
-int render(const std::vector<DriverChoice>& choices, const DriverPaths& paths, const RenderOptions& options) {
-    const auto choice = std::find_if(choices.begin(), choices.end(),
-                                     [&](const DriverChoice& each) { return each.name == options.driver; });
-    if (choice == choices.end()) return fail(invalidArgument("--driver: no driver is called '" + options.driver + "'"));
+int render(const DriverPaths& paths, const RenderOptions& options) {
     const SceneEntry* entry = findScene(options.scene);
     if (entry == nullptr) return fail(invalidArgument("--scene: no scene is called '" + options.scene + "'"));
-    const Result<Scene> scene = entry->build();
-    if (!scene) return fail(scene.error());
-    const Result<std::unique_ptr<Driver>> driver = createDriver(*choice, paths, options.validate);
-    if (!driver) return fail(driver.error());
-    Rendering rendering;
-    rendering.scene = options.scene;
-    rendering.driver = driver.value()->name();
-    rendering.version = driver.value()->version();
-    rendering.limits = driver.value()->limits();
-    Result<std::vector<RenderedImage>> images = driver.value()->render(scene.value(), &rendering.timing);
-    if (!images) return fail(images.error());
-    rendering.images = std::move(images).value();
-    if (const Status status = saveRendering(rendering, options.out); !status) return fail(status.error());
+    const Result<Rendering> rendering = renderScene(paths, options.driver, *entry, options.validate);
+    if (!rendering) return fail(rendering.error());
+    if (const Status status = saveRendering(*rendering, options.out); !status) return fail(status.error());
     if (!options.png) return 0;
-    if (const Status status = writePictures(rendering, options.out); !status) return fail(status.error());
+    if (const Status status = writePictures(*rendering, options.out); !status) return fail(status.error());
     return 0;
 }
 
@@ -94,13 +82,9 @@ int run(int argc, char** argv) {
     CLI::App app("Draws Vernier's conformance scenes and compares what drivers made of them.");
     app.require_subcommand(1);
     DriverPaths paths;
-    app.add_option("--icd", paths.icd, "Manifest (JSON) of Vernier's Vulkan driver");
-    app.add_option("--lavapipe", paths.lavapipe, "Manifest of lavapipe")->capture_default_str();
-    app.add_option("--swiftshader", paths.swiftShader, "Manifest of SwiftShader")->capture_default_str();
+    addDriverOptions(app, paths);
 
     RenderOptions renderOptions;
-    app.add_option("--profile", paths.profile, "Accuracy of the api driver: draft, fast, standard, fine or reference");
-
     CLI::App* listCommand = app.add_subcommand("list", "Name the drivers and the scenes");
     CLI::App* renderCommand = app.add_subcommand("render", "Draw one scene with one driver");
     renderCommand->add_option("--driver", renderOptions.driver, "api, icd, lavapipe or swiftshader")->required();
@@ -132,11 +116,10 @@ int run(int argc, char** argv) {
 
     const std::vector<DriverChoice> choices = driverChoices(paths);
     if (*listCommand) return list(choices);
-    if (*renderCommand) return render(choices, paths, renderOptions);
+    if (*renderCommand) return render(paths, renderOptions);
     if (*oracleCommand) return judge(oracleScene, oracleOut);
     runOptions.oracle = !withoutOracle;
-    runOptions.commonArguments = {"--icd",         paths.icd.string(),         "--lavapipe", paths.lavapipe.string(),
-                                  "--swiftshader", paths.swiftShader.string(), "--profile",  paths.profile};
+    runOptions.commonArguments = driverArguments(paths);
     const Result<bool> passed = runComparison(choices, runOptions);
     if (!passed) return fail(passed.error());
     return passed.value() ? 0 : 1;
