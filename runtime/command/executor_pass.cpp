@@ -131,6 +131,7 @@ PassStatistics Executor::totals() const {
 void Executor::run(const command::BeginQuery& command) {
     if (inPass_) pass_.flush();
     queries_.push_back({command.pool, command.query, totals()});
+    pass_.setExactCounts(true);
 }
 
 void Executor::run(const command::EndQuery& command) {
@@ -139,6 +140,7 @@ void Executor::run(const command::EndQuery& command) {
         if (query->pool != command.pool || query->query != command.query) continue;
         command.pool->write(command.query, subtract(totals(), query->start));
         queries_.erase(query);
+        pass_.setExactCounts(!queries_.empty());
         return;
     }
 }

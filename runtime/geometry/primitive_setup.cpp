@@ -208,7 +208,8 @@ void PrimitiveSetup::bin(const Primitive& p, uint32_t index, uint32_t subPixelBi
         if (perTile_[tile]++ == 0) touched_.push_back(tile);
         entries_.push_back({tile, index | flags});
     };
-    if (tx0 == tx1 && ty0 == ty1) {
+    const bool spansTile = p.bounds[2] - p.bounds[0] == kTileSize - 1 && p.bounds[3] - p.bounds[1] == kTileSize - 1;
+    if (tx0 == tx1 && ty0 == ty1 && !spansTile) {
         add(ty0 * grid_.columns + tx0, 0);
         return;
     }
@@ -230,7 +231,8 @@ void PrimitiveSetup::bin(const Primitive& p, uint32_t index, uint32_t subPixelBi
             for (int e = 0; e < 3; ++e) {
                 const int64_t value = corner[e] + stepX[e] * (tx - tx0) + stepY[e] * (ty - ty0);
                 outside |= value + std::max<int64_t>(stepX[e], 0) + std::max<int64_t>(stepY[e], 0) < 0;
-                inside &= value + std::min<int64_t>(stepX[e], 0) + std::min<int64_t>(stepY[e], 0) > 0;
+                // An edge through a corner of the tile still has every sample, which lie inside the tile, on one side.
+                inside &= value + std::min<int64_t>(stepX[e], 0) + std::min<int64_t>(stepY[e], 0) >= 0;
             }
             if (outside) continue;
             const int32_t x = grid_.x0 + static_cast<int32_t>(tx) * kTileSize;

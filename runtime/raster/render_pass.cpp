@@ -10,6 +10,7 @@
 
 #include "runtime/geometry/assemble.h"
 #include "runtime/raster/attachment_ops.h"
+#include "runtime/raster/hidden_work.h"
 #include "runtime/raster/tile_renderer.h"
 
 namespace vernier {
@@ -66,7 +67,7 @@ struct RenderPass::Impl {
     void runGeometry();
     void collectTileWork();
     void runTiles();
-    void loadTile(const PixelRect& rect) const;
+    void loadTile(const PixelRect& rect, bool colorsReplaced) const;
     PixelRect tileRect(uint32_t tile) const;
     PixelRect areaRect() const {
         const VkRect2D& area = targets.renderArea;
@@ -97,6 +98,7 @@ struct RenderPass::Impl {
     std::vector<std::vector<TileWork>> tileWork;
     std::vector<uint32_t> activeTiles;
     bool loaded = false;  // load operations are done
+    bool exactCounts = false;
     std::atomic<bool> outOfBudget{false};
 };
 
@@ -178,8 +180,9 @@ void RenderPass::Impl::collectTileWork() {
     for (uint32_t tile = 0; tile < grid.count(); ++tile) activeTiles.push_back(tile);
 }
 
-void RenderPass::Impl::loadTile(const PixelRect& rect) const {
-    for (uint32_t c = 0; c < targets.colorCount; ++c)
+/// `colorsReplaced`: nothing would be seen of the cleared colours.
+void RenderPass::Impl::loadTile(const PixelRect& rect, bool colorsReplaced) const {
+    for (uint32_t c = 0; c < targets.colorCount && !colorsReplaced; ++c)
         if (targets.colors[c].loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR)
             clearPixels(targets.colors[c], VK_IMAGE_ASPECT_COLOR_BIT, targets.colors[c].clear, rect, 0, targets.layers);
     const RenderTarget& depth = targets.depthStencil;
@@ -197,11 +200,12 @@ void RenderPass::Impl::runTiles() {
         const uint32_t tile = activeTiles[index];
         const PixelRect rect = tileRect(tile);
         const bool cleared = !loaded && targets.depthStencil.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR;
-        if (!loaded) loadTile(rect);
+        const VisibleStart start = exactCounts ? VisibleStart{} : visibleStart(targets, draws, tileWork[tile]);
+        if (!loaded) loadTile(rect, start.replacesColors && targets.layers == 1);
         if (tileWork[tile].empty()) return;
         self.renderer.render(rect, grid.x0 + static_cast<int32_t>(tile % grid.columns) * kTileSize,
                              grid.y0 + static_cast<int32_t>(tile / grid.columns) * kTileSize, cleared, draws, nextToken,
-                             tileWork[tile]);
+                             tileWork[tile], start.item, start.entry);
     });
     loaded = true;
     for (const auto& worker : workers) worker->renderer.fragments().unbind();
@@ -296,6 +300,10 @@ void RenderPass::draw(const DrawCall& call) {
     self.draws.push_back(std::move(draw));
     self.commands.emplace_back(index);
     if (self.recordedPrimitives >= kPrimitivesPerFlush || self.draws.size() >= kDrawsPerFlush) self.renderRecorded();
+}
+
+void RenderPass::setExactCounts(bool exact) {
+    impl_->exactCounts = exact;
 }
 
 void RenderPass::clear(VkImageAspectFlags aspect, uint32_t color, const VkClearValue& value, const VkClearRect& rect) {

@@ -24,6 +24,9 @@ class RenderPass {
     void draw(const DrawCall& call);
     /// vkCmdClearAttachments: `aspect` colour (attachment index `color`), depth and/or stencil inside `rect`.
     void clear(VkImageAspectFlags aspect, uint32_t color, const VkClearValue& value, const VkClearRect& rect);
+    /// While set, work that a later primitive hides is done all the same, because someone counts its fragments and
+    /// samples (queries). Call it before draws or after flush().
+    void setExactCounts(bool exact);
     /// Finishes all draws so far, so that their results can be read from memory; the pass goes on.
     void flush();
     /// Runs what is left, resolves, and stores. Returns false when a shader ran out of its loop budget.

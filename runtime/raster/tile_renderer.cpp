@@ -126,7 +126,8 @@ void TileRenderer::draw(const Primitive& primitive, const Chunk& chunk, const Pr
 }
 
 void TileRenderer::render(const PixelRect& rect, int32_t tileX, int32_t tileY, bool cleared,
-                          std::span<const PreparedDraw> draws, uint64_t token, std::span<const TileWork> work) {
+                          std::span<const PreparedDraw> draws, uint64_t token, std::span<const TileWork> work,
+                          size_t firstItem, uint32_t firstEntry) {
     if (cleared) {
         coarse_.setCleared(depthStorage(targets_->depthStencil.format),
                            targets_->depthStencil.clear.depthStencil.depth);
@@ -136,14 +137,15 @@ void TileRenderer::render(const PixelRect& rect, int32_t tileX, int32_t tileY, b
     tileX_ = tileX;
     tileY_ = tileY;
     fragments_.startTile(tileX, tileY);
-    for (const TileWork& item : work) {
+    for (size_t index = firstItem; index < work.size(); ++index) {
+        const TileWork& item = work[index];
         if (item.clear != nullptr) {
             fragments_.flush();
             applyClear(*targets_, *item.clear, rect);
             coarse_.forget();
             continue;
         }
-        for (uint32_t n = item.first; n < item.first + item.count; ++n) {
+        for (uint32_t n = std::max(item.first, index == firstItem ? firstEntry : 0); n < item.first + item.count; ++n) {
             const uint32_t entry = item.chunk->entries[n];
             const Primitive& primitive = item.chunk->primitives[entry & ~kCoversTile];
             const PreparedDraw& prepared = draws[primitive.draw];

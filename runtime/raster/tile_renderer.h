@@ -34,8 +34,9 @@ class TileRenderer {
     void startPass(const PassTargets& targets);
     /// `rect`: the pixels of the tile inside the render area. `cleared`: all depth in it was just cleared by the load
     /// operation. `token`: see Assembler::run.
+    /// Work before entry `firstEntry` of work[firstItem] is left out.
     void render(const PixelRect& rect, int32_t tileX, int32_t tileY, bool cleared, std::span<const PreparedDraw> draws,
-                uint64_t token, std::span<const TileWork> work);
+                uint64_t token, std::span<const TileWork> work, size_t firstItem, uint32_t firstEntry);
 
   private:
     void draw(const Primitive& primitive, const Chunk& chunk, const PreparedDraw& draw, bool coversTile);

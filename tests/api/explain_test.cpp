@@ -124,6 +124,58 @@ void main() {
     EXPECT_THAT(text, HasSubstr("4")) << "four scalar outputs are left out:\n" << text;
 }
 
+TEST_F(Explain, WhatALaterOpaquePrimitiveHidesIsNotRun) {
+    const char* pushed = R"(#version 450
+layout(push_constant) uniform Push { vec4 value; };
+layout(location = 0) out vec4 color;
+void main() { color = value; })";
+    const char* discards = R"(#version 450
+layout(push_constant) uniform Push { vec4 value; };
+layout(location = 0) out vec4 color;
+void main() { if (gl_FragCoord.x < 8.0) discard; color = value; })";
+    VnBlendStateDesc blendDesc{};
+    blendDesc.attachments[0] = {1,
+                                VK_BLEND_FACTOR_ONE,
+                                VK_BLEND_FACTOR_ONE,
+                                VK_BLEND_OP_ADD,
+                                VK_BLEND_FACTOR_ONE,
+                                VK_BLEND_FACTOR_ONE,
+                                VK_BLEND_OP_ADD,
+                                0};
+    VnBlendState add{};
+    ASSERT_EQ(vnCreateBlendState(device_, &blendDesc, &add), VN_SUCCESS);
+    const struct {
+        const char* fragment;  // of the second draw
+        VnBlendState blend;
+        uint64_t invocations;
+        uint32_t left, right;  // pixels on the left border and elsewhere
+    } cases[] = {{pushed, {}, kPixels, 0xFF00FF00u, 0xFF00FF00u},
+                 {pushed, add, 2 * kPixels, 0xFF00FFFFu, 0xFF00FFFFu},
+                 {discards, {}, 2 * kPixels - 8 * kSize, 0xFF0000FFu, 0xFF00FF00u}};
+    for (const auto& item : cases) {
+        const VnImage target = image(VK_FORMAT_R8G8B8A8_UNORM, kSize, kSize);
+        VnPassDesc pass = passOn(target);
+        ASSERT_EQ(vnResetStatistics(context_), VN_SUCCESS);
+        ASSERT_EQ(vnBeginPass(context_, &pass), VN_SUCCESS);
+        const float red[] = {1, 0, 0, 1}, green[] = {0, 1, 0, 1};
+        ASSERT_EQ(vnBindBlendState(context_, {}), VN_SUCCESS);
+        ASSERT_EQ(vnBindProgram(context_, program(kFullScreenVertex, pushed)), VN_SUCCESS);
+        ASSERT_EQ(vnPushConstants(context_, 0, red, sizeof red), VN_SUCCESS);
+        ASSERT_EQ(vnDraw(context_, 3, 1, 0, 0), VN_SUCCESS);
+        ASSERT_EQ(vnBindBlendState(context_, item.blend), VN_SUCCESS);
+        ASSERT_EQ(vnBindProgram(context_, program(kFullScreenVertex, item.fragment)), VN_SUCCESS);
+        ASSERT_EQ(vnPushConstants(context_, 0, green, sizeof green), VN_SUCCESS);
+        ASSERT_EQ(vnDraw(context_, 3, 1, 0, 0), VN_SUCCESS);
+        ASSERT_EQ(vnEndPass(context_), VN_SUCCESS);
+        VnStatistics statistics{};
+        ASSERT_EQ(vnGetStatistics(context_, &statistics), VN_SUCCESS);
+        EXPECT_GE(statistics.fragmentInvocations, item.invocations);
+        EXPECT_LE(statistics.fragmentInvocations, item.invocations + 8 * kSize);
+        const std::vector<uint32_t> pixels = read(target, kSize, kSize);
+        for (uint32_t i = 0; i < pixels.size(); ++i) ASSERT_EQ(pixels[i], i % kSize < 8 ? item.left : item.right) << i;
+    }
+}
+
 TEST_F(Explain, ACombinationIsPlannedOnce) {
     const VnProgram white = program(kFullScreenVertex, kWhiteFragment);
     EXPECT_EQ(run(white).plans, 1u);

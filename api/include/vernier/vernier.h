@@ -471,7 +471,8 @@ VN_API VnResult vnClearImage(VnContext context, VnImage image, const VkClearColo
 
 /* ---- Knowing what was done ---- */
 
-/* Sums over the context since it was created or vnResetStatistics. */
+/* Sums over the context since it was created or vnResetStatistics. What is not run is not counted: fragments that a
+ * later opaque primitive hides, for example. */
 typedef struct VnStatistics {
     uint64_t draws;
     uint64_t inputVertices, inputPrimitives;
