@@ -9,6 +9,7 @@
 //   fill context.input(slot)[lane] ...; context.run(lanes, execMask, storeMask); read context.output(slot)[lane]
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -115,6 +116,34 @@ class BatchContext {
                    float* result) = nullptr;
     };
     void setInterpolator(const Interpolator& interpolator);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Runs the work-groups of a dispatch, one thread's share of them. A work-group is as many batches as its invocations
+/// need; at a barrier each batch keeps its registers while the others come up to it. Work-groups without barriers,
+/// shared memory and subgroup operations may share a batch. Not thread-safe; cheap to keep between dispatches.
+class WorkGroupContext {
+  public:
+    explicit WorkGroupContext(std::shared_ptr<const BatchProgram> program);
+    ~WorkGroupContext();
+    WorkGroupContext(WorkGroupContext&&) noexcept;
+    WorkGroupContext& operator=(WorkGroupContext&&) noexcept;
+
+    struct Grid {
+        std::array<uint32_t, 3> count{1, 1, 1};  // NumWorkgroups
+        std::array<uint32_t, 3> base{0, 0, 0};   // added to WorkgroupId, as vkCmdDispatchBase wants it
+        uint64_t size() const { return uint64_t{count[0]} * count[1] * count[2]; }
+    };
+
+    /// As BatchContext::beginDraw. Resources of the kind workgroupMemory have no binding: the context owns the memory.
+    void beginDispatch(const ResourceBindings& bindings, const Grid& grid);
+
+    /// Runs the work-groups first .. first + count - 1 in linear order, x fastest, z slowest; first + count <=
+    /// Grid::size(). Returns false if a loop passed the back-edge budget: the device is lost.
+    bool run(uint64_t first, uint32_t count);
 
   private:
     struct Impl;

@@ -96,6 +96,11 @@ enum class Builtin : uint8_t {
     fragDepth,
     sampleMask,
     fragStencilRef,
+    // compute inputs; GlobalInvocationId and the like are computed from these
+    workgroupId,
+    numWorkgroups,
+    localInvocationId,
+    localInvocationIndex,
 };
 
 enum class Interpolation : uint8_t { smooth, noPerspective, flat };
@@ -124,13 +129,14 @@ enum class ResourceKind : uint8_t {
     uniformTexelBuffer,
     storageTexelBuffer,
     inputAttachment,
+    workgroupMemory,  // shared by a work-group; byteSize bytes, no descriptor: WorkGroupContext owns it
 };
 
 struct Resource {
     ResourceKind kind = ResourceKind::uniformBuffer;
     uint32_t set = 0, binding = 0;
     uint32_t arraySize = 1;  // descriptors; 0 = runtime-sized
-    uint32_t byteSize = 0;   // push constants: size of the block
+    uint32_t byteSize = 0;   // push constants and work-group memory
     bool readOnly = false;   // no store or atomic reaches it
 };
 
