@@ -73,6 +73,7 @@ void Executor::run(const command::BeginRendering& command) {
     targets.renderArea = command.renderArea;
     targets.layers = command.layers;
     targets.samples = command.samples;
+    targets.isa = device_.isa();
     passSink_ = command.statistics;
     inPass_ = true;
     pass_.begin(targets);

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "runtime/format/format.h"
+#include "runtime/format/resolve.h"
 #include "runtime/geometry/chunk.h"
 
 namespace vernier {
@@ -60,28 +61,12 @@ void resolvePixels(const RenderTarget& source, const RenderTarget& destination, 
     if (info == nullptr || source.data == nullptr || destination.data == nullptr) return;
     const uint32_t bytes = info->bytesPerTexel;
     const FormatOps ops = formatOps(source.format, isa);
-    const bool average = info->color.type == ValueType::floating;
-    // A power of two: scaling first is exact and cannot overflow.
-    const float scale = 1.0f / static_cast<float>(source.samples);
-    alignas(64) float sum[4][kRow];
-    alignas(64) float sample[4][kRow];
-    void* planes[4] = {sample[0], sample[1], sample[2], sample[3]};
-    const void* sums[4] = {sum[0], sum[1], sum[2], sum[3]};
     for (uint32_t layer = 0; layer < layers; ++layer) {
-        eachRun(rect, [&](int32_t x, int32_t y, uint32_t n) {
-            std::byte* out = pixel(destination, x, y, 0, layer, bytes);
-            if (!average) {
-                std::memcpy(out, pixel(source, x, y, 0, layer, bytes), n * bytes);
-                return;
-            }
-            std::memset(sum, 0, sizeof(sum));
-            for (uint32_t s = 0; s < source.samples; ++s) {
-                ops.unpack(pixel(source, x, y, s, layer, bytes), n, planes);
-                for (int c = 0; c < 4; ++c)
-                    for (uint32_t k = 0; k < n; ++k) sum[c][k] += sample[c][k] * scale;
-            }
-            ops.pack(sums, n, out);
-        });
+        for (int32_t y = rect.y0; y < rect.y1; ++y) {
+            resolveTexels(ops, pixel(source, rect.x0, y, 0, layer, bytes), source.samplePitch, source.samples,
+                          static_cast<size_t>(std::max(rect.x1 - rect.x0, 0)),
+                          pixel(destination, rect.x0, y, 0, layer, bytes));
+        }
     }
 }
 

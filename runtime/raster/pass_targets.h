@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "base/simd.h"
 #include "runtime/limits.h"
 
 namespace vernier {
@@ -35,6 +36,7 @@ struct PassTargets {
     VkRect2D renderArea{};  // inside every target
     uint32_t layers = 1;
     uint32_t samples = 1;  // of the pass; also when it has no attachments
+    Isa isa = Isa::sse4;   // for resolves; draws have their pipeline's
 };
 
 /// What was run. Counted on all threads and summed; independent of the number of threads except where said.

@@ -232,11 +232,10 @@ void RenderPass::Impl::resolve() {
     const bool any = std::any_of(targets.resolves.begin(), targets.resolves.end(),
                                  [](const RenderTarget& target) { return target.data != nullptr; });
     if (!any) return;
-    const Isa isa = bestIsa();
     pool.parallelFor(grid.count(), [&](uint32_t tile, uint32_t) {
         for (uint32_t c = 0; c < targets.colorCount; ++c)
             if (targets.resolves[c].data != nullptr)
-                resolvePixels(targets.colors[c], targets.resolves[c], tileRect(tile), targets.layers, isa);
+                resolvePixels(targets.colors[c], targets.resolves[c], tileRect(tile), targets.layers, targets.isa);
     });
 }
 

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <vector>
 
+#include "runtime/format/resolve.h"
 #include "runtime/transfer/region.h"
 
 namespace vernier {
@@ -173,25 +174,14 @@ void resolveImage(const TransferContext& context, const Image& source, const Ima
     const auto aspect = static_cast<VkImageAspectFlags>(format.aspects & VK_IMAGE_ASPECT_COLOR_BIT);
     if (aspect == 0) return;
     const FormatOps ops = formatOps(source.info().format, aspect, context.isa);
-    const uint32_t samples = ops.layout.type == ValueType::floating ? source.info().samples : 1;
+    const uint64_t pitch = source.level(region.srcSubresource.mipLevel).samplePitch;
     forEachRow(context, to, [&](uint32_t y, uint32_t z) {
-        const auto texels = [&](uint32_t sample) {
-            return rowAddress(source, region.srcSubresource.mipLevel, from.y + y, from.z + z, sample) +
-                   uint64_t{from.x} * format.bytesPerTexel;
-        };
-        PlaneRow sum(to.width), one(to.width);
-        ops.unpack(texels(0), to.width, sum.writable());
-        for (uint32_t sample = 1; sample < samples; ++sample) {
-            ops.unpack(texels(sample), to.width, one.writable());
-            for (size_t c = 0; c < 4; ++c)
-                for (uint32_t i = 0; i < to.width; ++i) sum.plane(c)[i] += one.plane(c)[i];
-        }
-        if (samples > 1)
-            for (size_t c = 0; c < 4; ++c)
-                for (uint32_t i = 0; i < to.width; ++i) sum.plane(c)[i] /= static_cast<float>(samples);
-        ops.pack(sum.planes(), to.width,
-                 rowAddress(destination, region.dstSubresource.mipLevel, to.y + y, to.z + z, 0) +
-                     uint64_t{to.x} * format.bytesPerTexel);
+        resolveTexels(ops,
+                      rowAddress(source, region.srcSubresource.mipLevel, from.y + y, from.z + z, 0) +
+                          uint64_t{from.x} * format.bytesPerTexel,
+                      pitch, source.info().samples, to.width,
+                      rowAddress(destination, region.dstSubresource.mipLevel, to.y + y, to.z + z, 0) +
+                          uint64_t{to.x} * format.bytesPerTexel);
     });
 }
 
