@@ -37,6 +37,16 @@ bool Machine<Number>::executeFloat(const Instruction& i) {
         setResult(i, std::move(result));
         return true;
     };
+    // x - y * whole(x / y), each operation in the type of the result.
+    const auto stepwise = [&](auto whole) {
+        const bool wide = module_.scalarType(resultType(i)).width == 64;
+        return binary([=](const Number& x, const Number& y) {
+            const auto in = [&]<class W>(W a, W b) { return Number(a - b * whole(W(a / b))); };
+            return wide ? in(static_cast<double>(x), static_cast<double>(y)) : in(toFloat32(x), toFloat32(y));
+        });
+    };
+    if (program_.options.stepwise && i.op == spv::OpFRem) return stepwise([](auto x) { return std::trunc(x); });
+    if (program_.options.stepwise && i.op == spv::OpFMod) return stepwise([](auto x) { return std::floor(x); });
     switch (i.op) {
         case spv::OpFAdd:
             return binary([](const Number& a, const Number& b) { return a + b; });

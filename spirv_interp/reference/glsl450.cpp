@@ -1,5 +1,8 @@
-// GLSL.std.450, componentwise functions on floats: each is evaluated in Wide<Number> and rounded to Number
-// once.
+// GLSL.std.450, componentwise functions on floats: each is evaluated in W and rounded to Number once. W is
+// Wide<Number>, or with Options::stepwise the type of the result itself.
+#include <limits>
+#include <type_traits>
+
 #include "spirv_interp/reference/machine.h"
 
 #include <spirv/unified1/GLSL.std.450.h>
@@ -7,22 +10,29 @@
 namespace vernier::reference {
 namespace {
 
+constexpr double kRadiansPerDegree = 0.017453292519943295769, kDegreesPerRadian = 57.295779513082320877;
+
+template <class W>
+W constant(double x) {
+    return static_cast<W>(x);
+}
+
 template <class W>
 W pi() {
     using std::acos;
     return acos(W(-1));
 }
 
-/// A NaN is ignored (NMin, NMax; FMin and FMax leave it open).
+/// A NaN is ignored (NMin, NMax; FMin and FMax leave it open). Of two zeros the second.
 template <class W>
 W minimum(const W& a, const W& b) {
     using std::isnan;
-    return isnan(a) ? b : isnan(b) ? a : b < a ? b : a;
+    return isnan(b) || a < b ? a : b;
 }
 template <class W>
 W maximum(const W& a, const W& b) {
     using std::isnan;
-    return isnan(a) ? b : isnan(b) ? a : a < b ? b : a;
+    return isnan(b) || b < a ? a : b;
 }
 template <class W>
 W clamp(const W& x, const W& low, const W& high) {
@@ -35,11 +45,51 @@ W smoothStep(const W& edge0, const W& edge1, const W& x) {
     return t * t * (W(3) - W(2) * t);
 }
 
+bool isElementary(uint32_t function) {
+    return (function >= GLSLstd450Sin && function <= GLSLstd450Log2);
+}
+
+/// x - floor(x) rounds up to 1 just below an integer.
+template <class W>
+W fract(const W& x) {
+    using std::floor;
+    const W fraction = x - floor(x);
+    if constexpr (std::is_floating_point_v<W>) {
+        const W below = W(1) - std::numeric_limits<W>::epsilon() / 2;
+        return fraction > below ? below : fraction;
+    } else {
+        return fraction;
+    }
+}
+
 }  // namespace
 
 template <class Number>
 bool Machine<Number>::glslNumber(const Instruction& i, uint32_t function) {
-    using W = Wide<Number>;
+    const Type& type = module_.scalarType(resultType(i));
+    if (program_.options.elementary != nullptr && isElementary(function) && type.width == 32) {
+        const size_t count = resultCount(i);
+        const bool two = function == GLSLstd450Atan2 || function == GLSLstd450Pow;
+        const Scalars<Number>&x = data(i.operand(2), count), &y = data(i.operand(two ? 3 : 2), count);
+        Scalars<Number> result;
+        for (size_t k = 0; k < count; ++k) {
+            result.push_back(Scalar<Number>::ofNumber(Number(
+                program_.options.elementary->evaluate(function, toFloat32(x[k].number), toFloat32(y[k].number)))));
+        }
+        setResult(i, std::move(result));
+        return true;
+    }
+    if constexpr (std::is_floating_point_v<Number>) {
+        if (program_.options.stepwise)
+            return type.width == 64 ? glslNumberIn<double>(i, function) : glslNumberIn<float>(i, function);
+    }
+    return glslNumberIn<Wide<Number>>(i, function);
+}
+
+template <class Number>
+template <class W>
+bool Machine<Number>::glslNumberIn(const Instruction& i, uint32_t function) {
+    const bool stepwise = program_.options.stepwise;
     using std::acos, std::acosh, std::asin, std::asinh, std::atan, std::atan2, std::atanh, std::ceil, std::cos,
         std::cosh, std::exp, std::exp2, std::fabs, std::floor, std::fma, std::log, std::log2, std::pow, std::rint,
         std::sin, std::sinh, std::sqrt, std::tan, std::tanh, std::trunc;
@@ -83,11 +133,13 @@ bool Machine<Number>::glslNumber(const Instruction& i, uint32_t function) {
         case GLSLstd450Ceil:
             return unary([](const W& x) { return ceil(x); });
         case GLSLstd450Fract:
-            return unary([](const W& x) { return W(x - floor(x)); });
+            return unary([](const W& x) { return fract(x); });
         case GLSLstd450Radians:
-            return unary([](const W& x) { return W(x * pi<W>() / W(180)); });
+            return unary(
+                [=](const W& x) { return stepwise ? W(x * constant<W>(kRadiansPerDegree)) : W(x * pi<W>() / W(180)); });
         case GLSLstd450Degrees:
-            return unary([](const W& x) { return W(x * W(180) / pi<W>()); });
+            return unary(
+                [=](const W& x) { return stepwise ? W(x * constant<W>(kDegreesPerRadian)) : W(x * W(180) / pi<W>()); });
         case GLSLstd450Sin:
             return unary([](const W& x) { return sin(x); });
         case GLSLstd450Cos:
@@ -144,11 +196,15 @@ bool Machine<Number>::glslNumber(const Instruction& i, uint32_t function) {
         case GLSLstd450SmoothStep:
             return ternary(smoothStep<W>);
         case GLSLstd450Fma: {
-            // In Number itself: rounding to Wide first would round twice.
+            // In the type of the result: rounding to a wider one first would round twice.
             const size_t count = resultCount(i);
             const Scalars<Number>&a = data(i.operand(2), count), &b = data(i.operand(3), count),
                   &c = data(i.operand(4), count);
-            return finish(count, [&](size_t k) { return fma(a[k].number, b[k].number, c[k].number); });
+            const bool single = program_.options.roundToFloat && module_.scalarType(resultType(i)).width == 32;
+            return finish(count, [&](size_t k) {
+                return single ? Number(fma(toFloat32(a[k].number), toFloat32(b[k].number), toFloat32(c[k].number)))
+                              : fma(a[k].number, b[k].number, c[k].number);
+            });
         }
         default:
             return false;

@@ -22,10 +22,12 @@ struct PackedFormat {
 };
 
 /// round(clamp(x) * scale) of the float32 nearest to x; NaN gives 0 (unsigned) or the lowest value (signed).
-uint32_t packNormalized(float value, const PackedFormat& format) {
+uint32_t packNormalized(float value, const PackedFormat& format, bool stepwise) {
     const double low = format.isSigned ? -1.0 : 0.0;
     const double clamped = value > low ? std::min(static_cast<double>(value), 1.0) : low;
-    const auto code = static_cast<int64_t>(std::nearbyint(clamped * format.scale()));
+    const double product = clamped * format.scale();
+    const auto code =
+        static_cast<int64_t>(std::nearbyint(stepwise ? static_cast<double>(static_cast<float>(product)) : product));
     return static_cast<uint32_t>(code) & static_cast<uint32_t>(widthMask(format.width));
 }
 
@@ -185,7 +187,8 @@ bool Machine<Number>::glslPacking(const Instruction& i, uint32_t function) {
             const Scalars<Number>& x = data(i.operand(2), format->components);
             uint32_t packed = 0;
             for (uint32_t c = 0; c < format->components; ++c)
-                packed |= packNormalized(toFloat32(x[c].number), *format) << (c * format->width);
+                packed |= packNormalized(toFloat32(x[c].number), *format, program_.options.stepwise)
+                          << (c * format->width);
             setResult(i, S::ofBits(packed));
             return true;
         }

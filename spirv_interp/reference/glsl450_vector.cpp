@@ -1,4 +1,7 @@
-// GLSL.std.450 functions on whole vectors and matrices, evaluated in Wide<Number> and rounded to Number once.
+// GLSL.std.450 functions on whole vectors and matrices, evaluated in W and rounded to Number once. W is
+// Wide<Number>, or with Options::stepwise the type of the result itself.
+#include <type_traits>
+
 #include "spirv_interp/reference/machine.h"
 
 #include <spirv/unified1/GLSL.std.450.h>
@@ -33,27 +36,28 @@ Vector<W> minor(const Vector<W>& m, size_t n, size_t row, size_t column) {
     return result;
 }
 
-/// Laplace expansion along the first row.
+/// Laplace expansion along the first column.
 template <class W>
 W determinant(const Vector<W>& m, size_t n) {
     if (n == 1) return m[0];
     W sum(0);
-    for (size_t c = 0; c < n; ++c) {
-        const W term = m[c * n] * determinant(minor(m, n, 0, c), n - 1);
-        sum = c % 2 == 0 ? W(sum + term) : W(sum - term);
+    for (size_t r = 0; r < n; ++r) {
+        const W term = m[r] * determinant(minor(m, n, r, 0), n - 1);
+        sum = r == 0 ? term : r % 2 == 0 ? W(sum + term) : W(sum - term);
     }
     return sum;
 }
 
-/// The transposed cofactors over the determinant.
+/// The transposed cofactors over the determinant, or `stepwise` times its reciprocal.
 template <class W>
-Vector<W> inverse(const Vector<W>& m, size_t n) {
-    const W d = determinant(m, n);
+Vector<W> inverse(const Vector<W>& m, size_t n, bool stepwise) {
+    const W d = determinant(m, n), reciprocal = W(1) / d;
     Vector<W> result;
     for (size_t c = 0; c < n; ++c)
         for (size_t r = 0; r < n; ++r) {
-            const W cofactor = determinant(minor(m, n, c, r), n - 1);
-            result.push_back((c + r) % 2 == 0 ? W(cofactor / d) : W(-cofactor / d));
+            const W minorOf = determinant(minor(m, n, c, r), n - 1);
+            const W cofactor = (c + r) % 2 == 0 ? minorOf : W(-minorOf);
+            result.push_back(stepwise ? W(cofactor * reciprocal) : W(cofactor / d));
         }
     return result;
 }
@@ -68,8 +72,21 @@ size_t squareSize(size_t scalars) {
 
 template <class Number>
 bool Machine<Number>::glslGeometric(const Instruction& i, uint32_t function) {
-    using W = Wide<Number>;
-    using std::sqrt;
+    if constexpr (std::is_floating_point_v<Number>) {
+        const Type& type = resultType(i);
+        if (program_.options.stepwise &&
+            (type.isScalar() || type.kind == TypeKind::vector || type.kind == TypeKind::matrix))
+            return module_.scalarType(type).width == 64 ? glslGeometricIn<double>(i, function)
+                                                        : glslGeometricIn<float>(i, function);
+    }
+    return glslGeometricIn<Wide<Number>>(i, function);
+}
+
+template <class Number>
+template <class W>
+bool Machine<Number>::glslGeometricIn(const Instruction& i, uint32_t function) {
+    using std::fabs, std::sqrt;
+    const bool stepwise = program_.options.stepwise;
     const auto finish = [&](const Vector<W>& components) {
         Scalars<Number> result;
         for (const W& x : components) result.push_back(Scalar<Number>::ofNumber(static_cast<Number>(x)));
@@ -77,17 +94,18 @@ bool Machine<Number>::glslGeometric(const Instruction& i, uint32_t function) {
         return true;
     };
     const auto argument = [&](size_t index) { return widen<W>(data(i.operand(2 + index))); };
+    const auto length = [](const Vector<W>& x) { return x.size() == 1 ? W(fabs(x[0])) : W(sqrt(dot(x, x))); };
     const auto sameSize = [&](size_t index, size_t count) { return widen<W>(data(i.operand(2 + index), count)); };
     switch (function) {
         case GLSLstd450Length: {
             const Vector<W> x = argument(0);
-            return finish({sqrt(dot(x, x))});
+            return finish({length(x)});
         }
         case GLSLstd450Distance: {
             Vector<W> x = argument(0);
             const Vector<W> y = sameSize(1, x.size());
             for (size_t k = 0; k < x.size(); ++k) x[k] -= y[k];
-            return finish({sqrt(dot(x, x))});
+            return finish({length(x)});
         }
         case GLSLstd450Cross: {
             const Vector<W> x = sameSize(0, 3), y = sameSize(1, 3);
@@ -95,8 +113,9 @@ bool Machine<Number>::glslGeometric(const Instruction& i, uint32_t function) {
         }
         case GLSLstd450Normalize: {
             Vector<W> x = argument(0);
-            const W length = sqrt(dot(x, x));
-            for (W& component : x) component /= length;
+            if (x.size() == 1) return finish({x[0] > W(0) ? W(1) : x[0] < W(0) ? W(-1) : W(0)});
+            const W norm = length(x), reciprocal = W(1) / norm;
+            for (W& component : x) component = stepwise ? W(component * reciprocal) : W(component / norm);
             return finish(x);
         }
         case GLSLstd450FaceForward: {
@@ -130,7 +149,7 @@ bool Machine<Number>::glslGeometric(const Instruction& i, uint32_t function) {
         }
         case GLSLstd450MatrixInverse: {
             const Vector<W> m = argument(0);
-            return finish(inverse(m, squareSize(m.size())));
+            return finish(inverse(m, squareSize(m.size()), stepwise));
         }
         default:
             return false;

@@ -165,10 +165,34 @@ struct Outcome {
     uint64_t steps = 0;      // instructions executed
 };
 
+/// Stands in for the functions whose accuracy an implementation chooses: the trigonometric, hyperbolic, exponential
+/// and logarithmic ones of GLSL.std.450 on 32-bit floats.
+class ElementaryFunctions {
+  public:
+    virtual ~ElementaryFunctions() = default;
+    /// `function` is a GLSLstd450 number with one operand in `x`, or two in `x` and `y` (Atan2: y / x in the order of
+    /// the instruction, Pow).
+    virtual float evaluate(uint32_t function, float x, float y) const = 0;
+};
+
 struct Options {
     /// Round every 32-bit float result to float32, inputs and image results included. No effect with Number =
     /// float.
     bool roundToFloat = false;
+    /// Functions and instructions that the specification describes by an expression (Radians, Length, Normalize,
+    /// Reflect, SmoothStep, FMix, MatrixInverse, packing, OpFRem, OpFMod...) are computed as that expression, every
+    /// operation rounded to the type of the result; otherwise exactly, rounded once. The expressions:
+    ///   Fract: min(x - floor(x), the largest number below 1)   Radians, Degrees: x * constant
+    ///   Length: sqrt(dot(x, x)), of a scalar |x|               Distance: Length(x - y)
+    ///   Normalize: x * InverseSqrt(dot(x, x)), of a scalar sign(x)
+    ///   InverseSqrt: 1 / sqrt(x)                               FMix: x * (1 - a) + y * a
+    ///   SmoothStep: t * t * (3 - 2 * t) with t = clamp((x - e0) / (e1 - e0), 0, 1)
+    ///   Refract: eta * I - (eta * d + sqrt(k)) * N, k = 1 - eta * eta * (1 - d * d), d = dot(N, I)
+    ///   Determinant: expanded along the first column           MatrixInverse: cofactors times 1 / determinant
+    ///   Pack...norm: round(clamp(x) * scale)                   OpFRem, OpFMod: x - y * trunc or floor(x / y)
+    bool stepwise = false;
+    /// nullptr: the C library's in Wide, or MPFR's. Must outlive the interpreter and be thread-safe.
+    const ElementaryFunctions* elementary = nullptr;
     /// OpDPdx, OpDPdy, OpFwidth and implicit levels of detail use one difference for the whole quad, the one
     /// of its first row or column (as the ...Coarse instructions do); otherwise that of the invocation's own
     /// row and column.

@@ -159,7 +159,11 @@ class Machine {
     Scalars<Number> bitcast(const Instruction& i) const;
     void executeGlsl(const Instruction& i);
     bool glslNumber(const Instruction& i, uint32_t function);
+    template <class W>
+    bool glslNumberIn(const Instruction& i, uint32_t function);
     bool glslGeometric(const Instruction& i, uint32_t function);
+    template <class W>
+    bool glslGeometricIn(const Instruction& i, uint32_t function);
     bool glslStructured(const Instruction& i, uint32_t function);
     bool glslInteger(const Instruction& i, uint32_t function);
     bool glslPacking(const Instruction& i, uint32_t function);

@@ -1,0 +1,170 @@
+// A case through the batch interpreter.
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "tests/proof/proof.h"
+
+namespace vernier::proof {
+namespace {
+
+/// What an ImageBinding's call finds behind its pointers.
+struct BoundImage {
+    TestImage* image = nullptr;
+};
+
+float floatAt(const uint32_t* lanes, uint32_t lane) {
+    return lanes == nullptr ? 0.0f : std::bit_cast<float>(lanes[lane]);
+}
+int32_t intAt(const uint32_t* lanes, uint32_t lane) {
+    return lanes == nullptr ? 0 : static_cast<int32_t>(lanes[lane]);
+}
+
+void callImage(const ImageBinding& binding, const ImageCall& call) {
+    const ir::ImageOp& op = *call.op;
+    auto& image = *static_cast<TestImage*>(const_cast<void*>(binding.image));
+    const bool implicit = op.kind == ir::ImageKind::sampleImplicit || op.kind == ir::ImageKind::queryLod;
+    for (uint32_t lane = 0; lane < call.lanes; ++lane) {
+        if (call.mask[lane] == 0) continue;
+        ImageAccess a;
+        a.kind = op.kind;
+        a.dim = op.dim;
+        a.arrayed = op.arrayed;
+        a.compare = op.depthCompare;
+        a.component = op.component;
+        a.atomic = op.atomicOp;
+        for (uint32_t k = 0; k < op.coords; ++k) {
+            a.coordinates[k] = floatAt(call.coord[k], lane);
+            a.texel[k] = intAt(call.coord[k], lane);
+        }
+        const uint32_t spatial = op.coords - (op.arrayed && op.coords > 0 ? 1 : 0);
+        for (uint32_t k = 0; k < 3; ++k) {
+            if (implicit && k < spatial) {
+                a.ddx[k] = floatAt(call.coord[k], lane | 1) - floatAt(call.coord[k], lane & ~1u);
+                a.ddy[k] = floatAt(call.coord[k], lane | 2) - floatAt(call.coord[k], lane & ~2u);
+            } else if (!implicit) {
+                a.ddx[k] = floatAt(call.ddx[k], lane);
+                a.ddy[k] = floatAt(call.ddy[k], lane);
+            }
+            a.offset[k] = intAt(call.offset[k], lane);
+        }
+        (op.hasBias ? a.bias : a.lod) = floatAt(call.lodOrBias, lane);
+        a.level = intAt(call.lodOrBias, lane);
+        a.reference = floatAt(call.dref, lane);
+        a.sample = intAt(call.sample, lane);
+        for (uint32_t k = 0; k < 4; ++k) a.value[k] = static_cast<uint32_t>(intAt(call.texel[k], lane));
+        if (op.kind == ir::ImageKind::atomic) a.comparator = a.value[1];
+        const auto result = image.access(a);
+        for (uint32_t k = 0; k < 4; ++k)
+            if (call.result[k] != nullptr) call.result[k][lane] = result[k];
+    }
+}
+
+bool isBuffer(ir::ResourceKind kind) {
+    return kind == ir::ResourceKind::uniformBuffer || kind == ir::ResourceKind::storageBuffer ||
+           kind == ir::ResourceKind::pushConstants;
+}
+
+/// The descriptors of a program over a Memory.
+class Bindings {
+  public:
+    Bindings(const ir::Program& program, Memory& memory) {
+        for (const ir::Resource& r : program.resources) {
+            const uint32_t count = r.arraySize == 0 ? kRuntimeArray : r.arraySize;
+            base_.push_back(static_cast<uint32_t>(isBuffer(r.kind)                      ? buffers_.size()
+                                                  : r.kind == ir::ResourceKind::sampler ? samplers_.size()
+                                                                                        : images_.size()));
+            count_.push_back(count);
+            for (uint32_t element = 0; element < count; ++element) {
+                const Slot slot{r.set, r.binding, element};
+                if (isBuffer(r.kind)) {
+                    auto& bytes = memory.buffer(r.kind == ir::ResourceKind::pushConstants ? kPushConstants : slot);
+                    buffers_.push_back({bytes.data(), static_cast<uint32_t>(bytes.size())});
+                } else if (r.kind == ir::ResourceKind::sampler) {
+                    samplers_.push_back(nullptr);
+                } else {
+                    images_.push_back({&memory.image(slot), nullptr, callImage});
+                }
+            }
+        }
+        bindings_ = {buffers_.data(), images_.data(), samplers_.data(),
+                     base_.data(),    count_.data(),  [](const ImageBinding& image, const void*) { return image; }};
+    }
+    const ResourceBindings& get() const { return bindings_; }
+
+    static constexpr uint32_t kRuntimeArray = 4;
+
+  private:
+    std::vector<BufferBinding> buffers_;
+    std::vector<ImageBinding> images_;
+    std::vector<const void*> samplers_;
+    std::vector<uint32_t> base_, count_;
+    ResourceBindings bindings_;
+};
+
+struct Interpolation {
+    const World* world;
+    const ir::Program* program;
+    uint32_t first;
+
+    static void at(void* self, uint32_t slot, uint32_t where, uint32_t lanes, const float* a, const float* b,
+                   float* result) {
+        const auto& me = *static_cast<const Interpolation*>(self);
+        for (uint32_t lane = 0; lane < lanes; ++lane) {
+            result[lane] = me.world->interpolated(me.first + lane, me.program->inputs[slot], where,
+                                                  a == nullptr ? 0.0f : a[lane], b == nullptr ? 0.0f : b[lane]);
+        }
+    }
+};
+
+}  // namespace
+
+Ending runBatch(const Case& subject, const ir::Program& program, const Shape& shape, const BatchOptions& options) {
+    Ending ending;
+    ending.memory = std::make_unique<Memory>(subject.world);
+    const auto compiled = BatchProgram::compile(program, options);
+    if (!compiled) {
+        ending.error = "batch: " + compiled.error().message;
+        return ending;
+    }
+    const Bindings bindings(program, *ending.memory);
+    BatchContext context(*compiled);
+    Interpolation interpolation{&subject.world, &program, 0};
+    context.setInterpolator({&interpolation, Interpolation::at});
+    context.beginDraw(bindings.get());
+    ending.outputs.assign(program.outputs.size(), std::vector<uint32_t>(subject.invocations));
+    ending.written.assign(program.outputs.size(), std::vector<bool>(subject.invocations, true));
+    ending.live.assign(subject.invocations, false);
+    const uint32_t capacity = (*compiled)->lanes();
+    for (uint32_t first = 0; first < subject.invocations; first += capacity) {
+        const uint32_t lanes = std::min(capacity, subject.invocations - first);
+        interpolation.first = first;
+        std::vector<uint32_t> exec(capacity), store(capacity);
+        for (uint32_t lane = 0; lane < lanes; ++lane) {
+            bool runs = shape.exec[first + lane];
+            // Derivatives need whole quads: the caller of a program that takes them adds the helpers.
+            for (uint32_t k = 0; program.usesQuads && k < 4; ++k) runs = runs || shape.exec[((first + lane) & ~3u) + k];
+            exec[lane] = runs ? ~0u : 0;
+            store[lane] = shape.store[first + lane] ? ~0u : 0;
+        }
+        for (uint32_t slot = 0; slot < program.inputs.size(); ++slot) {
+            auto* row = reinterpret_cast<uint32_t*>(context.input(slot));
+            for (uint32_t lane = 0; row != nullptr && lane < lanes; ++lane) {
+                const uint32_t word = subject.world.input(first + lane, program.inputs[slot]);
+                row[lane] = program.inputs[slot].type == ir::Type::b1 ? (word != 0 ? ~0u : 0) : word;
+            }
+        }
+        if (!context.run(lanes, exec.data(), store.data())) {
+            ending.error = "batch: the back-edge budget is used up";
+            return ending;
+        }
+        for (uint32_t lane = 0; lane < lanes; ++lane) ending.live[first + lane] = context.liveMask()[lane] != 0;
+        for (uint32_t slot = 0; slot < program.outputs.size(); ++slot) {
+            const auto* row = reinterpret_cast<const uint32_t*>(context.output(slot));
+            if (row != nullptr) std::copy_n(row, lanes, ending.outputs[slot].begin() + first);
+        }
+    }
+    return ending;
+}
+
+}  // namespace vernier::proof

@@ -1,0 +1,379 @@
+// A case through the reference interpreter.
+#include <bit>
+#include <cstring>
+
+#include <spirv/unified1/GLSL.std.450.h>
+
+#include "spirv_interp/ir/builder.h"
+#include "tests/proof/proof.h"
+
+namespace vernier::proof {
+namespace {
+
+/// The batch interpreter's elementary functions, one value at a time: a program of one operation for each.
+class TierFunctions final : public reference::ElementaryFunctions {
+  public:
+    explicit TierFunctions(MathTier tier) : tier_(tier) {}
+
+    float evaluate(uint32_t function, float x, float y) const override {
+        std::unique_ptr<BatchContext>& context = contexts_[function];
+        const bool two = function == GLSLstd450Atan2 || function == GLSLstd450Pow;
+        if (!context) {
+            context = std::make_unique<BatchContext>(compile(function, two));
+            context->beginDraw({});
+        }
+        constexpr uint32_t kLanes = 16;
+        for (uint32_t lane = 0; lane < kLanes; ++lane) {
+            context->input(0)[lane] = x;
+            if (two) context->input(1)[lane] = y;
+        }
+        const std::array<uint32_t, kLanes> mask{~0u, ~0u, ~0u, ~0u};
+        context->run(4, mask.data(), mask.data());
+        return context->output(0)[0];
+    }
+
+  private:
+    std::shared_ptr<const BatchProgram> compile(uint32_t function, bool two) const {
+        constexpr std::pair<GLSLstd450, ir::Op> kOps[] = {
+            {GLSLstd450Sin, ir::Op::fsin},     {GLSLstd450Cos, ir::Op::fcos},     {GLSLstd450Tan, ir::Op::ftan},
+            {GLSLstd450Asin, ir::Op::fasin},   {GLSLstd450Acos, ir::Op::facos},   {GLSLstd450Atan, ir::Op::fatan},
+            {GLSLstd450Sinh, ir::Op::fsinh},   {GLSLstd450Cosh, ir::Op::fcosh},   {GLSLstd450Tanh, ir::Op::ftanh},
+            {GLSLstd450Asinh, ir::Op::fasinh}, {GLSLstd450Acosh, ir::Op::facosh}, {GLSLstd450Atanh, ir::Op::fatanh},
+            {GLSLstd450Atan2, ir::Op::fatan2}, {GLSLstd450Pow, ir::Op::fpow},     {GLSLstd450Exp, ir::Op::fexp},
+            {GLSLstd450Log, ir::Op::flog},     {GLSLstd450Exp2, ir::Op::fexp2},   {GLSLstd450Log2, ir::Op::flog2},
+        };
+        ir::Op op = ir::Op::undef;
+        for (const auto& [number, operation] : kOps)
+            if (static_cast<uint32_t>(number) == function) op = operation;
+        ir::Program program;
+        program.stage = ir::Stage::fragment;
+        ir::Builder builder(program);
+        builder.setBlock(builder.newBlock());
+        std::vector<ir::ValueId> operands;
+        for (uint16_t k = 0; k < (two ? 2 : 1); ++k) {
+            ir::InterfaceSlot slot;
+            slot.location = k;
+            program.inputs.push_back(slot);
+            operands.push_back(builder.append(ir::Op::input, ir::Type::f32, {}, k));
+        }
+        program.outputs.emplace_back();
+        builder.append(ir::Op::storeOutput, ir::Type::none, {builder.append(op, ir::Type::f32, operands)}, 0);
+        builder.ret();
+        return BatchProgram::compile(program, {bestIsa(), tier_, 16}).value();
+    }
+
+    MathTier tier_;
+    mutable std::map<uint32_t, std::unique_ptr<BatchContext>> contexts_;
+};
+
+constexpr std::pair<spv::BuiltIn, ir::Builtin> kBuiltins[] = {
+    {spv::BuiltInVertexIndex, ir::Builtin::vertexIndex},
+    {spv::BuiltInInstanceIndex, ir::Builtin::instanceIndex},
+    {spv::BuiltInBaseVertex, ir::Builtin::baseVertex},
+    {spv::BuiltInBaseInstance, ir::Builtin::baseInstance},
+    {spv::BuiltInDrawIndex, ir::Builtin::drawIndex},
+    {spv::BuiltInViewIndex, ir::Builtin::viewIndex},
+    {spv::BuiltInPosition, ir::Builtin::position},
+    {spv::BuiltInPointSize, ir::Builtin::pointSize},
+    {spv::BuiltInClipDistance, ir::Builtin::clipDistance},
+    {spv::BuiltInCullDistance, ir::Builtin::cullDistance},
+    {spv::BuiltInLayer, ir::Builtin::layer},
+    {spv::BuiltInViewportIndex, ir::Builtin::viewportIndex},
+    {spv::BuiltInFragCoord, ir::Builtin::fragCoord},
+    {spv::BuiltInFrontFacing, ir::Builtin::frontFacing},
+    {spv::BuiltInPointCoord, ir::Builtin::pointCoord},
+    {spv::BuiltInSampleId, ir::Builtin::sampleId},
+    {spv::BuiltInSamplePosition, ir::Builtin::samplePosition},
+    {spv::BuiltInPrimitiveId, ir::Builtin::primitiveId},
+    {spv::BuiltInFragDepth, ir::Builtin::fragDepth},
+    {spv::BuiltInFragStencilRefEXT, ir::Builtin::fragStencilRef},
+};
+
+std::optional<ir::Builtin> builtinOf(spv::BuiltIn builtin, bool output) {
+    if (builtin == spv::BuiltInSampleMask) return output ? ir::Builtin::sampleMask : ir::Builtin::sampleMaskIn;
+    for (const auto& [theirs, ours] : kBuiltins)
+        if (theirs == builtin) return ours;
+    return std::nullopt;
+}
+
+spv::BuiltIn builtinOf(ir::Builtin builtin) {
+    if (builtin == ir::Builtin::sampleMask || builtin == ir::Builtin::sampleMaskIn) return spv::BuiltInSampleMask;
+    for (const auto& [theirs, ours] : kBuiltins)
+        if (ours == builtin) return theirs;
+    return spv::BuiltInMax;
+}
+
+/// One run by the reference interpreter in a number type.
+template <class Number>
+class ReferenceRun final : public reference::Resources<Number> {
+    using Texel = reference::Texel<Number>;
+    using Scalar = reference::Scalar<Number>;
+    using Request = reference::ImageRequest<Number>;
+
+  public:
+    ReferenceRun(const Case& subject, const ir::Program& interface, const Shape& shape, MathTier tier)
+        : subject_(subject), interface_(interface), shape_(shape), tier_(tier) {}
+
+    Ending run() {
+        ending_.memory = std::make_unique<Memory>(subject_.world);
+        ending_.outputs.assign(interface_.outputs.size(), std::vector<uint32_t>(subject_.invocations));
+        ending_.written.assign(interface_.outputs.size(), std::vector<bool>(subject_.invocations));
+        ending_.live.assign(subject_.invocations, false);
+        std::map<uint32_t, uint64_t> specialization;
+        for (const SpecConstant& s : subject_.specialization) specialization[s.id] = s.value;
+        const auto module = reference::Module::parse(subject_.words, specialization);
+        if (!module) return failed(module.error().message);
+        static const TierFunctions kFast(MathTier::fast), kStandard(MathTier::standard), kFine(MathTier::fine);
+        reference::Options options;
+        options.roundToFloat = true;
+        options.stepwise = true;
+        options.elementary = tier_ == MathTier::fast ? &kFast : tier_ == MathTier::standard ? &kStandard : &kFine;
+        options.stepBudget = 1u << 27;
+        const auto model =
+            subject_.stage == ir::Stage::vertex ? spv::ExecutionModelVertex : spv::ExecutionModelFragment;
+        const auto interpreter = reference::Interpreter<Number>::create(*module, model, "main", options);
+        if (!interpreter) return failed(interpreter.error().message);
+        variables_ = module->interfaceVariables(0);
+        for (uint32_t first = 0; first < subject_.invocations && ending_.error.empty(); first += 4) {
+            if (subject_.stage == ir::Stage::fragment) {
+                runQuad(*interpreter, first);
+            } else {
+                for (first_ = first; first_ < first + 4; ++first_) runOne(*interpreter);
+            }
+        }
+        return std::move(ending_);
+    }
+
+    std::span<std::byte> buffer(reference::BufferKind kind, const reference::Descriptor& d) override {
+        return ending_.memory->buffer(
+            kind == reference::BufferKind::pushConstants ? kPushConstants : Slot{d.set, d.binding, d.arrayIndex});
+    }
+    Texel sample(const Request& r) override {
+        ImageAccess a = accessOf(r);
+        a.kind = r.lodMode == reference::LodMode::implicit      ? ir::ImageKind::sampleImplicit
+                 : r.lodMode == reference::LodMode::explicitLod ? ir::ImageKind::sampleLod
+                                                                : ir::ImageKind::sampleGrad;
+        return texel(r, a);
+    }
+    Texel gather(const Request& r) override {
+        ImageAccess a = accessOf(r);
+        a.kind = ir::ImageKind::gather;
+        return texel(r, a);
+    }
+    Texel fetch(const Request& r) override {
+        ImageAccess a = accessOf(r);
+        const bool read = r.shape.storage || r.shape.dim == spv::DimSubpassData;
+        a.kind = read ? ir::ImageKind::read : ir::ImageKind::fetch;
+        return texel(r, a);
+    }
+    void write(const Request& r, const Texel& value) override {
+        ImageAccess a = accessOf(r);
+        a.kind = ir::ImageKind::store;
+        for (size_t k = 0; k < 4; ++k) a.value[k] = bitsOf(value[k], r.shape.floating);
+        image(r.image).access(a);
+    }
+    std::array<int32_t, 4> querySize(const reference::Descriptor& d, const reference::ImageShape& shape,
+                                     int32_t lod) override {
+        ImageAccess a;
+        a.kind = ir::ImageKind::querySize;
+        a.dim = dimOf(shape.dim);
+        a.arrayed = shape.arrayed;
+        a.level = lod;
+        return std::bit_cast<std::array<int32_t, 4>>(image(d).access(a));
+    }
+    int32_t queryLevels(const reference::Descriptor&, const reference::ImageShape&) override {
+        return TestImage::kLevels;
+    }
+    int32_t querySamples(const reference::Descriptor&, const reference::ImageShape&) override { return 4; }
+    std::array<Number, 2> queryLod(const Request& r) override {
+        ImageAccess a = accessOf(r);
+        a.kind = ir::ImageKind::queryLod;
+        const auto bits = image(r.image).access(a);
+        return {Number(std::bit_cast<float>(bits[0])), Number(std::bit_cast<float>(bits[1]))};
+    }
+    std::optional<Texel> interpolateAt(const reference::InterpolationRequest<Number>& r) override {
+        Texel result;
+        for (uint8_t c = 0; c < 4; ++c) {
+            ir::InterfaceSlot slot;
+            slot.location = static_cast<uint16_t>(r.location);
+            slot.component = c;
+            const auto where = static_cast<uint32_t>(r.place);
+            const float a = where == 1 ? std::bit_cast<float>(r.sample) : static_cast<float>(r.offset[0]);
+            result[c] = Scalar::ofNumber(Number(
+                subject_.world.interpolated(first_ + r.invocation, slot, where, a, static_cast<float>(r.offset[1]))));
+        }
+        return result;
+    }
+
+  private:
+    Ending failed(const std::string& message) {
+        ending_.error = "reference: " + message;
+        return std::move(ending_);
+    }
+
+    reference::InterfaceValues<Number> inputsOf(uint32_t invocation) const {
+        reference::InterfaceValues<Number> inputs;
+        for (const reference::InterfaceVariable& v : variables_) {
+            if (v.output) continue;
+            const bool wide = v.kind == reference::ScalarKind::int64 || v.kind == reference::ScalarKind::uint64 ||
+                              v.kind == reference::ScalarKind::float64;
+            const bool floating = v.kind == reference::ScalarKind::float32 || v.kind == reference::ScalarKind::float64;
+            ir::InterfaceSlot slot;
+            slot.type = floating && !wide ? ir::Type::f32 : ir::Type::i32;
+            const uint32_t scalars = v.components * v.columns * v.elements;
+            if (v.isBuiltin) {
+                const auto builtin = builtinOf(v.builtin, false);
+                if (!builtin) continue;
+                slot.builtin = *builtin;
+                auto& values = inputs.builtins[v.builtin];
+                for (uint32_t k = 0; k < scalars; ++k) {
+                    slot.component = static_cast<uint8_t>(k);
+                    values.push_back(scalarOf(subject_.world.input(invocation, slot), floating));
+                }
+                continue;
+            }
+            const uint32_t size = wide ? 2 : 1, perColumn = v.component + v.components * size > 4 ? 2 : 1;
+            for (uint32_t k = 0; k < scalars; ++k) {
+                const uint32_t at = v.component + k % v.components * size;
+                slot.location = static_cast<uint16_t>(v.location + k / v.components * perColumn + at / 4);
+                slot.component = static_cast<uint8_t>(at % 4);
+                auto& texel = inputs.locations[reference::Location(slot.location, v.index)];
+                const uint32_t low = subject_.world.input(invocation, slot);
+                texel[slot.component] = scalarOf(low, floating);
+                if (!wide) continue;
+                slot.component++;
+                const uint32_t high = subject_.world.input(invocation, slot);
+                texel[slot.component] = Scalar::ofBits(high);
+                if (floating)
+                    texel[at % 4] =
+                        Scalar::ofNumber(static_cast<Number>(std::bit_cast<double>(uint64_t{high} << 32 | low)));
+            }
+        }
+        return inputs;
+    }
+
+    void runOne(const reference::Interpreter<Number>& interpreter) {
+        if (!shape_.store[first_] || !ending_.error.empty()) return;
+        const auto outcome = interpreter.run(inputsOf(first_), *this);
+        if (!outcome) {
+            failed(outcome.error().message);
+            ending_.error = "reference: " + outcome.error().message;
+            return;
+        }
+        note(first_, *outcome);
+    }
+
+    void runQuad(const reference::Interpreter<Number>& interpreter, uint32_t first) {
+        first_ = first;
+        std::array<reference::InterfaceValues<Number>, 4> inputs;
+        std::array<bool, 4> helper{};
+        bool any = false;
+        for (uint32_t k = 0; k < 4; ++k) {
+            inputs[k] = inputsOf(first + k);
+            helper[k] = !shape_.store[first + k];
+            any = any || shape_.exec[first + k];
+        }
+        if (!any) return;
+        const auto outcomes = interpreter.runQuad(inputs, helper, *this);
+        if (!outcomes) {
+            ending_.error = "reference: " + outcomes.error().message;
+            return;
+        }
+        for (uint32_t k = 0; k < 4; ++k)
+            if (!helper[k]) note(first + k, (*outcomes)[k]);
+    }
+
+    void note(uint32_t invocation, const reference::Outcome<Number>& outcome) {
+        ending_.live[invocation] = !outcome.discarded;
+        for (size_t s = 0; s < interface_.outputs.size(); ++s) {
+            const ir::InterfaceSlot& slot = interface_.outputs[s];
+            const Scalar* scalar = nullptr;
+            if (slot.builtin != ir::Builtin::user) {
+                const auto found = outcome.outputs.builtins.find(builtinOf(slot.builtin));
+                if (found != outcome.outputs.builtins.end() && slot.component < found->second.size())
+                    scalar = &found->second[slot.component];
+            } else {
+                const auto found = outcome.outputs.locations.find(reference::Location(slot.location, slot.index));
+                if (found != outcome.outputs.locations.end()) scalar = &found->second[slot.component];
+            }
+            if (scalar == nullptr) continue;
+            ending_.outputs[s][invocation] = bitsOf(*scalar, slot.type == ir::Type::f32);
+            ending_.written[s][invocation] = true;
+        }
+    }
+
+    static Scalar scalarOf(uint32_t bits, bool floating) {
+        return floating ? Scalar::ofNumber(Number(std::bit_cast<float>(bits))) : Scalar::ofBits(bits);
+    }
+    static uint32_t bitsOf(const Scalar& scalar, bool floating) {
+        return floating ? std::bit_cast<uint32_t>(static_cast<float>(scalar.number))
+                        : static_cast<uint32_t>(scalar.bits);
+    }
+    TestImage& image(const reference::Descriptor& d) { return ending_.memory->image({d.set, d.binding, d.arrayIndex}); }
+    static ir::ImageDim dimOf(spv::Dim dim) {
+        switch (dim) {
+            case spv::Dim1D:
+                return ir::ImageDim::d1;
+            case spv::Dim3D:
+                return ir::ImageDim::d3;
+            case spv::DimCube:
+                return ir::ImageDim::cube;
+            case spv::DimBuffer:
+                return ir::ImageDim::buffer;
+            case spv::DimSubpassData:
+                return ir::ImageDim::subpass;
+            default:
+                return ir::ImageDim::d2;
+        }
+    }
+    ImageAccess accessOf(const Request& r) const {
+        ImageAccess a;
+        a.dim = dimOf(r.shape.dim);
+        a.arrayed = r.shape.arrayed;
+        a.compare = r.dref.has_value();
+        a.texel = r.texel;
+        for (size_t k = 0; k < 4; ++k) a.coordinates[k] = static_cast<float>(r.coordinates[k]);
+        for (size_t k = 0; k < 3; ++k) {
+            a.ddx[k] = static_cast<float>(r.ddx[k]);
+            a.ddy[k] = static_cast<float>(r.ddy[k]);
+        }
+        a.lod = static_cast<float>(r.lod);
+        a.bias = static_cast<float>(r.bias);
+        a.level = r.texelLod;
+        a.offset = r.offset;
+        if (r.dref) a.reference = static_cast<float>(*r.dref);
+        a.sample = r.sample;
+        a.component = r.component;
+        return a;
+    }
+    Texel texel(const Request& r, const ImageAccess& access) {
+        const auto bits = image(r.image).access(access);
+        Texel result;
+        for (size_t k = 0; k < 4; ++k) result[k] = scalarOf(bits[k], r.shape.floating);
+        return result;
+    }
+
+    const Case& subject_;
+    const ir::Program& interface_;
+    const Shape& shape_;
+    MathTier tier_;
+    std::vector<reference::InterfaceVariable> variables_;
+    uint32_t first_ = 0;  // invocation of the quad's first corner, or the one that runs
+    Ending ending_;
+};
+
+/// A module with 64-bit floats needs them: float holds no more than 24 bits.
+bool usesFloat64(const Words& words) {
+    for (size_t at = 5; at < words.size() && (words[at] & 0xFFFF) == spv::OpCapability; at += 2)
+        if (at + 1 < words.size() && words[at + 1] == spv::CapabilityFloat64) return true;
+    return false;
+}
+
+}  // namespace
+
+Ending runReference(const Case& subject, const ir::Program& interface, const Shape& shape, MathTier tier) {
+    if (usesFloat64(subject.words)) return ReferenceRun<double>(subject, interface, shape, tier).run();
+    return ReferenceRun<float>(subject, interface, shape, tier).run();
+}
+
+}  // namespace vernier::proof
