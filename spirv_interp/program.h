@@ -64,6 +64,7 @@ struct BatchStatistics {
     uint32_t drawRateInstructions = 0;
     uint32_t registers = 0;  // of `lanes` 32-bit words each
     uint32_t lanes = 0;
+    uint32_t workGroupRateInstructions = 0;  // per work-group, for what is the same in all of it
 };
 
 class BatchContext;

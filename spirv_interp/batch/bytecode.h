@@ -137,6 +137,8 @@ struct Frame {
     LaneMask live;  // lanes whose effects count
     uint32_t backEdges = 0;
     bool lost = false;
+    bool suspends = false;         // the work-group has other batches: a control barrier ends the run
+    const Inst* resume = nullptr;  // where it goes on; nullptr when it has come to its end
     const ResourceBindings* bindings = nullptr;
     const ir::Program* program = nullptr;
     const ImageSite* imageSites = nullptr;

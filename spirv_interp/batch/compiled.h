@@ -29,21 +29,27 @@ Code encode(const MachineCode& machine, const Allocation& allocation, const Scal
 
 class CompiledProgram final : public BatchProgram {
   public:
-    CompiledProgram(const ir::Program& source, LoweredProgram lowered, const BatchOptions& options);
+    CompiledProgram(const ir::Program& source, LoweredProgram lowered, const BatchOptions& options, bool packed);
 
     const BatchStatistics& statistics() const override { return statistics_; }
     std::string disassemble() const override;
 
     const ir::Program& source() const { return source_; }
     const Code& batch() const { return batch_; }
+    const Code& workGroup() const { return workGroup_; }
     const Code& draw() const { return draw_; }
     const std::vector<uint32_t>& scalars() const { return scalars_; }
+    /// By Program::inputs: the scalar that is its value, or kNone.
+    const std::vector<uint32_t>& inputScalars() const { return inputScalars_; }
+    /// A batch holds several work-groups if it has room for them.
+    bool packed() const { return packed_; }
     const MaskFunctions& masks() const { return masks_; }
 
   private:
     ir::Program source_;
-    Code batch_, draw_;
-    std::vector<uint32_t> scalars_;
+    Code batch_, workGroup_, draw_;
+    std::vector<uint32_t> scalars_, inputScalars_;
+    bool packed_ = false;
     MaskFunctions masks_;
     BatchStatistics statistics_;
 };

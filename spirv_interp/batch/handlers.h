@@ -12,6 +12,7 @@ void addArithmetic(Isa isa, HandlerTable& table);           // arithmetic.cpp: V
 void addLaneOps(Isa isa, HandlerTable& table);              // lane_ops.cpp: LANES operations
 void addWide(Isa isa, HandlerTable& table);                 // wide.cpp: 64-bit values
 void addMath(Isa isa, MathTier tier, HandlerTable& table);  // math.cpp: transcendental functions
+void addBarriers(HandlerTable& table);                      // barrier.cpp: control and memory barriers
 void addFlow(Isa isa, HandlerTable& table);                 // flow.cpp: masks, jumps, moves, derivatives
 void addMemory(Isa isa, HandlerTable& table);               // memory.cpp: buffers, local memory, indexed inputs
 void addImages(HandlerTable& table);                        // images.cpp: image instructions, interpolation

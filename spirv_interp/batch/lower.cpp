@@ -5,7 +5,6 @@
 #include <string>
 
 #include "spirv_interp/batch/lowerer.h"
-#include "spirv_interp/ir/rates.h"
 
 namespace vernier::batch {
 
@@ -32,19 +31,17 @@ uint32_t ScalarFile::reserve(bool wide) {
     return index;
 }
 
-std::vector<bool> scalarValues(const ir::Program& program) {
-    const std::vector<ir::Rate> rates = ir::computeRates(program);
-    std::vector<bool> scalar(rates.size());
-    std::transform(rates.begin(), rates.end(), scalar.begin(), [](ir::Rate r) { return r != ir::Rate::invocation; });
-    return scalar;
-}
-
 uint32_t Lowerer::scalarOf(ir::ValueId value) {
     uint32_t& index = scalarIndex_[value];
     if (index != kNone) return index;
     const ir::Inst* inst = facts_.definition[value];
     if (inst != nullptr && inst->op == ir::Op::constant) return index = scalars_.constant(inst->imm, isWide(value));
     if (inst == nullptr || inst->op == ir::Op::undef) return index = scalars_.constant(0, isWide(value));
+    if (inst->op == ir::Op::input) {
+        uint32_t& place = inputScalars_[inst->imm];
+        if (place == kNone) place = scalars_.reserve(false);
+        return index = place;
+    }
     return index = scalars_.reserve(isWide(value));
 }
 
@@ -94,13 +91,17 @@ void Lowerer::emitVector(Op op, const Operand& to, std::vector<Operand> from) {
     emit(op, std::move(from)).form = form;
 }
 
-void Lowerer::lowerDraw(const std::vector<bool>& wanted) {
+void Lowerer::lowerStraight() {
+    std::vector<bool> wanted(program_.valueTypes.size());
+    for (ir::ValueId v = 0; v < wanted.size(); ++v) {
+        wanted[v] = scalarIndex_[v] != kNone && facts_.rates[v] == rate_ && !isScalar(v);
+    }
     std::vector<bool> needed = wanted;
     for (size_t b = program_.blocks.size(); b-- > 0;) {
         const auto& insts = program_.blocks[b].insts;
         for (size_t k = insts.size(); k-- > 0;) {
             const ir::Inst& inst = insts[k];
-            if (inst.result == ir::kNoValue || !needed[inst.result]) continue;
+            if (inst.result == ir::kNoValue || !needed[inst.result] || isScalar(inst.result)) continue;
             for (const ir::ValueId value : program_.operandsOf(inst)) needed[value] = true;
         }
     }
@@ -108,7 +109,7 @@ void Lowerer::lowerDraw(const std::vector<bool>& wanted) {
         for (const ir::Inst& inst : block.insts) {
             if (inst.result == ir::kNoValue || !needed[inst.result]) continue;
             lowerInst(inst);
-            if (!wanted[inst.result] || isScalar(inst.result)) continue;
+            if (!wanted[inst.result]) continue;
             for (uint8_t word = 0; word <= (isWide(inst.result) ? 1 : 0); ++word) {
                 emit(Op::keepScalar, {Operand::number(scalarIndex_[inst.result] + word), wordOf(inst.result, word)});
             }
@@ -117,17 +118,19 @@ void Lowerer::lowerDraw(const std::vector<bool>& wanted) {
     emit(Op::end, {});
 }
 
-Result<LoweredProgram> lower(const ir::Program& program) {
+Result<LoweredProgram> lower(const ir::Program& program, bool packed) {
     LoweredProgram lowered;
-    const Facts facts(program);
+    lowered.inputScalars.assign(program.inputs.size(), kNone);
+    const Facts facts(program, packed);
+    // A piece asks for scalars of the rates below its own: it is lowered before theirs.
     std::vector<uint32_t> scalarIndex(program.valueTypes.size(), kNone);
-    Lowerer batch(facts, lowered.scalars, scalarIndex, false, lowered.batch);
+    Lowerer batch(facts, lowered, scalarIndex, ir::Rate::invocation, lowered.batch);
     batch.lowerBatch();
-    std::vector<bool> wanted(program.valueTypes.size());
-    for (size_t v = 0; v < wanted.size(); ++v) wanted[v] = scalarIndex[v] != kNone;
-    Lowerer draw(facts, lowered.scalars, scalarIndex, true, lowered.draw);
-    draw.lowerDraw(wanted);
-    for (const Lowerer* piece : {&batch, &draw}) {
+    Lowerer workGroup(facts, lowered, scalarIndex, ir::Rate::workGroup, lowered.workGroup);
+    workGroup.lowerStraight();
+    Lowerer draw(facts, lowered, scalarIndex, ir::Rate::draw, lowered.draw);
+    draw.lowerStraight();
+    for (const Lowerer* piece : {&batch, &workGroup, &draw}) {
         if (!piece->unsupported().empty()) {
             return unsupported("IR of '" + program.name + "': the batch interpreter cannot run " +
                                piece->unsupported() + " on operands of this type");

@@ -1,6 +1,6 @@
-// From the IR to machine code. A program becomes two pieces: draw-rate code, straight-line, run once per draw
-// on a batch of one lane group, which leaves its results in the scalar file; and the code of a batch, with
-// lane masks for its control flow.
+// From the IR to machine code. A program becomes pieces by rate: draw-rate code and, in compute, code at the rate of
+// work-groups, straight-line, run once per draw or work-group on a batch of one lane group, which leave their results
+// in the scalar file; and the code of a batch, with lane masks for its control flow.
 #pragma once
 
 #include <vector>
@@ -11,16 +11,15 @@
 
 namespace vernier::batch {
 
-/// By value: whether it is the same for all lanes of a draw and can be computed before the first batch.
-std::vector<bool> scalarValues(const ir::Program& program);
-
 struct LoweredProgram {
-    MachineCode batch, draw;
+    MachineCode batch, workGroup, draw;
     ScalarFile scalars;
+    std::vector<uint32_t> inputScalars;  // by Program::inputs: where the runner puts its value, or kNone
 };
 
-/// `program` must verify. An operation on types it is not defined for is refused.
-Result<LoweredProgram> lower(const ir::Program& program);
+/// `program` must verify. `packed`: a batch holds several work-groups, so that what is the same for one varies between
+/// lanes. An operation on types it is not defined for is refused.
+Result<LoweredProgram> lower(const ir::Program& program, bool packed);
 
 /// Moves that happen at once, put in an order in which none destroys the source of another. `fresh` makes a
 /// register for a cycle.

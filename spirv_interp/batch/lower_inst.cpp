@@ -155,6 +155,12 @@ void Lowerer::lowerInst(const ir::Inst& inst) {
         case ir::Op::demote:
             emit(Op::discard, {});
             return;
+        case ir::Op::controlBarrier:
+            emit(Op::controlBarrier, {});
+            return;
+        case ir::Op::memoryBarrier:
+            emit(Op::memoryBarrier, {});
+            return;
         case ir::Op::isHelper:
             emit(Op::helperLanes, {target(inst)});
             return;

@@ -1,7 +1,8 @@
 // The class behind lower(): one pass over the IR that emits machine code. lower.cpp has its values and the
-// two pieces, lower_inst.cpp its instructions, lower_flow.cpp its blocks and edges.
+// pieces, lower_inst.cpp its instructions, lower_flow.cpp its blocks and edges.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -10,13 +11,20 @@
 #include "spirv_interp/ir/cfg.h"
 #include "spirv_interp/ir/ir.h"
 #include "spirv_interp/ir/ops.h"
+#include "spirv_interp/ir/rates.h"
 
 namespace vernier::batch {
 
-/// What both pieces share: facts about blocks and values.
+/// What all pieces share: facts about blocks and values.
 struct Facts {
-    explicit Facts(const ir::Program& p)
-        : program(p), cfg(p), scalar(scalarValues(p)), definition(p.valueTypes.size()), uses(p.valueTypes.size()) {
+    Facts(const ir::Program& p, bool packed)
+        : program(p), cfg(p), rates(ir::computeRates(p)), definition(p.valueTypes.size()), uses(p.valueTypes.size()) {
+        for (ir::Rate& rate : rates) {
+            // What folding has left of operations on constants is computed with the draw.
+            rate = std::max(rate, ir::Rate::draw);
+            if (packed && rate == ir::Rate::workGroup) rate = ir::Rate::invocation;
+            scalar.push_back(rate != ir::Rate::invocation);
+        }
         for (const ir::Block& block : p.blocks) {
             for (const ir::Inst& inst : block.insts) {
                 if (inst.result != ir::kNoValue) definition[inst.result] = &inst;
@@ -27,20 +35,23 @@ struct Facts {
 
     const ir::Program& program;
     ir::Cfg cfg;
-    std::vector<bool> scalar;
+    std::vector<ir::Rate> rates;              // by value
+    std::vector<bool> scalar;                 // the same for all lanes of a batch
     std::vector<const ir::Inst*> definition;  // of the first result
     std::vector<uint32_t> uses;
 };
 
-/// Lowers one piece. In draw-rate code every value but a constant is in a row.
+/// Lowers one piece, that of the values of one rate. What changes less is a scalar there, and the rest is in rows.
 class Lowerer {
   public:
-    Lowerer(const Facts& facts, ScalarFile& scalars, std::vector<uint32_t>& scalarIndex, bool draw, MachineCode& code)
+    Lowerer(const Facts& facts, LoweredProgram& lowered, std::vector<uint32_t>& scalarIndex, ir::Rate rate,
+            MachineCode& code)
         : facts_(facts),
           program_(facts.program),
-          scalars_(scalars),
+          scalars_(lowered.scalars),
+          inputScalars_(lowered.inputScalars),
           scalarIndex_(scalarIndex),
-          draw_(draw),
+          rate_(rate),
           code_(code),
           registers_(facts.program.valueTypes.size(), kNone) {
         code_.inputs.assign(program_.inputs.size(), kNone);
@@ -48,8 +59,9 @@ class Lowerer {
     }
 
     void lowerBatch();
-    /// Emits the definitions that `wanted` names and everything they need, and keeps them in the scalar file.
-    void lowerDraw(const std::vector<bool>& wanted);
+    /// Emits, for a piece that is straight-line, those of its values that have a place in the scalar file and
+    /// everything they need, and keeps them there.
+    void lowerStraight();
     /// The name of the first operation there is no way to run; empty if all is well.
     const std::string& unsupported() const { return unsupported_; }
 
@@ -57,8 +69,10 @@ class Lowerer {
     // Values.
     bool isScalar(ir::ValueId value) const {
         const ir::Inst* inst = facts_.definition[value];
-        const bool constant = inst != nullptr && (inst->op == ir::Op::constant || inst->op == ir::Op::undef);
-        return constant || (!draw_ && facts_.scalar[value]);
+        if (inst != nullptr && (inst->op == ir::Op::constant || inst->op == ir::Op::undef)) return true;
+        // Inputs that do not vary between lanes are put into the scalar file before the piece runs.
+        const bool given = inst != nullptr && inst->op == ir::Op::input && facts_.scalar[value];
+        return facts_.rates[value] < rate_ || (given && facts_.rates[value] == rate_);
     }
     bool isWide(ir::ValueId value) const { return ir::isWide(program_.valueTypes[value]); }
     uint32_t scalarOf(ir::ValueId value);
@@ -107,8 +121,9 @@ class Lowerer {
     const Facts& facts_;
     const ir::Program& program_;
     ScalarFile& scalars_;
+    std::vector<uint32_t>& inputScalars_;
     std::vector<uint32_t>& scalarIndex_;  // by value
-    const bool draw_;
+    const ir::Rate rate_;
     MachineCode& code_;
     std::vector<uint32_t> registers_;  // by value
     uint32_t loop_ = kNone;            // header of the loop being lowered

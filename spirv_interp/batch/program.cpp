@@ -19,11 +19,31 @@ uint32_t chooseLanes(uint32_t rows) {
     return kLaneGroup;
 }
 
+uint32_t workGroupSize(const ir::Program& program) {
+    return program.localSize[0] * program.localSize[1] * program.localSize[2];
+}
+
+/// No wider than a work-group needs that has its batches for itself.
+uint32_t narrowed(uint32_t lanes, uint32_t needed) {
+    while (lanes > kLaneGroup && lanes / 2 >= needed) lanes /= 2;
+    return lanes;
+}
+
+/// Whether work-groups may share a batch: nothing in them looks at other invocations. And there must be room for two.
+bool packs(const ir::Program& program, uint32_t lanes) {
+    constexpr uint32_t kUsual = 64;
+    if (program.stage != ir::Stage::compute || program.hasBarriers) return false;
+    const bool shares = std::any_of(program.resources.begin(), program.resources.end(),
+                                    [](const ir::Resource& r) { return r.kind == ir::ResourceKind::workgroupMemory; });
+    return !shares && workGroupSize(program) * 2 <= (lanes != 0 ? lanes : kUsual);
+}
+
 }  // namespace
 
 HandlerTable handlerTable(Isa isa, MathTier tier) {
     HandlerTable table{};
     addArithmetic(isa, table);
+    addBarriers(table);
     addFlow(isa, table);
     addLaneOps(isa, table);
     addWide(isa, table);
@@ -33,15 +53,26 @@ HandlerTable handlerTable(Isa isa, MathTier tier) {
     return table;
 }
 
-CompiledProgram::CompiledProgram(const ir::Program& source, LoweredProgram lowered, const BatchOptions& options)
-    : source_(source), masks_(maskFunctions(options.isa)) {
+CompiledProgram::CompiledProgram(const ir::Program& source, LoweredProgram lowered, const BatchOptions& options,
+                                 bool packed)
+    : source_(source), packed_(packed), masks_(maskFunctions(options.isa)) {
     const HandlerTable handlers = handlerTable(options.isa, options.tier);
-    const Allocation batchRows = allocate(lowered.batch), drawRows = allocate(lowered.draw);
-    const uint32_t lanes = options.lanes != 0 ? options.lanes : chooseLanes(batchRows.rows);
+    const Allocation batchRows = allocate(lowered.batch);
+    uint32_t lanes = options.lanes;
+    if (lanes == 0) {
+        lanes = chooseLanes(batchRows.rows);
+        if (source.stage == ir::Stage::compute && !packed) lanes = narrowed(lanes, workGroupSize(source));
+        while (packed && lanes < workGroupSize(source)) lanes *= 2;
+    }
+    const auto encodeStraight = [&](MachineCode& code) {
+        return encode(code, allocate(code), lowered.scalars, handlers, kLaneGroup);
+    };
     batch_ = encode(lowered.batch, batchRows, lowered.scalars, handlers, lanes);
-    draw_ = encode(lowered.draw, drawRows, lowered.scalars, handlers, kLaneGroup);
+    workGroup_ = encodeStraight(lowered.workGroup);
+    draw_ = encodeStraight(lowered.draw);
     scalars_ = lowered.scalars.initial();
-    statistics_ = {batch_.instructions, draw_.instructions - 1, batch_.rows, lanes};
+    inputScalars_ = std::move(lowered.inputScalars);
+    statistics_ = {batch_.instructions, draw_.instructions - 1, batch_.rows, lanes, workGroup_.instructions - 1};
 }
 
 std::string CompiledProgram::disassemble() const {
@@ -56,6 +87,7 @@ std::string CompiledProgram::disassemble() const {
     list("input ", batch_.inputs);
     list("output ", batch_.outputs);
     if (draw_.instructions > 1) text += "draw:\n" + draw_.listing;
+    if (workGroup_.instructions > 1) text += "work-group:\n" + workGroup_.listing;
     return text + "batch:\n" + batch_.listing;
 }
 
@@ -73,10 +105,11 @@ Result<std::shared_ptr<const BatchProgram>> BatchProgram::compile(const ir::Prog
                            ", which this CPU does not have");
     }
     if (Status status = ir::verify(program); !status.ok()) return status.error();
-    auto lowered = batch::lower(program);
+    const bool packed = batch::packs(program, options.lanes);
+    auto lowered = batch::lower(program, packed);
     if (!lowered) return lowered.error();
     return std::shared_ptr<const BatchProgram>(
-        std::make_shared<batch::CompiledProgram>(program, std::move(lowered).value(), options));
+        std::make_shared<batch::CompiledProgram>(program, std::move(lowered).value(), options, packed));
 }
 
 }  // namespace vernier

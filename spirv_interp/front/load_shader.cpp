@@ -22,6 +22,9 @@ spv_target_env environmentOf(uint32_t version) {
 struct DestroyContext {
     void operator()(spv_context context) const { spvContextDestroy(context); }
 };
+struct DestroyOptions {
+    void operator()(spv_validator_options options) const { spvValidatorOptionsDestroy(options); }
+};
 
 }  // namespace
 
@@ -30,9 +33,15 @@ Status checkModule(std::span<const uint32_t> words) {
         return invalidArgument("SPIR-V: the module is shorter than its header");
     const std::unique_ptr<std::remove_pointer_t<spv_context>, DestroyContext> context(
         spvContextCreate(environmentOf(words[1])));
+    // What features of the device may allow and every program can have: LocalSizeId (maintenance4) and any layout of
+    // blocks in work-group memory.
+    const std::unique_ptr<std::remove_pointer_t<spv_validator_options>, DestroyOptions> options(
+        spvValidatorOptionsCreate());
+    spvValidatorOptionsSetAllowLocalSizeId(options.get(), true);
+    spvValidatorOptionsSetWorkgroupScalarBlockLayout(options.get(), true);
     spv_diagnostic diagnostic = nullptr;
     spv_const_binary_t binary{words.data(), words.size()};
-    if (spvValidate(context.get(), &binary, &diagnostic) == SPV_SUCCESS) {
+    if (spvValidateWithOptions(context.get(), options.get(), &binary, &diagnostic) == SPV_SUCCESS) {
         spvDiagnosticDestroy(diagnostic);
         return {};
     }

@@ -139,8 +139,6 @@ void Lowering::lowerInstruction(const Instruction& inst) {
         case spv::Op::OpPhi:
         case spv::Op::OpLoopMerge:
         case spv::Op::OpSelectionMerge:
-        // Invocations do not wait for each other, and each sees its own accesses in order.
-        case spv::Op::OpMemoryBarrier:
             return;
         case spv::Op::OpVariable:
             lowerVariable(inst);
@@ -171,7 +169,8 @@ void Lowering::lowerInstruction(const Instruction& inst) {
     }
     if (inst.op == spv::Op::OpExtInst) {
         lowerExtended(inst);
-    } else if (!lowerMemory(inst) && !lowerComposite(inst) && !lowerArithmetic(inst) && !lowerImage(inst)) {
+    } else if (!lowerMemory(inst) && !lowerComposite(inst) && !lowerArithmetic(inst) && !lowerImage(inst) &&
+               !lowerBarrier(inst)) {
         refuse(inst, "the instruction is not supported");
     }
     emitter_.setFlags(false, false);

@@ -42,7 +42,6 @@ constexpr BuiltinEntry kBuiltins[] = {
     {spv::BuiltIn::SamplePosition, ir::Builtin::samplePosition, kFragment, true},
     {spv::BuiltIn::SampleMask, ir::Builtin::sampleMaskIn, kFragment, true},
     {spv::BuiltIn::PrimitiveId, ir::Builtin::primitiveId, kFragment, true},
-    {spv::BuiltIn::HelperInvocation, ir::Builtin::helperInvocation, kFragment, true},
     {spv::BuiltIn::FragDepth, ir::Builtin::fragDepth, kFragment, false},
     {spv::BuiltIn::SampleMask, ir::Builtin::sampleMask, kFragment, false},
     {spv::BuiltIn::FragStencilRefEXT, ir::Builtin::fragStencilRef, kFragment, false},
@@ -62,6 +61,11 @@ void Lowering::lowerVariable(const Instruction& inst) {
         case spv::StorageClass::Input:
         case spv::StorageClass::Output:
             if (std::find(interface_.begin(), interface_.end(), id) == interface_.end()) return;
+            if (isComputedBuiltin(id)) {
+                pointer.base = Pointer::Base::builtin;
+                pointer.root = module_.findDecoration(id, spv::Decoration::BuiltIn)->value;
+                break;
+            }
             lowerStageVariable(inst, pointerType.storage == spv::StorageClass::Input);
             return;
         case spv::StorageClass::Function:
@@ -91,6 +95,12 @@ void Lowering::lowerVariable(const Instruction& inst) {
             pointer.base = Pointer::Base::buffer;
             pointer.root = id;
             pointer.descriptorArray = type.kind == SpirvType::Kind::array || type.kind == SpirvType::Kind::runtimeArray;
+            break;
+        case spv::StorageClass::Workgroup:
+            // Always zero at first: an initialiser, which can only be OpConstantNull, asks for nothing more.
+            pointer.base = Pointer::Base::buffer;
+            pointer.root = id;
+            pointer.wordLayout = !module_.hasDecoration(pointer.type, spv::Decoration::Block);
             break;
         case spv::StorageClass::UniformConstant:
             pointer.base = Pointer::Base::handle;
@@ -126,7 +136,7 @@ void Lowering::lowerStageVariable(const Instruction& inst, bool input) {
     leafTypes(pointer.type);  // refuses what is too large
     appendSlots(pointer.type, place, slot, at, slots);
     if (input) {
-        pointer.base = slot.builtin == ir::Builtin::helperInvocation ? Pointer::Base::helper : Pointer::Base::input;
+        pointer.base = Pointer::Base::input;
         pointer.root = first;
         pointer.extent = static_cast<uint32_t>(slots.size()) - first;
     } else if (indexing_[id] == Indexing::memory) {

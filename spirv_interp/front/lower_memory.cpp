@@ -59,15 +59,19 @@ Pointer Lowering::stepInto(const Pointer& from, uint32_t indexId, const Instruct
         stepDescriptor(pointer, type, indexId);
         return pointer;
     }
-    const bool buffer = pointer.base == Base::buffer;
-    const auto unitsOf = [&](const SpirvType& part) { return pointer.base == Base::ssa ? part.leaves : part.words; };
+    const bool buffer = pointer.base == Base::buffer && !pointer.wordLayout;
+    const auto unitsOf = [&](const SpirvType& part) {
+        return pointer.base == Base::ssa ? part.leaves : pointer.wordLayout ? part.words * 4 : part.words;
+    };
     switch (type.kind) {
         case SpirvType::Kind::structure: {
             const std::optional<uint32_t> index = constantOf(indexId);
             if (!index || *index >= type.members.size()) refuse(inst, "a member index that is not a constant in range");
             pointer.type = type.members[*index];
             if (!buffer) {
-                pointer.offset += pointer.base == Base::ssa ? type.memberLeaf[*index] : type.memberWord[*index];
+                pointer.offset += pointer.base == Base::ssa ? type.memberLeaf[*index]
+                                  : pointer.wordLayout      ? type.memberWord[*index] * 4
+                                                            : type.memberWord[*index];
                 return pointer;
             }
             pointer.offset += module_.decorationOr(typeId, spv::Decoration::Offset, *index, 0);
@@ -82,7 +86,7 @@ Pointer Lowering::stepInto(const Pointer& from, uint32_t indexId, const Instruct
             const uint32_t stride =
                 buffer ? module_.decorationOr(typeId, spv::Decoration::ArrayStride, Decoration::kNoMember, 0)
                        : unitsOf(typeInfo(type.element));
-            advance(pointer, indexId, buffer ? 0 : type.count, stride);
+            advance(pointer, indexId, pointer.base == Base::buffer ? 0 : type.count, stride);
             break;
         }
         case SpirvType::Kind::matrix: {
@@ -113,7 +117,8 @@ Pointer Lowering::stepInto(const Pointer& from, uint32_t indexId, const Instruct
 
 /// The place in the pointer's unit, `more` further on, as a value.
 ir::ValueId Lowering::place(const Pointer& pointer, uint32_t more) {
-    const ir::ValueId fixed = emitter_.constantI32(pointer.offset + more);
+    const uint32_t first = pointer.base == Base::buffer ? bufferOffsetOf(pointer.root) : 0;
+    const ir::ValueId fixed = emitter_.constantI32(first + pointer.offset + more);
     return pointer.dynamic == ir::kNoValue ? fixed
                                            : emitter_.emit(ir::Op::iadd, ir::Type::i32, {pointer.dynamic, fixed});
 }
@@ -179,6 +184,13 @@ void Lowering::visitBuffer(const Pointer& pointer, uint32_t at, const Visit& vis
     const uint32_t typeId = pointer.type;
     const SpirvType& type = typeInfo(typeId);
     Pointer part = pointer;
+    if (pointer.wordLayout) {
+        for (const ir::Type leaf : leafTypes(typeId)) {
+            visit(at, leaf);
+            at += ir::isWide(leaf) ? 8 : 4;
+        }
+        return;
+    }
     switch (type.kind) {
         case SpirvType::Kind::structure:
             for (uint32_t m = 0; m < type.members.size(); ++m) {
@@ -247,9 +259,13 @@ Lowering::Leaves Lowering::load(const Pointer& pointer) {
                 leaves[i] = chooseLeaf(parts, pointer.dynamic);
                 break;
             }
-            case Base::helper:
-                leaves[i] = emitter_.emit(ir::Op::isHelper, ir::Type::b1, {});
+            case Base::builtin: {
+                const Leaves parts = builtinLeaves(static_cast<spv::BuiltIn>(pointer.root));
+                leaves[i] = pointer.dynamic != ir::kNoValue
+                                ? chooseLeaf(parts, place(pointer, at))
+                                : parts[std::min<size_t>(pointer.offset + at, parts.size() - 1)];
                 break;
+            }
             case Base::local:
             case Base::input:
                 leaves[i] = loadScalar(pointer, at, types[i]);
@@ -278,7 +294,8 @@ void Lowering::store(const Pointer& pointer, Leaves leaves) {
             break;
         }
         case Base::buffer: {
-            if (program_.resources[resourceOf(pointer.root)].kind != ir::ResourceKind::storageBuffer) {
+            const ir::ResourceKind kind = program_.resources[resourceOf(pointer.root)].kind;
+            if (kind != ir::ResourceKind::storageBuffer && kind != ir::ResourceKind::workgroupMemory) {
                 refuseId(pointer.root, "is stored to, but it is only read");
             }
             size_t next = 0;

@@ -37,6 +37,7 @@ uint32_t Lowering::resourceOf(uint32_t variable) {
     uint32_t& index = resourceOfId_[variable];
     if (index != ir::kNoIndex) return index;
     const SpirvType& pointer = typeInfo(module_.definition(variable)[1]);
+    if (pointer.storage == spv::StorageClass::Workgroup) return index = workgroupResourceOf(variable);
     ir::Resource resource;
     uint32_t type = pointer.element;
     for (const SpirvType* info = &typeInfo(type);
@@ -65,6 +66,35 @@ uint32_t Lowering::resourceOf(uint32_t variable) {
         same->byteSize = std::max(same->byteSize, resource.byteSize);
     }
     return index;
+}
+
+/// All variables of a work-group share one resource. Blocks, whose layout is told by decorations, lie one on the other
+/// (SPV_KHR_workgroup_memory_explicit_layout); others stand in line in the order of their first use.
+uint32_t Lowering::workgroupResourceOf(uint32_t variable) {
+    const auto found = std::find_if(program_.resources.begin(), program_.resources.end(),
+                                    [](const ir::Resource& r) { return r.kind == ir::ResourceKind::workgroupMemory; });
+    const auto index = static_cast<uint32_t>(found - program_.resources.begin());
+    if (found == program_.resources.end()) {
+        program_.resources.emplace_back().kind = ir::ResourceKind::workgroupMemory;
+    }
+    ir::Resource& resource = program_.resources[index];
+    const uint32_t type = typeInfo(module_.definition(variable)[1]).element;
+    const bool block = module_.hasDecoration(type, spv::Decoration::Block);
+    const uint64_t bytes = block ? byteSizeOf(type, 0, false) : uint64_t{typeInfo(type).words} * 4;
+    const uint64_t first = block ? 0 : resource.byteSize;
+    if (first + bytes > ir::kMaxWorkgroupMemory) {
+        refuseId(variable, "makes the work-group's memory " + std::to_string(first + bytes) +
+                               " bytes large; the limit is " + std::to_string(ir::kMaxWorkgroupMemory));
+    }
+    workgroupOffset_[variable] = static_cast<uint32_t>(first);
+    resource.byteSize = std::max(resource.byteSize, static_cast<uint32_t>(first + bytes + 3) & ~3u);
+    return index;
+}
+
+/// Where a variable begins in its resource.
+uint32_t Lowering::bufferOffsetOf(uint32_t variable) {
+    resourceOf(variable);
+    return workgroupOffset_[variable];
 }
 
 uint32_t Lowering::byteSizeOf(uint32_t typeId, uint32_t matrixStride, bool rowMajor) const {

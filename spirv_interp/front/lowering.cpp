@@ -4,6 +4,8 @@
 
 #include <spirv-tools/libspirv.h>
 
+#include "spirv_interp/ir/names.h"
+
 namespace vernier {
 namespace {
 
@@ -64,6 +66,7 @@ constexpr Capability kCapabilities[] = {
     Capability::VulkanMemoryModel,
     Capability::VulkanMemoryModelDeviceScope,
     Capability::DemoteToHelperInvocationEXT,
+    Capability::WorkgroupMemoryExplicitLayoutKHR,
 };
 
 /// The name by way of the disassembler, which knows the grammar.
@@ -99,15 +102,12 @@ spv::ExecutionModel modelOf(ir::Stage stage) {
 }  // namespace
 
 void Lowering::run() {
-    if (source_.stage == ir::Stage::compute)
-        throw LoweringError{unsupported("SPIR-V: compute shaders are not supported")};
     const auto& entries = module_.entryPoints();
     const auto found = std::find_if(entries.begin(), entries.end(), [this](const EntryPoint& entry) {
         return entry.name == source_.entryPoint && entry.model == modelOf(source_.stage);
     });
     if (found == entries.end()) {
-        throw LoweringError{invalidArgument("SPIR-V: the module has no " +
-                                            std::string(source_.stage == ir::Stage::vertex ? "vertex" : "fragment") +
+        throw LoweringError{invalidArgument("SPIR-V: the module has no " + std::string(ir::nameOf(source_.stage)) +
                                             " entry point named '" + source_.entryPoint + "'")};
     }
     program_.stage = source_.stage;
@@ -118,6 +118,7 @@ void Lowering::run() {
     indexing_.assign(module_.bound(), Indexing::constant);
     resourceOfId_.assign(module_.bound(), ir::kNoIndex);
     localOfId_.assign(module_.bound(), ir::kNoIndex);
+    workgroupOffset_.assign(module_.bound(), 0);
     classifyVariables();
     emitter_.begin(emitter_.newBlock());
     lowerGlobals();
@@ -147,6 +148,10 @@ void Lowering::lowerGlobals() {
                     op <= static_cast<uint32_t>(spv::Op::OpSpecConstantOp)) ||
                    inst.op == spv::Op::OpUndef) {
             lowerConstant(inst);
+            const Decoration* builtin = module_.findDecoration(inst[2], spv::Decoration::BuiltIn);
+            if (builtin != nullptr && builtin->value == static_cast<uint32_t>(spv::BuiltIn::WorkgroupSize)) {
+                workgroupSizeId_ = inst[2];
+            }
         } else if (inst.op == spv::Op::OpVariable) {
             lowerVariable(inst);
         }
@@ -160,6 +165,10 @@ void Lowering::lowerExecutionModes(const EntryPoint& entry) {
         switch (static_cast<spv::ExecutionMode>(inst[2])) {
             case spv::ExecutionMode::EarlyFragmentTests:
                 program_.earlyFragmentTests = true;
+                break;
+            case spv::ExecutionMode::LocalSize:
+            case spv::ExecutionMode::LocalSizeId:
+                setLocalSize(inst);
                 break;
             case spv::ExecutionMode::OriginUpperLeft:
             case spv::ExecutionMode::DepthReplacing:
@@ -176,6 +185,7 @@ void Lowering::lowerExecutionModes(const EntryPoint& entry) {
                 refuse(inst, "execution mode " + std::to_string(inst[2]) + " is not supported");
         }
     }
+    checkLocalSize(entry);
 }
 
 // --- ids

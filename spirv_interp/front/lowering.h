@@ -24,18 +24,18 @@ struct LoweringError {
 /// Where a pointer points, known while lowering: a variable and a path into it.
 struct Pointer {
     enum class Base : uint8_t {
-        ssa,     // scalars that are SSA variables: `root` is the first
-        local,   // invocation-local memory: `root` is its first word, `extent` its words
-        input,   // input slots: `root` is the first, `extent` their number
-        helper,  // HelperInvocation
-        buffer,  // `root` is the id of the variable
-        handle,  // an image or sampler: `root` is the id of the variable
-        texel,   // of a storage image: `texel` tells
+        ssa,      // scalars that are SSA variables: `root` is the first
+        local,    // invocation-local memory: `root` is its first word, `extent` its words
+        input,    // input slots: `root` is the first, `extent` their number
+        builtin,  // a built-in variable made of others (lower_builtins.cpp): `root` is the spv::BuiltIn
+        buffer,   // `root` is the id of the variable
+        handle,   // an image or sampler: `root` is the id of the variable
+        texel,    // of a storage image: `texel` tells
     };
     Base base = Base::ssa;
     uint32_t type = 0;  // of what it points to
     uint32_t root = 0, extent = 0;
-    uint32_t offset = 0;                     // constant part, in leaves (ssa), words (local, input) or bytes (buffer)
+    uint32_t offset = 0;  // constant part, in leaves (ssa), words (local, input, builtin) or bytes (buffer)
     ir::ValueId dynamic = ir::kNoValue;      // the rest, in the same unit; ssa: which of `choices` equal parts
     uint32_t choices = 0, choiceStride = 0;  // ssa with `dynamic`: the parts and the leaves from one to the next
     ir::ValueId descriptor = ir::kNoValue;   // buffer, handle: index in the array of descriptors
@@ -43,6 +43,7 @@ struct Pointer {
     uint32_t matrixStride = 0;               // buffer: of the matrices inside
     bool rowMajor = false;
     uint32_t elementStride = 0;  // buffer: bytes between the components of a vector that is a matrix's column
+    bool wordLayout = false;     // buffer: without layout decorations, the words of the leaves one after the other
     const struct Texel* texel = nullptr;
 };
 
@@ -156,10 +157,21 @@ class Lowering {
     void decorateSlot(const SlotPlace& place, ir::InterfaceSlot& slot, SlotCursor& at) const;
     ir::Builtin builtinOf(const SlotPlace& place, uint32_t builtin) const;
 
+    // lower_builtins.cpp: built-in inputs that are computed, the size of a work-group, barriers
+    bool isComputedBuiltin(uint32_t variable) const;
+    Leaves builtinLeaves(spv::BuiltIn builtin);
+    ir::ValueId inputSlot(ir::Builtin builtin, uint8_t component, ir::Type type);
+    ir::ValueId localInvocationId(uint8_t component);
+    void setLocalSize(const Instruction& mode);
+    void checkLocalSize(const EntryPoint& entry);
+    bool lowerBarrier(const Instruction& inst);
+
     // lower_resources.cpp
     uint32_t resourceOf(uint32_t variable);
     ir::ResourceKind resourceKindOf(uint32_t variable, spv::StorageClass storage, uint32_t type) const;
     uint32_t byteSizeOf(uint32_t type, uint32_t matrixStride, bool rowMajor) const;
+    uint32_t workgroupResourceOf(uint32_t variable);
+    uint32_t bufferOffsetOf(uint32_t variable);
 
     // lower_memory.cpp
     Pointer stepInto(const Pointer& pointer, uint32_t indexId, const Instruction& inst);
@@ -254,6 +266,9 @@ class Lowering {
     std::vector<uint32_t> interface_;     // ids of the entry point's interface variables
     std::vector<uint32_t> resourceOfId_;  // by id of a variable; kNoIndex = not used so far
     std::vector<uint32_t> localOfId_;     // by id of a variable in local memory: its first word
+    std::vector<uint32_t>
+        workgroupOffset_;           // by id of a variable in work-group memory: its first byte, once it is used
+    uint32_t workgroupSizeId_ = 0;  // the constant that is the built-in WorkgroupSize
     uint32_t callCount_ = 0;
     std::vector<const Function*> calls_;  // functions being inlined, outermost first
 };

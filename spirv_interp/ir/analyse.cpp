@@ -44,7 +44,7 @@ void dropUnusedSlots(Program& program) {
 
 void analyse(Program& program) {
     dropUnusedSlots(program);
-    program.usesQuads = program.canDiscard = program.hasSideEffects = false;
+    program.usesQuads = program.canDiscard = program.hasSideEffects = program.hasBarriers = false;
     std::vector<bool> written(program.resources.size());
     for (const Block& block : program.blocks) {
         for (const Inst& inst : block.insts) {
@@ -58,6 +58,9 @@ void analyse(Program& program) {
                 case Op::kill:
                 case Op::demote:
                     program.canDiscard = true;
+                    break;
+                case Op::controlBarrier:
+                    program.hasBarriers = true;
                     break;
                 case Op::storeBuffer:
                     written[inst.imm] = true;
@@ -80,8 +83,10 @@ void analyse(Program& program) {
     }
     program.usesQuads = program.usesQuads && program.stage == Stage::fragment;
     for (size_t r = 0; r < written.size(); ++r) {
-        program.resources[r].readOnly = !written[r];
-        program.hasSideEffects = program.hasSideEffects || written[r];
+        // Work-group memory is no memory of the draw, whoever writes it; nor does it outlive the work-group.
+        const bool shared = program.resources[r].kind == ResourceKind::workgroupMemory;
+        program.resources[r].readOnly = !written[r] && !shared;
+        program.hasSideEffects = program.hasSideEffects || (written[r] && !shared);
     }
     program.writesDepth = program.writesSampleMask = program.perSample = false;
     for (const InterfaceSlot& slot : program.outputs) {

@@ -44,6 +44,10 @@ using BlockId = uint32_t;
 inline constexpr ValueId kNoValue = ~0u;
 inline constexpr uint32_t kNoIndex = ~0u;
 
+// Limits of compute programs ("Required Limits" in the Vulkan specification asks for 16384, 128 and 128).
+inline constexpr uint32_t kMaxWorkgroupMemory = 32768;      // bytes
+inline constexpr uint32_t kMaxWorkgroupInvocations = 1024;  // also along each dimension
+
 struct Inst {
     Op op = Op::undef;
     Type type = Type::none;      // of the result(s)
@@ -207,6 +211,7 @@ struct Program {
     bool writesDepth = false, writesSampleMask = false;
     bool hasSideEffects = false;  // stores or atomics to memory
     bool perSample = false;       // reads SampleId/SamplePosition or a sample-qualified input
+    bool hasBarriers = false;     // control barriers
     std::array<uint32_t, 3> localSize{1, 1, 1};
 
     std::span<const ValueId> operandsOf(const Inst& inst) const {

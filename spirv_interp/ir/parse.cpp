@@ -219,7 +219,8 @@ class Parser {
                                                             {"writesDepth", &program_.writesDepth},
                                                             {"writesSampleMask", &program_.writesSampleMask},
                                                             {"hasSideEffects", &program_.hasSideEffects},
-                                                            {"perSample", &program_.perSample}};
+                                                            {"perSample", &program_.perSample},
+                                                            {"hasBarriers", &program_.hasBarriers}};
         const std::string_view word = in.word();
         for (const auto& [name, flag] : facts) {
             if (name != word) continue;

@@ -59,7 +59,8 @@ void printFlags(std::string& out, const Program& program) {
                                                   {"writesDepth", program.writesDepth},
                                                   {"writesSampleMask", program.writesSampleMask},
                                                   {"hasSideEffects", program.hasSideEffects},
-                                                  {"perSample", program.perSample}};
+                                                  {"perSample", program.perSample},
+                                                  {"hasBarriers", program.hasBarriers}};
     std::string line;
     for (const auto& [name, set] : flags) {
         if (set) line += std::string(" ") + name;

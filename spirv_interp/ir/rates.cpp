@@ -5,6 +5,20 @@
 #include "spirv_interp/ir/ops.h"
 
 namespace vernier::ir {
+namespace {
+
+Rate rateOf(Builtin builtin) {
+    switch (builtin) {
+        case Builtin::numWorkgroups:
+            return Rate::draw;
+        case Builtin::workgroupId:
+            return Rate::workGroup;
+        default:
+            return Rate::invocation;
+    }
+}
+
+}  // namespace
 
 std::vector<Rate> computeRates(const Program& program) {
     std::vector<Rate> rates(program.valueTypes.size(), Rate::invocation);
@@ -16,6 +30,8 @@ std::vector<Rate> computeRates(const Program& program) {
             Rate rate = opInfo(inst.op).kind == 'R' ? Rate::draw : Rate::constant;
             switch (inst.op) {
                 case Op::input:
+                    rate = rateOf(program.inputs[inst.imm].builtin);
+                    break;
                 case Op::inputIndexed:
                 case Op::interpolateAtCentroid:
                 case Op::interpolateAtSample:

@@ -16,8 +16,8 @@ class Verifier {
     Status run() {
         // Each step relies on what the ones before it have established.
         using Step = void (Verifier::*)();
-        for (const Step step : {&Verifier::tables, &Verifier::shape, &Verifier::edges, &Verifier::order,
-                                &Verifier::instructions, &Verifier::uses}) {
+        for (const Step step : {&Verifier::tables, &Verifier::resources, &Verifier::shape, &Verifier::edges,
+                                &Verifier::order, &Verifier::instructions, &Verifier::uses}) {
             (this->*step)();
             if (error_) return invalidArgument("IR of '" + program_.name + "': " + *error_);
         }
@@ -52,6 +52,24 @@ class Verifier {
                 fail("image operation " + std::to_string(i) + " has too many coordinates, gradients or offsets");
             }
         }
+    }
+
+    void resources() {
+        for (size_t r = 0; r < program_.resources.size(); ++r) {
+            const Resource& resource = program_.resources[r];
+            if (resource.kind != ResourceKind::workgroupMemory) continue;
+            const std::string name = "resource " + std::to_string(r) + ", work-group memory, ";
+            if (program_.stage != Stage::compute) fail(name + "is in a stage without work-groups");
+            if (resource.byteSize > kMaxWorkgroupMemory || resource.arraySize != 1 || resource.readOnly) {
+                fail(name + "is too large, an array or marked as only read");
+            }
+        }
+        uint64_t invocations = 1;
+        for (const uint32_t size : program_.localSize) {
+            invocations *= std::min(size, kMaxWorkgroupInvocations + 1);
+            if (size == 0) fail("a local size of 0");
+        }
+        if (invocations > kMaxWorkgroupInvocations) fail("a work-group of too many invocations");
     }
 
     void slotType(const InterfaceSlot& slot, const char* what) {
@@ -169,6 +187,9 @@ class Verifier {
 
     void instruction(BlockId b, size_t i) {
         const Inst& inst = program_.blocks[b].insts[i];
+        if (inst.op == Op::controlBarrier && program_.stage != Stage::compute) {
+            return failInst(b, i, "in a stage without work-groups");
+        }
         if (const char* reason = badImmediate(inst)) return failInst(b, i, reason);
         const uint32_t count = inst.op == Op::phi ? static_cast<uint32_t>(program_.blocks[b].predecessors.size())
                                                   : operandCountOf(program_, inst);
@@ -257,12 +278,14 @@ class Verifier {
     }
 
     static const char* badBuffer(const Resource& resource, bool written) {
-        const bool buffer = resource.kind == ResourceKind::uniformBuffer ||
-                            resource.kind == ResourceKind::storageBuffer ||
-                            resource.kind == ResourceKind::pushConstants;
+        const bool buffer =
+            resource.kind == ResourceKind::uniformBuffer || resource.kind == ResourceKind::storageBuffer ||
+            resource.kind == ResourceKind::pushConstants || resource.kind == ResourceKind::workgroupMemory;
         if (!buffer) return "the resource is no buffer";
         if (!written) return nullptr;
-        if (resource.kind != ResourceKind::storageBuffer) return "a store to a buffer that cannot be written";
+        if (resource.kind != ResourceKind::storageBuffer && resource.kind != ResourceKind::workgroupMemory) {
+            return "a store to a buffer that cannot be written";
+        }
         return resource.readOnly ? "a store to a buffer marked as only read" : nullptr;
     }
 

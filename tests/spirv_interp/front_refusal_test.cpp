@@ -55,7 +55,7 @@ TEST(Refusal, NamesInstructionIdAndLine) {
 TEST(Refusal, EntryPoint) {
     const Words words = compileGlsl(ir::Stage::vertex, "#version 450\nvoid main() {}\n");
     EXPECT_EQ(errorOf(words), "SPIR-V: the module has no fragment entry point named 'main'");
-    EXPECT_EQ(errorOf(words, ir::Stage::compute), "SPIR-V: compute shaders are not supported");
+    EXPECT_EQ(errorOf(words, ir::Stage::compute), "SPIR-V: the module has no compute entry point named 'main'");
     ShaderSource source;
     source.words = words;
     source.entryPoint = "other";

@@ -132,12 +132,15 @@ uint32_t atomicResult(ir::AtomicOp op, uint32_t old, uint32_t value, uint32_t co
 
 }  // namespace
 
-Words compileGlsl(ir::Stage stage, std::string_view source, bool debug) {
+Words compileGlsl(ir::Stage stage, std::string_view source, bool debug, VnGlslTarget target) {
     VnGlslDesc desc{};
-    desc.stage = stage == ir::Stage::vertex ? VK_SHADER_STAGE_VERTEX_BIT : VK_SHADER_STAGE_FRAGMENT_BIT;
+    desc.stage = stage == ir::Stage::vertex     ? VK_SHADER_STAGE_VERTEX_BIT
+                 : stage == ir::Stage::fragment ? VK_SHADER_STAGE_FRAGMENT_BIT
+                                                : VK_SHADER_STAGE_COMPUTE_BIT;
     desc.source = source.data();
     desc.sourceLength = source.size();
     desc.debugInfo = debug ? 1 : 0;
+    desc.target = target;
     VnGlslOutput* output = nullptr;
     Words words;
     if (vnCompileGlsl(&desc, &output) == VN_GLSL_SUCCESS) {

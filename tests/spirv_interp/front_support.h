@@ -2,6 +2,8 @@
 // for one invocation.
 #pragma once
 
+#include <vernier/vernier_glsl.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +21,8 @@ namespace vernier::test {
 using Words = std::vector<uint32_t>;
 
 /// SPIR-V of a GLSL source; fails the test with the compiler's messages. `debug`: with OpName and OpLine.
-Words compileGlsl(ir::Stage stage, std::string_view source, bool debug = false);
+Words compileGlsl(ir::Stage stage, std::string_view source, bool debug = false,
+                  VnGlslTarget target = VN_GLSL_TARGET_DEFAULT);
 
 /// SPIR-V of an assembly source (SPIRV-Tools).
 Words assemble(std::string_view source);
