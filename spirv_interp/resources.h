@@ -11,7 +11,7 @@
 namespace vernier {
 
 struct BufferBinding {
-    std::byte* data = nullptr;  // 4-byte aligned; nullptr with size 0 for an unbound descriptor
+    std::byte* data = nullptr;  // 4-byte aligned (8 for 64-bit atomics); nullptr with size 0 for an unbound descriptor
     uint32_t size = 0;          // bytes; every access is checked against it
 };
 
@@ -38,6 +38,19 @@ struct ImageBinding {
     void (*call)(const ImageBinding& binding, const ImageCall& call) = nullptr;
 };
 
+/// A piece of device memory that shaders may reach by its address.
+struct AddressRange {
+    std::byte* data = nullptr;  // nullptr: no memory
+    uint64_t address = 0;       // of data[0]; a multiple of 4, as `data` is aligned to 4 bytes (8 for 64-bit atomics)
+    uint64_t size = 0;          // bytes
+};
+
+/// Tells the range of device memory that holds an address, or one without memory. Called by many threads at once.
+struct AddressResolver {
+    void* self = nullptr;
+    AddressRange (*find)(void* self, uint64_t address) = nullptr;
+};
+
 /// The descriptors of one draw or dispatch for one program, in the order of Program::resources: descriptor `index` of
 /// resource r is buffers[bufferBase[r] + index] or images[imageBase[r] + index], index < count[r]. For an image
 /// instruction whose sampler is another resource, the sampler is samplers[samplerBase[r] + index].
@@ -49,6 +62,7 @@ struct ResourceBindings {
     const uint32_t* count = nullptr;  // by resource
     /// Finds the routine for an image and a sampler that come from two descriptors; called once per batch and pair.
     ImageBinding (*combine)(const ImageBinding& image, const void* sampler) = nullptr;
+    AddressResolver addresses;  // for physical storage buffers
 };
 
 }  // namespace vernier

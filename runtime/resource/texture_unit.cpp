@@ -144,6 +144,7 @@ uint32_t applyAtomic(ir::AtomicOp op, std::atomic_ref<uint32_t> memory, uint32_t
         return old;
     };
     const auto asSigned = [](uint32_t bits) { return static_cast<int32_t>(bits); };
+    const auto asFloat = [](uint32_t bits) { return std::bit_cast<float>(bits); };
     switch (op) {
         case ir::AtomicOp::add:
             return memory.fetch_add(value);
@@ -170,6 +171,17 @@ uint32_t applyAtomic(ir::AtomicOp op, std::atomic_ref<uint32_t> memory, uint32_t
             return update([&](uint32_t old) { return asSigned(old) < asSigned(value) ? old : value; });
         case ir::AtomicOp::smax:
             return update([&](uint32_t old) { return asSigned(old) > asSigned(value) ? old : value; });
+        // A NaN gives way to the other operand.
+        case ir::AtomicOp::fadd:
+            return update([&](uint32_t old) { return std::bit_cast<uint32_t>(asFloat(old) + asFloat(value)); });
+        case ir::AtomicOp::fmin:
+            return update([&](uint32_t old) {
+                return asFloat(value) != asFloat(value) || asFloat(old) < asFloat(value) ? old : value;
+            });
+        case ir::AtomicOp::fmax:
+            return update([&](uint32_t old) {
+                return asFloat(value) != asFloat(value) || asFloat(old) > asFloat(value) ? old : value;
+            });
         case ir::AtomicOp::compareExchange: {
             uint32_t expected = comparator;
             memory.compare_exchange_strong(expected, value);

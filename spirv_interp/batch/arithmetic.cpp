@@ -127,6 +127,36 @@ VERNIER_ELEMENT(utof, uint32_t, float, (V a),
                 const VF high = hn::ConvertTo(kF32, hn::BitCast(kI32, hn::ShiftRight<16>(a)));
                 const VF low = hn::ConvertTo(kF32, hn::BitCast(kI32, hn::And(a, hn::Set(kU32, 0xFFFFu))));
                 return hn::Add(hn::Mul(high, number(65536.0f)), low);)
+
+/// The parts of a float on the way to a half. Magnitudes compare like integers.
+struct HalfParts {
+    HWY_INLINE explicit HalfParts(VF a)
+        : sign(hn::And(hn::BitCast(kU32, a), hn::Set(kU32, 0x80000000u))),
+          magnitude(hn::BitCast(kI32, hn::Xor(hn::BitCast(kU32, a), sign))) {}
+    /// Puts together what stands for normal and for denormal halves; a NaN keeps the upper bits of its payload.
+    HWY_INLINE VF join(VI normal, VF denormal, VI tooLarge) const {
+        VI half = hn::IfThenElse(hn::Lt(magnitude, number(0x38800000)), hn::BitCast(kI32, denormal), normal);
+        half = hn::IfThenElse(hn::Gt(half, number(0x477FFFFF)), tooLarge, half);
+        const VI nan = hn::Or(hn::And(magnitude, number(~0x1FFF)), number(0x00400000));
+        half = hn::IfThenElse(hn::Gt(magnitude, number(0x7F800000)), nan, half);
+        return hn::BitCast(kF32, hn::Or(hn::BitCast(kU32, half), sign));
+    }
+    VU sign;
+    VI magnitude;
+};
+// The last of a half's bits is bit 13 of the float. Denormal halves are multiples of 2^-24, the last bit of floats from
+// 1/2 on: adding 1/2 makes the float adder round to them.
+VERNIER_ELEMENT(ftoh, float, float, (V a), const HalfParts parts(a);
+                const VI odd = hn::And(hn::ShiftRight<13>(parts.magnitude), number(1));
+                const VI up = hn::Add(hn::Add(parts.magnitude, number(0xFFF)), odd); const VF halfway = number(0.5f);
+                const VF denormal = hn::Sub(hn::Add(hn::BitCast(kF32, parts.magnitude), halfway), halfway);
+                return parts.join(hn::And(up, number(~0x1FFF)), denormal, number(0x7F800000));)
+VERNIER_ELEMENT(ftohZero, float, float, (V a), const HalfParts parts(a);
+                const VF units = hn::Mul(hn::BitCast(kF32, parts.magnitude), number(0x1p24f));
+                const VF denormal = hn::Mul(hn::Trunc(hn::Min(units, number(1024.0f))), number(0x1p-24f));
+                const VI infinity = number(0x7F800000);
+                const VI tooLarge = hn::IfThenElse(hn::Eq(parts.magnitude, infinity), infinity, number(0x477FE000));
+                return parts.join(hn::And(parts.magnitude, number(~0x1FFF)), denormal, tooLarge);)
 VERNIER_ELEMENT(boolToInt, uint32_t, uint32_t, (V a), return hn::ShiftRight<31>(a);)
 
 }  // namespace element

@@ -15,6 +15,7 @@ void addMath(Isa isa, MathTier tier, HandlerTable& table);  // math.cpp: transce
 void addBarriers(HandlerTable& table);                      // barrier.cpp: control and memory barriers
 void addFlow(Isa isa, HandlerTable& table);                 // flow.cpp: masks, jumps, moves, derivatives
 void addMemory(Isa isa, HandlerTable& table);               // memory.cpp: buffers, local memory, indexed inputs
+void addAtomics(Isa isa, HandlerTable& table);              // atomics.cpp: atomics, memory by address
 void addImages(HandlerTable& table);                        // images.cpp: image instructions, interpolation
 
 }  // namespace vernier::batch

@@ -109,15 +109,32 @@ void Lowerer::lowerInst(const ir::Inst& inst) {
             return lowerWords(inst);
         case ir::Op::loadBuffer: {
             const Operand descriptor = operandOf(operands[0]), offset = operandOf(operands[1]);
-            emit(Op::loadBuffer, {target(inst), descriptor, offset, Operand::number(static_cast<uint32_t>(inst.imm))})
+            const uint32_t bytes = ir::immHigh(inst);
+            emit(bytes == 1   ? Op::loadByte
+                 : bytes == 2 ? Op::loadHalfword
+                              : Op::loadBuffer,
+                 {target(inst), descriptor, offset, Operand::number(ir::resourceOf(inst))})
                 .form = static_cast<uint8_t>(descriptor.isScalar() | offset.isScalar() << 1);
             return;
         }
         case ir::Op::storeBuffer: {
             const Operand descriptor = operandOf(operands[0]), offset = operandOf(operands[1]);
             const Operand value = rowOf(operands[2]);
-            emit(Op::storeBuffer, {descriptor, offset, value, Operand::number(static_cast<uint32_t>(inst.imm))}).form =
-                static_cast<uint8_t>(descriptor.isScalar() | offset.isScalar() << 1);
+            const uint32_t bytes = ir::immHigh(inst);
+            emit(bytes == 1   ? Op::storeByte
+                 : bytes == 2 ? Op::storeHalfword
+                              : Op::storeBuffer,
+                 {descriptor, offset, value, Operand::number(ir::resourceOf(inst))})
+                .form = static_cast<uint8_t>(descriptor.isScalar() | offset.isScalar() << 1);
+            return;
+        }
+        case ir::Op::loadAddress:
+            emit(Op::loadAddress, {target(inst), rowOf(operands[0]), Operand::number(ir::immLow(inst))}).inPlace =
+                false;
+            return;
+        case ir::Op::storeAddress: {
+            const Operand address = rowOf(operands[0]);
+            emit(Op::storeAddress, {address, rowOf(operands[1]), Operand::number(ir::immLow(inst))});
             return;
         }
         case ir::Op::bufferSize: {
@@ -127,6 +144,7 @@ void Lowerer::lowerInst(const ir::Inst& inst) {
             return;
         }
         case ir::Op::atomicBuffer:
+        case ir::Op::atomicAddress:
             return lowerAtomic(inst);
         case ir::Op::loadLocal:
         case ir::Op::storeLocal:
@@ -180,13 +198,30 @@ void Lowerer::lowerInst(const ir::Inst& inst) {
 
 void Lowerer::lowerAtomic(const ir::Inst& inst) {
     const auto operands = program_.operandsOf(inst);
-    const auto operation = static_cast<ir::AtomicOp>(inst.imm >> 32);
-    const Operand descriptor = rowOf(operands[0]), offset = rowOf(operands[1]);
-    const Operand value = operands.size() > 2 ? rowOf(operands[2]) : offset;
-    const Operand comparator = operands.size() > 3 ? rowOf(operands[3]) : value;
-    emit(Op::atomicBuffer, {target(inst), descriptor, offset, Operand::number(static_cast<uint32_t>(inst.imm)),
-                            Operand::number(static_cast<uint32_t>(operation)), value, comparator})
-        .inPlace = false;
+    const Operand operation = Operand::number(ir::immHigh(inst));
+    const bool wide = ir::isWide(inst.type), buffer = inst.op == ir::Op::atomicBuffer;
+    const size_t first = buffer ? 2 : 1;  // of the values
+    const Operand place = rowOf(operands[0]), offset = buffer ? rowOf(operands[1]) : place;
+    // Operands that the operation does not read name some row, of the right width.
+    Operand value = place;
+    if (operands.size() > first) {
+        value = rowOf(operands[first]);
+    } else if (wide) {
+        const uint32_t zero = newRegister(true);
+        for (uint8_t word = 0; word < 2; ++word) {
+            emit(Op::broadcast, {Operand::write(zero, word), Operand::scalar(scalars_.constant(0, false))});
+        }
+        value = Operand::read(zero);
+    }
+    const Operand comparator = operands.size() > first + 1 ? rowOf(operands[first + 1]) : value;
+    if (buffer) {
+        emit(wide ? Op::atomicBuffer64 : Op::atomicBuffer,
+             {target(inst), place, offset, Operand::number(ir::resourceOf(inst)), operation, value, comparator})
+            .inPlace = false;
+    } else {
+        emit(wide ? Op::atomicAddress64 : Op::atomicAddress, {target(inst), place, operation, value, comparator})
+            .inPlace = false;
+    }
 }
 
 void Lowerer::lowerLocal(const ir::Inst& inst) {

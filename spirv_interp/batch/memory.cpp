@@ -1,5 +1,5 @@
 // Buffers, invocation-local memory and indexed inputs. No address outside a buffer is ever formed: an offset
-// is checked against the size of the binding first. Stores and atomics work in lane order.
+// is checked against the size of the binding first. Stores work in lane order.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "spirv_interp/batch/memory.cpp"
 #include "base/simd_targets.h"
@@ -10,74 +10,24 @@
 #include <atomic>
 #include <cstring>
 
-#include "spirv_interp/batch/element-inl.h"
 #include "spirv_interp/batch/handlers.h"
+#include "spirv_interp/batch/memory-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vernier::batch::HWY_NAMESPACE {
 namespace {
 
-/// The buffer of descriptor `index` of a resource; an empty one when there is no such descriptor.
-inline BufferBinding bufferOf(const Frame& frame, uint32_t resource, uint32_t index) {
-    const ResourceBindings& bindings = *frame.bindings;
-    if (bindings.buffers == nullptr || index >= bindings.count[resource]) return {};
-    const BufferBinding& buffer = bindings.buffers[bindings.base[resource] + index];
-    return buffer.data == nullptr ? BufferBinding{} : buffer;
-}
-
-/// The word at a byte offset, or nullptr outside the buffer. Offsets are whole words: the low two bits are
-/// dropped.
-inline uint32_t* wordAt(const BufferBinding& buffer, uint32_t offset) {
-    offset &= ~3u;
-    if (buffer.size < 4 || offset > buffer.size - 4) return nullptr;
-    return reinterpret_cast<uint32_t*>(buffer.data + offset);
-}
-
-inline uint32_t loadWord(const BufferBinding& buffer, uint32_t offset) {
-    const uint32_t* word = wordAt(buffer, offset);
-    return word == nullptr ? 0 : *word;
-}
-
-/// An operand that is a row or a scalar, lane by lane.
-template <bool kScalar>
-class LaneSource {
-  public:
-    LaneSource(const Frame& frame, uint32_t place)
-        : words_(kScalar ? frame.scalars + place : frame.row<uint32_t>(place)) {}
-    uint32_t at(uint32_t lane) const { return words_[kScalar ? 0 : lane]; }
-    const uint32_t* words() const { return words_; }
-
-    /// Whether all lanes hold the word of the first.
-    HWY_INLINE bool isUniform(uint32_t lanes) const {
-        if constexpr (!kScalar) {
-            const VU first = hn::Set(kU32, words_[0]);
-            for (size_t lane = 0; lane < lanes; lane += hn::Lanes(kU32)) {
-                if (!hn::AllTrue(kU32, hn::Eq(hn::Load(kU32, words_ + lane), first))) return false;
-            }
-        }
-        return true;
-    }
-
-  private:
-    const uint32_t* words_;
-};
-
-void spreadWord(const Frame& frame, uint32_t row, uint32_t value) {
-    const VU word = hn::Set(kU32, value);
-    fillRow(frame, row, [&](size_t) HWY_ATTR { return word; });
-}
-
 /// Loads one word per lane from one buffer.
 template <bool kScalar>
 void gather(const Frame& frame, uint32_t row, const BufferBinding& buffer, const LaneSource<kScalar>& offsets) {
     if (buffer.size < 4 || offsets.isUniform(frame.lanes)) {
-        spreadWord(frame, row, loadWord(buffer, offsets.at(0)));
+        spreadWord(frame, row, loadElement(buffer, offsets.at(0)));
         return;
     }
     // The hardware's gather takes signed offsets.
     if (buffer.size > 0x80000000u) {
         for (uint32_t lane = 0; lane < frame.lanes; ++lane) {
-            frame.row<uint32_t>(row)[lane] = loadWord(buffer, offsets.at(lane));
+            frame.row<uint32_t>(row)[lane] = loadElement(buffer, offsets.at(lane));
         }
         return;
     }
@@ -104,23 +54,39 @@ const Inst* loadBuffer(Frame& frame, const Inst* inst) {
     }
     for (uint32_t lane = 0; lane < frame.lanes; ++lane) {
         frame.row<uint32_t>(inst->operand[0])[lane] =
-            loadWord(bufferOf(frame, resource, descriptors.at(lane)), offsets.at(lane));
+            loadElement(bufferOf(frame, resource, descriptors.at(lane)), offsets.at(lane));
     }
     return inst + 1;
 }
 
-LaneMask effectLanes(const Frame& frame) {
-    return frame.masks[kCurrentMask] & frame.live;
+/// As loadBuffer, for bytes and halfwords.
+template <class T, size_t kForm>
+const Inst* loadNarrow(Frame& frame, const Inst* inst) {
+    const LaneSource<kForm & 1> descriptors(frame, inst->operand[1]);
+    const LaneSource<(kForm >> 1 & 1)> offsets(frame, inst->operand[2]);
+    const uint32_t resource = inst->operand[3];
+    auto* results = frame.row<uint32_t>(inst->operand[0]);
+    if (descriptors.isUniform(frame.lanes)) {
+        const BufferBinding buffer = bufferOf(frame, resource, descriptors.at(0));
+        for (uint32_t lane = 0; lane < frame.lanes; ++lane) results[lane] = loadElement<T>(buffer, offsets.at(lane));
+    } else {
+        for (uint32_t lane = 0; lane < frame.lanes; ++lane) {
+            results[lane] = loadElement<T>(bufferOf(frame, resource, descriptors.at(lane)), offsets.at(lane));
+        }
+    }
+    return inst + 1;
 }
 
-template <size_t kForm>
+template <class T, size_t kForm>
 const Inst* storeBuffer(Frame& frame, const Inst* inst) {
     const LaneSource<kForm & 1> descriptors(frame, inst->operand[0]);
     const LaneSource<(kForm >> 1 & 1)> offsets(frame, inst->operand[1]);
     const auto* values = frame.row<uint32_t>(inst->operand[2]);
     effectLanes(frame).forEach([&](uint32_t lane) {
-        uint32_t* word = wordAt(bufferOf(frame, inst->operand[3], descriptors.at(lane)), offsets.at(lane));
-        if (word != nullptr) std::atomic_ref(*word).store(values[lane], std::memory_order_relaxed);
+        T* element = elementAt<T>(bufferOf(frame, inst->operand[3], descriptors.at(lane)), offsets.at(lane));
+        if (element != nullptr) {
+            std::atomic_ref(*element).store(static_cast<T>(values[lane]), std::memory_order_relaxed);
+        }
     });
     return inst + 1;
 }
@@ -132,68 +98,6 @@ const Inst* bufferSize(Frame& frame, const Inst* inst) {
         frame.row<uint32_t>(inst->operand[0])[lane] = bufferOf(frame, inst->operand[2], descriptors.at(lane)).size;
     }
     return inst + 1;
-}
-
-/// Replaces *word by change(*word) in one step; returns the old word.
-template <class F>
-uint32_t exchangeBy(uint32_t* word, F&& change) {
-    std::atomic_ref target(*word);
-    uint32_t old = target.load(std::memory_order_relaxed);
-    while (!target.compare_exchange_weak(old, change(old), std::memory_order_acq_rel, std::memory_order_relaxed)) {
-    }
-    return old;
-}
-
-uint32_t atomic(ir::AtomicOp operation, uint32_t* word, uint32_t value, uint32_t comparator) {
-    std::atomic_ref target(*word);
-    const auto asSigned = [](uint32_t x) { return static_cast<int32_t>(x); };
-    switch (operation) {
-        case ir::AtomicOp::add:
-            return target.fetch_add(value);
-        case ir::AtomicOp::sub:
-            return target.fetch_sub(value);
-        case ir::AtomicOp::iand:
-            return target.fetch_and(value);
-        case ir::AtomicOp::ior:
-            return target.fetch_or(value);
-        case ir::AtomicOp::ixor:
-            return target.fetch_xor(value);
-        case ir::AtomicOp::exchange:
-            return target.exchange(value);
-        case ir::AtomicOp::load:
-            return target.load();
-        case ir::AtomicOp::store:
-            target.store(value);
-            return 0;
-        case ir::AtomicOp::smin:
-            return exchangeBy(word, [&](uint32_t old) { return asSigned(old) < asSigned(value) ? old : value; });
-        case ir::AtomicOp::smax:
-            return exchangeBy(word, [&](uint32_t old) { return asSigned(old) > asSigned(value) ? old : value; });
-        case ir::AtomicOp::umin:
-            return exchangeBy(word, [&](uint32_t old) { return old < value ? old : value; });
-        case ir::AtomicOp::umax:
-            return exchangeBy(word, [&](uint32_t old) { return old > value ? old : value; });
-        case ir::AtomicOp::compareExchange:
-            target.compare_exchange_strong(comparator, value);
-            return comparator;
-    }
-    return 0;
-}
-
-const Inst* atomicBuffer(Frame& frame, const Inst* inst) {
-    const Inst& in = *inst;
-    auto* results = frame.row<uint32_t>(in[0]);
-    const auto* descriptors = frame.row<uint32_t>(in[1]);
-    const auto* offsets = frame.row<uint32_t>(in[2]);
-    const auto* values = frame.row<uint32_t>(in[5]);
-    const auto* comparators = frame.row<uint32_t>(in[6]);
-    spreadWord(frame, in[0], 0);
-    effectLanes(frame).forEach([&](uint32_t lane) {
-        uint32_t* word = wordAt(bufferOf(frame, in[3], descriptors[lane]), offsets[lane]);
-        if (word == nullptr) return;
-        results[lane] = atomic(static_cast<ir::AtomicOp>(in[4]), word, values[lane], comparators[lane]);
-    });
-    return inst + instsFor(7);
 }
 
 template <bool kScalar>
@@ -231,21 +135,27 @@ const Inst* inputIndexed(Frame& frame, const Inst* inst) {
     return inst + 1;
 }
 
+/// The forms of operations whose descriptor (bit 0) and offset (bit 1) are rows or scalars.
+template <size_t... kForm>
+void addForms(HandlerTable& table, std::index_sequence<kForm...>) {
+    const auto forms = [&](Op op) -> auto& {
+        return table[static_cast<size_t>(op)];
+    };
+    ((forms(Op::loadBuffer)[kForm] = loadBuffer<kForm>), ...);
+    ((forms(Op::loadByte)[kForm] = loadNarrow<uint8_t, kForm>), ...);
+    ((forms(Op::loadHalfword)[kForm] = loadNarrow<uint16_t, kForm>), ...);
+    ((forms(Op::storeBuffer)[kForm] = storeBuffer<uint32_t, kForm>), ...);
+    ((forms(Op::storeByte)[kForm] = storeBuffer<uint8_t, kForm>), ...);
+    ((forms(Op::storeHalfword)[kForm] = storeBuffer<uint16_t, kForm>), ...);
+}
+
 }  // namespace
 
 void addMemory(HandlerTable& table) {
     const auto add = [&](Op op, Handler handler, size_t form = 0) { table[static_cast<size_t>(op)][form] = handler; };
-    add(Op::loadBuffer, loadBuffer<0>, 0);
-    add(Op::loadBuffer, loadBuffer<1>, 1);
-    add(Op::loadBuffer, loadBuffer<2>, 2);
-    add(Op::loadBuffer, loadBuffer<3>, 3);
-    add(Op::storeBuffer, storeBuffer<0>, 0);
-    add(Op::storeBuffer, storeBuffer<1>, 1);
-    add(Op::storeBuffer, storeBuffer<2>, 2);
-    add(Op::storeBuffer, storeBuffer<3>, 3);
+    addForms(table, std::make_index_sequence<4>());
     add(Op::bufferSize, bufferSize<false>, 0);
     add(Op::bufferSize, bufferSize<true>, 1);
-    add(Op::atomicBuffer, atomicBuffer);
     add(Op::loadLocal, loadLocal<false>);
     add(Op::loadLocalScalar, loadLocal<true>);
     add(Op::storeLocal, storeLocal<false>);

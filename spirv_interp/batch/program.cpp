@@ -48,6 +48,7 @@ HandlerTable handlerTable(Isa isa, MathTier tier) {
     addLaneOps(isa, table);
     addWide(isa, table);
     addMemory(isa, table);
+    addAtomics(isa, table);
     addImages(table);
     addMath(isa, tier, table);
     return table;

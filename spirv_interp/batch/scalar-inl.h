@@ -207,7 +207,10 @@ inline I toInteger(F x) {
 inline uint32_t toHalf(float x) {
     const auto bits = std::bit_cast<uint32_t>(x);
     const uint32_t sign = bits >> 16 & 0x8000u, magnitude = bits & 0x7FFFFFFFu;
-    if (magnitude > 0x7F800000u) return sign | 0x7E00u | (magnitude >> 13 & 0x3FFu);
+    if (magnitude > 0x7F800000u) {
+        const uint32_t payload = magnitude >> 13 & 0x3FFu;
+        return sign | 0x7C00u | (payload != 0 ? payload : 0x200u);
+    }
     if (magnitude >= 0x47800000u) return sign | 0x7C00u;
     if (magnitude < 0x38800000u) {
         // Denormal halves are multiples of 2^-24: adding 1/2 makes the float adder round to them.
@@ -222,6 +225,28 @@ inline float fromHalf(uint32_t half) {
     if (magnitude >= 0x7C00u) return std::bit_cast<float>(sign | 0x7F800000u | (magnitude & 0x3FFu) << 13);
     // Exact: the float whose exponent is too small by 112, put right by a multiplication.
     return std::bit_cast<float>(sign | magnitude << 13) * 0x1p112f;
+}
+
+/// The binary16 value next to a double, as a float. A double has 42 bits more than a half; multiples of 2^-24, as
+/// denormal halves are, are what the adder leaves of a sum with 2^28.
+inline float halfOfMagnitude(double x, uint64_t rounded, double denormal, float tooLarge) {
+    const double magnitude = std::fabs(x);
+    const double value = magnitude < 0x1p-14 ? denormal : std::bit_cast<double>(rounded & ~uint64_t{0x3FFFFFFFFFF});
+    const float half = value >= 0x1p16 ? tooLarge : static_cast<float>(value);
+    return std::signbit(x) ? -half : half;
+}
+inline float nearestHalf(double x) {
+    if (x - x != 0) return static_cast<float>(x);
+    const double magnitude = std::fabs(x);
+    const auto bits = std::bit_cast<uint64_t>(magnitude);
+    return halfOfMagnitude(x, bits + 0x1FFFFFFFFFF + (bits >> 42 & 1), (magnitude + 0x1p28) - 0x1p28,
+                           std::numeric_limits<float>::infinity());
+}
+inline float halfTowardsZero(double x) {
+    if (x - x != 0) return static_cast<float>(x);
+    const double magnitude = std::fabs(x);
+    const double denormal = std::trunc(magnitude < 1 ? magnitude * 0x1p24 : 0.0) * 0x1p-24;
+    return halfOfMagnitude(x, std::bit_cast<uint64_t>(magnitude), denormal, 65504.0f);
 }
 
 }  // namespace vernier::batch::HWY_NAMESPACE::scalar

@@ -85,6 +85,9 @@ std::optional<Op> elementOp(const ir::Program& program, const ir::Inst& inst) {
                                                           : wideFrom         ? "From64"
                                                           : wideTo           ? "To64"
                                                                              : "");
+        case ir::Op::ftoh:
+        case ir::Op::ftohZero:
+            return elementNamed(ir::opInfo(inst.op).name, wideFrom ? "From64" : "");
         default:
             break;
     }

@@ -271,6 +271,12 @@ float ftofFrom64(F a) {
 F ftofTo64(float a) {
     return a;
 }
+float ftohFrom64(F a) {
+    return scalar::nearestHalf(a);
+}
+float ftohZeroFrom64(F a) {
+    return scalar::halfTowardsZero(a);
+}
 S sextTo64(int32_t a) {
     return a;
 }

@@ -15,7 +15,8 @@ enum class Shape : uint8_t {
     same,      // all of the result's type
     swapped,   // as compare, with the operands exchanged
     compare,   // a boolean from operands of one type
-    convert,   // one operand of another type, told by the immediate
+    convert,   // one operand of another type
+    count,     // of bits: the result may be of another width
     shift,     // the second operand may be of another width
     bitfield,  // offset and count are of any integer type
     logical,   // booleans; the result is inverted
@@ -61,7 +62,7 @@ constexpr Elementwise kElementwise[] = {
     {spv::Op::OpBitFieldSExtract, Op::bitFieldSExtract, Shape::bitfield, 3},
     {spv::Op::OpBitFieldUExtract, Op::bitFieldUExtract, Shape::bitfield, 3},
     {spv::Op::OpBitReverse, Op::bitReverse, Shape::same, 1},
-    {spv::Op::OpBitCount, Op::bitCount, Shape::same, 1},
+    {spv::Op::OpBitCount, Op::bitCount, Shape::count, 1},
     {spv::Op::OpDPdx, Op::ddxFine, Shape::same, 1},
     {spv::Op::OpDPdy, Op::ddyFine, Shape::same, 1},
     {spv::Op::OpDPdxFine, Op::ddxFine, Shape::same, 1},
@@ -122,42 +123,39 @@ bool Lowering::lowerElementwise(const Instruction& inst) {
     const auto found = std::find_if(std::begin(kElementwise), std::end(kElementwise),
                                     [&](const Elementwise& entry) { return entry.spirv == inst.op; });
     if (found == std::end(kElementwise)) return false;
-    const ir::Type type = scalarType(inst[1]);
+    const LeafType type = scalarType(inst[1]);
     const std::span<ir::ValueId> leaves = newLeaves(leafTypes(inst[1]).size());
     Leaves operands[4];
     for (uint32_t k = 0; k < found->operands; ++k) operands[k] = leavesOf(inst[3 + k]);
+    const LeafType from = scalarOfId(inst[3]);
     for (size_t i = 0; i < leaves.size(); ++i) {
         ir::ValueId x[4] = {};
         for (uint32_t k = 0; k < found->operands; ++k) x[k] = operands[k][std::min(i, operands[k].size() - 1)];
         const Leaves given(x, found->operands);
         switch (found->shape) {
             case Shape::same:
-                leaves[i] = emitter_.emit(found->op, type, given);
+                leaves[i] = emitTyped(found->op, type, given, from);
                 break;
             case Shape::swapped:
                 std::swap(x[0], x[1]);
                 [[fallthrough]];
             case Shape::compare:
-                leaves[i] = emitter_.emit(found->op, type, given, static_cast<uint64_t>(emitter_.typeOf(x[0])));
+                leaves[i] = emitTyped(found->op, type, given, from, static_cast<uint64_t>(from.type));
                 break;
-            case Shape::convert: {
-                // UConvert and SConvert change the width in either direction.
-                const bool integer = found->op == Op::zext || found->op == Op::sext;
-                const ir::Type from = emitter_.typeOf(x[0]);
-                if (from == type && (integer || found->op == Op::ftof)) {
-                    leaves[i] = x[0];
-                } else {
-                    leaves[i] = convert(integer && type == ir::Type::i32 ? Op::itrunc : found->op, type, x[0]);
-                }
+            case Shape::convert:
+                leaves[i] = convertNumber(found->op, type, x[0], from, inst[2]);
                 break;
-            }
+            case Shape::count:
+                leaves[i] = withType(emitter_.emit(found->op, from, given), type);
+                break;
             case Shape::shift:
-                leaves[i] = emitter_.emit(found->op, type, {x[0], withType(x[1], type)});
+                x[1] = withType(x[1], type);
+                leaves[i] = emitTyped(found->op, type, given, from);
                 break;
             case Shape::bitfield: {
                 const uint32_t firstCount = found->operands - 2u;
                 for (uint32_t k = firstCount; k < found->operands; ++k) x[k] = toI32(x[k]);
-                leaves[i] = emitter_.emit(found->op, type, given);
+                leaves[i] = emitTyped(found->op, type, given, from);
                 break;
             }
             case Shape::logical:
@@ -200,15 +198,13 @@ bool Lowering::lowerExtendedResult(const Instruction& inst) {
         case spv::Op::OpUMulExtended:
         case spv::Op::OpSMulExtended: {
             // A struct of two: the low part, then carry, borrow or high part.
-            Op low = Op::imul, high = Op::umulHigh;
-            if (inst.op == spv::Op::OpIAddCarry) low = Op::iadd, high = Op::addCarry;
-            if (inst.op == spv::Op::OpISubBorrow) low = Op::isub, high = Op::subBorrow;
-            if (inst.op == spv::Op::OpSMulExtended) high = Op::smulHigh;
             const Leaves a = leavesOf(inst[3]), b = leavesOf(inst[4]);
+            const LeafType type = scalarOfId(inst[3]);
             const std::span<ir::ValueId> leaves = newLeaves(a.size() * 2);
             for (size_t i = 0; i < a.size(); ++i) {
-                leaves[i] = binary(low, a[i], b[i]);
-                leaves[a.size() + i] = binary(high, a[i], b[i]);
+                const auto [low, high] = extended(inst.op, a[i], b[i], type);
+                leaves[i] = low;
+                leaves[a.size() + i] = high;
             }
             setValue(inst[2], inst[1], leaves);
             return true;
@@ -236,26 +232,64 @@ void Lowering::lowerSelect(const Instruction& inst) {
     setValue(inst[2], inst[1], leaves);
 }
 
+/// Both halves of a sum, difference or product of twice the width.
+std::pair<ir::ValueId, ir::ValueId> Lowering::extended(spv::Op op, ir::ValueId a, ir::ValueId b, const LeafType& type) {
+    const bool product = op == spv::Op::OpUMulExtended || op == spv::Op::OpSMulExtended;
+    Op low = Op::imul, high = Op::umulHigh;
+    if (op == spv::Op::OpIAddCarry) low = Op::iadd, high = Op::addCarry;
+    if (op == spv::Op::OpISubBorrow) low = Op::isub, high = Op::subBorrow;
+    if (op == spv::Op::OpSMulExtended) high = Op::smulHigh;
+    if (!type.isNarrowInteger()) return {binary(low, a, b), binary(high, a, b)};
+    if (op == spv::Op::OpSMulExtended) a = signExtended(a, type), b = signExtended(b, type);
+    // 32 bits hold all of it, except that a difference that borrows has ones above.
+    const ir::ValueId whole = binary(low, a, b);
+    const ir::ValueId above =
+        op == spv::Op::OpISubBorrow ? binary(high, a, b) : binary(Op::lshr, whole, emitter_.constantI32(type.bits));
+    return {normalised(whole, type), product ? normalised(above, type) : above};
+}
+
+/// The bits of the operand's components, lowest first, dealt out to the result's.
 void Lowering::lowerBitcast(const Instruction& inst) {
-    const std::vector<ir::Type>& types = leafTypes(inst[1]);
+    const std::vector<LeafType>& types = leafTypes(inst[1]);
     if (idValue(inst[3]).kind != IdValue::Kind::value || types.empty()) refuse(inst, "pointers have no bits");
     const Leaves operand = leavesOf(inst[3]);
+    const LeafType from = scalarOfId(inst[3]), to = types[0];
     const std::span<ir::ValueId> leaves = newLeaves(types.size());
-    const bool toWide = ir::isWide(types[0]), fromWide = ir::isWide(emitter_.typeOf(operand[0]));
-    const auto cast = [this](ir::ValueId value, ir::Type type) {
-        return emitter_.typeOf(value) == type ? value : convert(Op::bitcast, type, value);
+    if (operand.size() * from.bits != leaves.size() * to.bits) refuse(inst, "the widths differ");
+    const auto split = [&](ir::ValueId piece, uint32_t width, uint32_t index) {
+        if (width == 64) {
+            const uint32_t perWord = 32 / std::min<uint32_t>(to.bits, 32);
+            piece = emitter_.emit(index / perWord == 0 ? Op::lowWord : Op::highWord, ir::Type::i32, {piece});
+            index %= perWord;
+        }
+        if (to.bits >= 32) return piece;
+        const ir::ValueId down = binary(Op::lshr, piece, emitter_.constantI32(index * to.bits));
+        return binary(Op::iand, down, emitter_.constantI32(to.mask()));
+    };
+    const auto join = [&](size_t first, uint32_t count) {
+        ir::ValueId word = pieceOf(operand[first], from);
+        for (uint32_t k = 1; k < count; ++k) {
+            word = binary(Op::ior, word,
+                          binary(Op::shl, pieceOf(operand[first + k], from), emitter_.constantI32(k * from.bits)));
+        }
+        return word;
     };
     for (size_t i = 0; i < leaves.size(); ++i) {
-        if (toWide == fromWide) {
-            leaves[i] = cast(operand[i], types[i]);
-        } else if (toWide) {
-            // The lower-numbered component has the lower bits.
-            leaves[i] = emitter_.emit(Op::makeWide, types[i],
-                                      {cast(operand[2 * i], ir::Type::i32), cast(operand[2 * i + 1], ir::Type::i32)});
+        ir::ValueId piece = ir::kNoValue;
+        if (from.bits >= to.bits) {
+            const auto parts = static_cast<uint32_t>(from.bits / to.bits);
+            piece = pieceOf(operand[i / parts], from);
+            if (parts != 1) piece = split(piece, from.bits, static_cast<uint32_t>(i % parts));
         } else {
-            const Op word = i % 2 == 0 ? Op::lowWord : Op::highWord;
-            leaves[i] = cast(emitter_.emit(word, ir::Type::i32, {operand[i / 2]}), types[i]);
+            const auto parts = static_cast<uint32_t>(to.bits / from.bits);
+            if (to.bits == 64) {
+                const ir::ValueId low = join(i * parts, parts / 2);
+                piece = emitter_.emit(Op::makeWide, ir::Type::i64, {low, join(i * parts + parts / 2, parts / 2)});
+            } else {
+                piece = join(i * parts, parts);
+            }
         }
+        leaves[i] = ofPiece(piece, to);
     }
     setValue(inst[2], inst[1], leaves);
 }

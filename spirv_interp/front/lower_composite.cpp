@@ -83,13 +83,13 @@ bool Lowering::lowerComposite(const Instruction& inst) {
         }
         case spv::Op::OpVectorExtractDynamic: {
             const Leaves vector = leavesOf(inst[3]);
-            const ir::ValueId index = toI32(scalarOf(inst[4]));
+            const ir::ValueId index = indexOf(inst[4]);
             setScalar(id, type, chooseLeaf(vector, index));
             return true;
         }
         case spv::Op::OpVectorInsertDynamic: {
             const Leaves vector = leavesOf(inst[3]);
-            const ir::ValueId component = scalarOf(inst[4]), index = toI32(scalarOf(inst[5]));
+            const ir::ValueId component = scalarOf(inst[4]), index = indexOf(inst[5]);
             const std::span<ir::ValueId> leaves = newLeaves(vector.size());
             for (uint32_t i = 0; i < leaves.size(); ++i) {
                 const ir::ValueId here = compare(ir::Op::ieq, index, emitter_.constantI32(i));

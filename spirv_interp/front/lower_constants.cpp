@@ -1,5 +1,7 @@
 // Constants and specialisation constants. They become `constant` values of the entry block; operations on them are
 // lowered like any others and folded by the Emitter.
+#include <bit>
+#include <cmath>
 #include <cstring>
 
 #include "spirv_interp/front/lowering.h"
@@ -21,11 +23,11 @@ void Lowering::lowerConstant(const Instruction& inst) {
         }
         case spv::Op::OpConstant:
         case spv::Op::OpSpecConstant: {
-            const SpirvType& info = typeInfo(type);
+            const LeafType& scalar = scalarType(type);
             uint64_t bits = inst[3];
-            if (info.words == 2) bits |= static_cast<uint64_t>(inst[4]) << 32;
-            if (inst.op == spv::Op::OpSpecConstant) bits = specialised(inst, bits, info.words * 4);
-            setScalar(id, type, emitter_.constant(info.scalar, bits));
+            if (scalar.bits == 64) bits |= static_cast<uint64_t>(inst[4]) << 32;
+            if (inst.op == spv::Op::OpSpecConstant) bits = specialised(inst, bits, scalar.bytes());
+            setScalar(id, type, constantOfBits(scalar, bits));
             break;
         }
         case spv::Op::OpConstantComposite:
@@ -64,6 +66,18 @@ void Lowering::lowerConstant(const Instruction& inst) {
     }
 }
 
+/// A constant of a type from its bits; those above a narrow type's width do not count.
+ir::ValueId Lowering::constantOfBits(const LeafType& type, uint64_t bits) {
+    if (!type.isHalf()) return emitter_.constant(type, type.isNarrowInteger() ? bits & type.mask() : bits);
+    const uint32_t sign = static_cast<uint32_t>(bits & 0x8000) << 16, mantissa = static_cast<uint32_t>(bits & 0x3FF);
+    const auto exponent = static_cast<int>(bits >> 10 & 0x1F);
+    if (exponent == 0x1F) return emitter_.constant(type, sign | 0x7F800000u | mantissa << 13);
+    // Denormal: mantissa * 2^-24; normal: (1024 + mantissa) * 2^(exponent - 25).
+    const float magnitude = exponent == 0 ? std::ldexp(static_cast<float>(mantissa), -24)
+                                          : std::ldexp(static_cast<float>(1024 + mantissa), exponent - 25);
+    return emitter_.constant(type, sign | std::bit_cast<uint32_t>(magnitude));
+}
+
 uint64_t Lowering::specialised(const Instruction& inst, uint64_t bits, uint32_t bytes) const {
     const Decoration* decoration = module_.findDecoration(inst[2], spv::Decoration::SpecId);
     if (decoration == nullptr) return bits;
@@ -96,14 +110,14 @@ uint32_t Lowering::constantIndex(uint32_t id) {
 }
 
 Lowering::Leaves Lowering::zeroOf(uint32_t type) {
-    const std::vector<ir::Type>& types = leafTypes(type);
+    const std::vector<LeafType>& types = leafTypes(type);
     const std::span<ir::ValueId> leaves = newLeaves(types.size());
     for (size_t i = 0; i < types.size(); ++i) leaves[i] = emitter_.constant(types[i], 0);
     return leaves;
 }
 
 Lowering::Leaves Lowering::undefOf(uint32_t type) {
-    const std::vector<ir::Type>& types = leafTypes(type);
+    const std::vector<LeafType>& types = leafTypes(type);
     const std::span<ir::ValueId> leaves = newLeaves(types.size());
     for (size_t i = 0; i < types.size(); ++i) leaves[i] = emitter_.undef(types[i]);
     return leaves;

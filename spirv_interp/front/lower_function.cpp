@@ -112,7 +112,7 @@ void Lowering::lowerFunction(const Function& function, Frame& frame) {
 void Lowering::lowerBlock(const SpirvBlock& block, Frame& frame) {
     const uint32_t index = frame.function->blockOfLabel.at(block.label);
     for (const Frame::PhiVariables& phi : frame.phis[index]) {
-        const std::vector<ir::Type>& types = leafTypes(phi.inst[1]);
+        const std::vector<LeafType>& types = leafTypes(phi.inst[1]);
         const std::span<ir::ValueId> leaves = newLeaves(types.size());
         for (uint32_t i = 0; i < types.size(); ++i) leaves[i] = emitter_.read(phi.first + i, types[i]);
         setValue(phi.inst[2], phi.inst[1], leaves);
@@ -215,20 +215,33 @@ ir::BlockId Lowering::blockOf(uint32_t label, const Instruction& inst, Frame& fr
     return frame.blocks[found->second];
 }
 
+/// A selector of 64 bits chooses among small numbers first, which then choose the block.
 void Lowering::lowerSwitch(const Instruction& inst, Frame& frame) {
-    if (scalarType(typeOfId(inst[1])) != ir::Type::i32) refuse(inst, "the selector is not a 32-bit integer");
+    const LeafType& type = scalarOfId(inst[1]);
+    if (!ir::isInteger(type)) refuse(inst, "the selector is no integer");
+    const bool wide = type.bits == 64;
+    const uint32_t literalWords = literalWordsOf(module_, inst);
+    ir::ValueId selector = scalarOf(inst[1]), chosen = emitter_.constantI32(0);
     std::vector<int32_t> cases;
     std::vector<ir::BlockId> targets;
-    for (uint32_t word = 3; word + 1 < inst.count; word += 2) {
-        cases.push_back(static_cast<int32_t>(inst[word]));
-        targets.push_back(blockOf(inst[word + 1], inst, frame));
+    for (uint32_t word = 3; word + literalWords < inst.count; word += literalWords + 1) {
+        targets.push_back(blockOf(inst[word + literalWords], inst, frame));
+        if (!wide) {
+            cases.push_back(static_cast<int32_t>(type.isNarrowInteger() ? inst[word] & type.mask() : inst[word]));
+            continue;
+        }
+        cases.push_back(static_cast<int32_t>(targets.size()));
+        const uint64_t literal = inst[word] | static_cast<uint64_t>(inst[word + 1]) << 32;
+        chosen = emitter_.emit(ir::Op::select, ir::Type::i32,
+                               {compare(ir::Op::ieq, selector, emitter_.constant(type, literal)),
+                                emitter_.constantI32(static_cast<uint32_t>(targets.size())), chosen});
     }
-    emitter_.switchOn(scalarOf(inst[1]), blockOf(inst[2], inst, frame), cases, targets);
+    emitter_.switchOn(wide ? chosen : selector, blockOf(inst[2], inst, frame), cases, targets);
 }
 
 void Lowering::writePhis(uint32_t fromLabel, const Instruction& terminator, Frame& frame) {
     std::vector<uint32_t> labels;
-    appendTargets(terminator, 1, labels);
+    appendTargets(terminator, terminator.op == spv::Op::OpSwitch ? literalWordsOf(module_, terminator) : 1, labels);
     for (const uint32_t label : labels) {
         const auto found = frame.function->blockOfLabel.find(label);
         if (found == frame.function->blockOfLabel.end()) continue;
@@ -257,7 +270,7 @@ void Lowering::lowerCall(const Instruction& inst) {
     emitter_.setLine(line);
     const SpirvType& type = typeInfo(inst[1]);
     if (type.leaves != 0) {
-        const std::vector<ir::Type>& types = leafTypes(inst[1]);
+        const std::vector<LeafType>& types = leafTypes(inst[1]);
         const std::span<ir::ValueId> leaves = newLeaves(types.size());
         for (uint32_t i = 0; i < types.size(); ++i) leaves[i] = emitter_.read(inner.returnVariables + i, types[i]);
         setValue(inst[2], inst[1], leaves);

@@ -115,15 +115,16 @@ bool Lowering::lowerExtendedElementwise(const Instruction& inst) {
         case GLSLstd450Degrees: {
             const ir::ValueId factor = emitter_.constantFloat(
                 type.scalar, function == GLSLstd450Radians ? kRadiansPerDegree : kDegreesPerRadian);
-            apply(1, [&](const ir::ValueId* x) { return mul(x[0], factor); });
+            apply(1, [&](const ir::ValueId* x) { return normalised(mul(x[0], factor), type.scalar); });
             return true;
         }
         case GLSLstd450UClamp:
         case GLSLstd450SClamp: {
             const bool isUnsigned = function == GLSLstd450UClamp;
             apply(3, [&](const ir::ValueId* x) {
-                return binary(isUnsigned ? Op::umin : Op::smin, binary(isUnsigned ? Op::umax : Op::smax, x[0], x[1]),
-                              x[2]);
+                const ir::ValueId above[] = {
+                    emitTyped(isUnsigned ? Op::umax : Op::smax, type.scalar, Leaves(x, 2), type.scalar), x[2]};
+                return emitTyped(isUnsigned ? Op::umin : Op::smin, type.scalar, above, type.scalar);
             });
             return true;
         }
@@ -133,8 +134,8 @@ bool Lowering::lowerExtendedElementwise(const Instruction& inst) {
     for (const Elementwise& entry : kElementwise) {
         if (static_cast<uint32_t>(entry.function) != function) continue;
         apply(entry.operands, [&](ir::ValueId* x) {
-            if (entry.op == Op::fldexp) x[1] = toI32(x[1]);
-            return emitter_.emit(entry.op, type.scalar, Leaves(x, entry.operands));
+            if (entry.op == Op::fldexp) x[1] = toI32(signExtended(x[1], scalarOfId(inst[6])));
+            return emitTyped(entry.op, type.scalar, Leaves(x, entry.operands), scalarOfId(inst[5]));
         });
         return true;
     }
@@ -165,6 +166,11 @@ void Lowering::lowerSplit(const Instruction& inst) {
             both[count + i] = convert(Op::ffrexpExponent, ir::Type::i32, x);
         }
     }
+    if (!modf) {
+        const LeafType exponent =
+            toPointer ? scalarType(pointerOf(inst[6]).type) : scalarType(typeInfo(inst[1]).members.at(1));
+        for (size_t i = count; i < 2 * count; ++i) both[i] = normalised(both[i], exponent);
+    }
     if (toPointer) {
         store(pointerOf(inst[6]), both.subspan(count));
         setValue(inst[2], inst[1], both.first(count));
@@ -178,7 +184,7 @@ void Lowering::lowerInterpolate(const Instruction& inst) {
     if (pointer.base != Pointer::Base::input || pointer.dynamic != ir::kNoValue) {
         refuse(inst, "the interpolant is not an input with constant indices");
     }
-    const std::vector<ir::Type>& types = leafTypes(inst[1]);
+    const std::vector<LeafType>& types = leafTypes(inst[1]);
     const std::span<ir::ValueId> leaves = newLeaves(types.size());
     for (uint32_t i = 0; i < leaves.size(); ++i) {
         const uint32_t slot = pointer.root + pointer.offset + i;
@@ -188,7 +194,7 @@ void Lowering::lowerInterpolate(const Instruction& inst) {
                 leaves[i] = emitter_.emit(Op::interpolateAtCentroid, types[i], {}, slot);
                 break;
             case GLSLstd450InterpolateAtSample:
-                leaves[i] = emitter_.emit(Op::interpolateAtSample, types[i], {toI32(scalarOf(inst[6]))}, slot);
+                leaves[i] = emitter_.emit(Op::interpolateAtSample, types[i], {indexOf(inst[6])}, slot);
                 break;
             default: {
                 const Leaves offset = leavesOf(inst[6]);

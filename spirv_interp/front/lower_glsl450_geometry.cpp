@@ -71,7 +71,7 @@ bool Lowering::lowerGeometric(const Instruction& inst) {
         default:
             return false;
     }
-    setValue(inst[2], inst[1], leaves);
+    setValue(inst[2], inst[1], rounded(inst[1], leaves));
     return true;
 }
 
@@ -84,7 +84,7 @@ void Lowering::lowerNormalize(const Instruction& inst) {
         const ir::ValueId scale = unary(Op::finverseSqrt, dot(v, v));
         for (size_t i = 0; i < v.size(); ++i) leaves[i] = mul(v[i], scale);
     }
-    setValue(inst[2], inst[1], leaves);
+    setValue(inst[2], inst[1], rounded(inst[1], leaves));
 }
 
 /// k = 1 - eta * eta * (1 - dot(N, I)^2); 0 when k < 0, otherwise eta * I - (eta * dot(N, I) + sqrt(k)) * N.
@@ -103,7 +103,7 @@ void Lowering::lowerRefract(const Instruction& inst) {
     for (size_t c = 0; c < i.size(); ++c) {
         leaves[c] = emitter_.emit(Op::select, type, {total, zero, sub(mul(eta, i[c]), mul(along, n[c]))});
     }
-    setValue(inst[2], inst[1], leaves);
+    setValue(inst[2], inst[1], rounded(inst[1], leaves));
 }
 
 /// By the first column (Laplace). `m` is column-major.
@@ -148,7 +148,7 @@ void Lowering::lowerInverse(const Instruction& inst) {
     for (uint32_t c = 0; c < size; ++c) {
         for (uint32_t r = 0; r < size; ++r) leaves[c * size + r] = mul(cofactors[r * size + c], scale);
     }
-    setValue(inst[2], inst[1], leaves);
+    setValue(inst[2], inst[1], rounded(inst[1], leaves));
 }
 
 }  // namespace vernier

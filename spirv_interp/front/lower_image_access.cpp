@@ -60,7 +60,7 @@ void Lowering::lowerImageQuery(const Instruction& inst) {
         op.coords = 0;
         if (inst.op == spv::Op::OpImageQuerySizeLod) {
             op.hasLod = true;
-            operands.push_back(toI32(scalarOf(inst[4])));
+            operands.push_back(indexOf(inst[4]));
         }
     }
     setTexel(inst, emitImage(op, scalarType(inst[1]), operands));
@@ -79,7 +79,7 @@ void Lowering::lowerTexelPointer(const Instruction& inst) {
     const Leaves coords = leavesOf(inst[4]);
     if (coords.size() < op.coords) refuse(inst, "too few coordinates");
     texel.coords = coords.first(op.coords);
-    if (op.multisampled) texel.sample = toI32(scalarOf(inst[5]));
+    if (op.multisampled) texel.sample = indexOf(inst[5]);
     Pointer pointer;
     pointer.base = Pointer::Base::texel;
     pointer.type = typeInfo(inst[1]).element;

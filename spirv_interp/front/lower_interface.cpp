@@ -220,7 +220,7 @@ void Lowering::appendSlots(uint32_t typeId, const SlotPlace& place, ir::Interfac
     const bool wide = ir::isWide(type.scalar);
     const uint32_t firstComponent = slot.component;
     if (slot.builtin == ir::Builtin::user) at.component = firstComponent;
-    slot.type = wide ? ir::Type::i32 : type.scalar;
+    slot.type = wide ? ir::Type::i32 : type.scalar.type;
     if (slot.type == ir::Type::i32 && place.input && program_.stage == ir::Stage::fragment) {
         slot.interpolation = ir::Interpolation::flat;
     }
@@ -243,9 +243,12 @@ void Lowering::appendSlots(uint32_t typeId, const SlotPlace& place, ir::Interfac
 void Lowering::storeOutputs() {
     for (const Output& output : outputs_) {
         uint32_t slot = output.firstSlot;
-        for (ir::ValueId leaf : load(output.pointer)) {
+        const std::vector<LeafType>& types = leafTypes(output.pointer.type);
+        const Leaves leaves = load(output.pointer);
+        for (size_t i = 0; i < leaves.size(); ++i) {
+            const ir::ValueId leaf = types[i].isSigned ? signExtended(leaves[i], types[i]) : leaves[i];
             const bool wide = ir::isWide(emitter_.typeOf(leaf));
-            const bool written = !emitter_.isUndef(leaf);
+            const bool written = !emitter_.isUndef(leaves[i]);
             for (uint32_t word = 0; word < (wide ? 2u : 1u); ++word, ++slot) {
                 if (!written) continue;
                 const ir::ValueId value =

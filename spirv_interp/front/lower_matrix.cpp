@@ -75,7 +75,7 @@ bool Lowering::lowerMatrix(const Instruction& inst) {
         default:
             return false;
     }
-    setValue(inst[2], inst[1], leaves);
+    setValue(inst[2], inst[1], rounded(inst[1], leaves));
     return true;
 }
 

@@ -19,11 +19,12 @@ void Lowering::lowerAccessChain(const Instruction& inst) {
 
 /// Moves by `index` steps of `stride` units; an index that is constant is kept inside `count` (0: no bound).
 void Lowering::advance(Pointer& pointer, uint32_t indexId, uint32_t count, uint32_t stride) {
-    if (const std::optional<uint32_t> index = constantOf(indexId)) {
-        pointer.offset += (count != 0 ? std::min(*index, count - 1) : *index) * stride;
+    const ir::ValueId index = indexOf(indexId);
+    if (const std::optional<uint64_t> bits = emitter_.constantBits(index)) {
+        const auto fixed = static_cast<uint32_t>(*bits);
+        pointer.offset += (count != 0 ? std::min(fixed, count - 1) : fixed) * stride;
         return;
     }
-    const ir::ValueId index = toI32(scalarOf(indexId));
     if (pointer.base == Base::ssa) {
         if (pointer.dynamic != ir::kNoValue) refuseId(indexId, "is a second index that is not constant");
         pointer.dynamic = index;
@@ -38,7 +39,7 @@ void Lowering::advance(Pointer& pointer, uint32_t indexId, uint32_t count, uint3
 }
 
 void Lowering::stepDescriptor(Pointer& pointer, const SpirvType& type, uint32_t indexId) {
-    const ir::ValueId index = toI32(scalarOf(indexId));
+    const ir::ValueId index = indexOf(indexId);
     if (pointer.descriptor == ir::kNoValue) {
         pointer.descriptor = index;
     } else {
@@ -91,15 +92,16 @@ Pointer Lowering::stepInto(const Pointer& from, uint32_t indexId, const Instruct
         }
         case SpirvType::Kind::matrix: {
             const SpirvType& column = typeInfo(type.element);
-            const uint32_t scalarBytes = column.words * 4 / column.count;
-            const uint32_t stride = !buffer ? unitsOf(column) : pointer.rowMajor ? scalarBytes : pointer.matrixStride;
+            const uint32_t stride = !buffer            ? unitsOf(column)
+                                    : pointer.rowMajor ? column.scalar.bytes()
+                                                       : pointer.matrixStride;
             pointer.elementStride = buffer && pointer.rowMajor ? pointer.matrixStride : 0;
             advance(pointer, indexId, type.count, stride);
             break;
         }
         case SpirvType::Kind::vector: {
             const SpirvType& scalar = typeInfo(type.element);
-            uint32_t stride = buffer ? scalar.words * 4 : unitsOf(scalar);
+            uint32_t stride = buffer ? scalar.scalar.bytes() : unitsOf(scalar);
             if (pointer.elementStride != 0) stride = pointer.elementStride;
             pointer.elementStride = 0;
             advance(pointer, indexId, type.count, stride);
@@ -127,15 +129,15 @@ ir::ValueId Lowering::descriptorOf(const Pointer& pointer) {
     return pointer.descriptor == ir::kNoValue ? emitter_.constantI32(0) : pointer.descriptor;
 }
 
-/// One 32-bit word at `at` units from the pointer, which is local, input or buffer.
-ir::ValueId Lowering::loadWord(const Pointer& pointer, uint32_t at, ir::Type type) {
+/// One 32-bit word at `at` units from the pointer, which is local, input or buffer; in a buffer also 1 or 2 bytes.
+ir::ValueId Lowering::loadWord(const Pointer& pointer, uint32_t at, ir::Type type, uint32_t bytes) {
     switch (pointer.base) {
         case Base::local:
             return emitter_.emit(ir::Op::loadLocal, type, {place(pointer, at)},
                                  ir::immPair(pointer.root, pointer.extent));
         case Base::buffer:
             return emitter_.emit(ir::Op::loadBuffer, type, {descriptorOf(pointer), place(pointer, at)},
-                                 resourceOf(pointer.root));
+                                 ir::immPair(resourceOf(pointer.root), bytes));
         default:
             break;
     }
@@ -147,33 +149,45 @@ ir::ValueId Lowering::loadWord(const Pointer& pointer, uint32_t at, ir::Type typ
     return emitter_.emit(ir::Op::input, program_.inputs[slot].type, {}, slot);
 }
 
-ir::ValueId Lowering::loadScalar(const Pointer& pointer, uint32_t at, ir::Type type) {
+ir::ValueId Lowering::loadScalar(const Pointer& pointer, uint32_t at, const LeafType& type) {
     if (ir::isWide(type)) {
         const uint32_t word = pointer.base == Base::buffer ? 4 : 1;
         const ir::ValueId low = loadWord(pointer, at, ir::Type::i32);
         return emitter_.emit(ir::Op::makeWide, type, {low, loadWord(pointer, at + word, ir::Type::i32)});
     }
-    if (type == ir::Type::b1 && pointer.base != Base::input) {
+    if (type.type == ir::Type::b1 && pointer.base != Base::input) {
         return compare(ir::Op::ine, loadWord(pointer, at, ir::Type::i32), emitter_.constantI32(0));
     }
-    return loadWord(pointer, at, type);
+    if (type.bits < 32 && pointer.base == Base::buffer) {
+        return ofPiece(loadWord(pointer, at, ir::Type::i32, type.bytes()), type);
+    }
+    const ir::ValueId value = loadWord(pointer, at, type);
+    // Attributes come sign-extended, and interpolated with more digits than a half has.
+    return pointer.base == Base::input ? normalised(value, type) : value;
 }
 
-void Lowering::storeScalar(const Pointer& pointer, uint32_t at, ir::ValueId value) {
-    const ir::Type type = emitter_.typeOf(value);
+void Lowering::storeScalar(const Pointer& pointer, uint32_t at, ir::ValueId value, const LeafType& type) {
     if (ir::isWide(type)) {
         const uint32_t word = pointer.base == Base::buffer ? 4 : 1;
-        storeScalar(pointer, at, emitter_.emit(ir::Op::lowWord, ir::Type::i32, {value}));
-        storeScalar(pointer, at + word, emitter_.emit(ir::Op::highWord, ir::Type::i32, {value}));
-        return;
+        storeWord(pointer, at, emitter_.emit(ir::Op::lowWord, ir::Type::i32, {value}));
+        storeWord(pointer, at + word, emitter_.emit(ir::Op::highWord, ir::Type::i32, {value}));
+    } else if (type.type == ir::Type::b1) {
+        storeWord(pointer, at, convert(ir::Op::zext, ir::Type::i32, value));
+    } else if (type.bits < 32 && pointer.base == Base::buffer) {
+        storeWord(pointer, at, pieceOf(value, type), type.bytes());
+    } else {
+        storeWord(pointer, at, value);
     }
-    if (type == ir::Type::b1) value = convert(ir::Op::zext, ir::Type::i32, value);
+}
+
+/// The counterpart of loadWord.
+void Lowering::storeWord(const Pointer& pointer, uint32_t at, ir::ValueId value, uint32_t bytes) {
     if (pointer.base == Base::local) {
         emitter_.emit(ir::Op::storeLocal, ir::Type::none, {place(pointer, at), value},
                       ir::immPair(pointer.root, pointer.extent));
     } else {
         emitter_.emit(ir::Op::storeBuffer, ir::Type::none, {descriptorOf(pointer), place(pointer, at), value},
-                      resourceOf(pointer.root));
+                      ir::immPair(resourceOf(pointer.root), bytes));
     }
 }
 
@@ -214,18 +228,17 @@ void Lowering::visitBuffer(const Pointer& pointer, uint32_t at, const Visit& vis
             const SpirvType& column = typeInfo(type.element);
             part.type = type.element;
             part.elementStride = pointer.rowMajor ? pointer.matrixStride : 0;
-            const uint32_t stride = pointer.rowMajor ? column.words * 4 / column.count : pointer.matrixStride;
+            const uint32_t stride = pointer.rowMajor ? column.scalar.bytes() : pointer.matrixStride;
             for (uint32_t i = 0; i < type.count; ++i) visitBuffer(part, at + i * stride, visit);
             break;
         }
         case SpirvType::Kind::vector: {
-            const uint32_t tight = type.words * 4 / type.count;
-            const uint32_t stride = pointer.elementStride != 0 ? pointer.elementStride : tight;
+            const uint32_t stride = pointer.elementStride != 0 ? pointer.elementStride : type.scalar.bytes();
             for (uint32_t i = 0; i < type.count; ++i) visit(at + i * stride, type.scalar);
             break;
         }
         default:
-            if (type.scalar == ir::Type::none)
+            if (type.scalar.type == ir::Type::none)
                 refuseId(pointer.root, "is read or written as a whole where that is not possible");
             visit(at, type.scalar);
             break;
@@ -236,11 +249,12 @@ void Lowering::visitBuffer(const Pointer& pointer, uint32_t at, const Visit& vis
 // ---------------------------------------------------------------------------------------------------
 
 Lowering::Leaves Lowering::load(const Pointer& pointer) {
-    const std::vector<ir::Type>& types = leafTypes(pointer.type);
+    const std::vector<LeafType>& types = leafTypes(pointer.type);
     const std::span<ir::ValueId> leaves = newLeaves(types.size());
     if (pointer.base == Base::buffer) {
         size_t next = 0;
-        visitBuffer(pointer, 0, [&](uint32_t at, ir::Type type) { leaves[next++] = loadScalar(pointer, at, type); });
+        visitBuffer(pointer, 0,
+                    [&](uint32_t at, const LeafType& type) { leaves[next++] = loadScalar(pointer, at, type); });
         return leaves;
     }
     uint32_t at = 0;
@@ -279,7 +293,8 @@ Lowering::Leaves Lowering::load(const Pointer& pointer) {
 }
 
 void Lowering::store(const Pointer& pointer, Leaves leaves) {
-    if (leaves.size() != leafTypes(pointer.type).size()) refuseId(pointer.root, "is stored to with another type");
+    const std::vector<LeafType>& types = leafTypes(pointer.type);
+    if (leaves.size() != types.size()) refuseId(pointer.root, "is stored to with another type");
     switch (pointer.base) {
         case Base::ssa:
             if (pointer.dynamic != ir::kNoValue) return storeChoice(pointer, leaves);
@@ -287,9 +302,9 @@ void Lowering::store(const Pointer& pointer, Leaves leaves) {
             break;
         case Base::local: {
             uint32_t at = 0;
-            for (const ir::ValueId leaf : leaves) {
-                storeScalar(pointer, at, leaf);
-                at += ir::isWide(emitter_.typeOf(leaf)) ? 2 : 1;
+            for (size_t i = 0; i < leaves.size(); ++i) {
+                storeScalar(pointer, at, leaves[i], types[i]);
+                at += ir::isWide(types[i]) ? 2 : 1;
             }
             break;
         }
@@ -299,7 +314,8 @@ void Lowering::store(const Pointer& pointer, Leaves leaves) {
                 refuseId(pointer.root, "is stored to, but it is only read");
             }
             size_t next = 0;
-            visitBuffer(pointer, 0, [&](uint32_t at, ir::Type) { storeScalar(pointer, at, leaves[next++]); });
+            visitBuffer(pointer, 0,
+                        [&](uint32_t at, const LeafType& type) { storeScalar(pointer, at, leaves[next++], type); });
             break;
         }
         default:

@@ -118,13 +118,12 @@ uint32_t Lowering::byteSizeOf(uint32_t typeId, uint32_t matrixStride, bool rowMa
         }
         case SpirvType::Kind::matrix: {
             const SpirvType& column = typeInfo(type.element);
-            const uint32_t scalarBytes = column.words * 4 / column.count;
             const uint32_t lines = rowMajor ? column.count : type.count;
             const uint32_t along = rowMajor ? type.count : column.count;
-            return matrixStride * (lines - 1) + along * scalarBytes;
+            return matrixStride * (lines - 1) + along * column.scalar.bytes();
         }
         default:
-            return type.words * 4;
+            return type.scalar.bytes() * std::max(type.count, 1u);
     }
 }
 

@@ -41,19 +41,19 @@ void Lowering::lowerType(const Instruction& inst) {
             break;
         case spv::Op::OpTypeBool:
             type.kind = Kind::boolean;
-            type.scalar = ir::Type::b1;
+            type.scalar = {ir::Type::b1, 32, false};
             break;
         case spv::Op::OpTypeInt:
-            if (inst[2] != 32 && inst[2] != 64)
+            if (inst[2] != 8 && inst[2] != 16 && inst[2] != 32 && inst[2] != 64)
                 refuse(inst, std::to_string(inst[2]) + "-bit integers are not supported");
             type.kind = Kind::integer;
-            type.scalar = inst[2] == 32 ? ir::Type::i32 : ir::Type::i64;
-            type.isSigned = inst[3] != 0;
+            type.scalar = {inst[2] == 64 ? ir::Type::i64 : ir::Type::i32, static_cast<uint8_t>(inst[2]), inst[3] != 0};
             break;
         case spv::Op::OpTypeFloat:
-            if (inst[2] != 32 && inst[2] != 64) refuse(inst, std::to_string(inst[2]) + "-bit floats are not supported");
+            if (inst[2] != 16 && inst[2] != 32 && inst[2] != 64)
+                refuse(inst, std::to_string(inst[2]) + "-bit floats are not supported");
             type.kind = Kind::floating;
-            type.scalar = inst[2] == 32 ? ir::Type::f32 : ir::Type::f64;
+            type.scalar = {inst[2] == 64 ? ir::Type::f64 : ir::Type::f32, static_cast<uint8_t>(inst[2]), true};
             break;
         case spv::Op::OpTypeVector:
             repeat(Kind::vector, inst[2], inst[3]);
@@ -95,8 +95,10 @@ void Lowering::lowerType(const Instruction& inst) {
         case spv::Op::OpTypeImage: {
             const SpirvType& sampled = typeInfo(inst[2]);
             type.kind = Kind::image;
-            type.image.component = sampled.kind == Kind::void_ ? ir::Type::f32 : sampled.scalar;
-            if (wordsOf(type.image.component) != 1) refuse(inst, "images of 64-bit components are not supported");
+            type.image.component = sampled.kind == Kind::void_ ? ir::Type::f32 : sampled.scalar.type;
+            if (sampled.kind != Kind::void_ && sampled.scalar.bits != 32) {
+                refuse(inst, "images of " + std::to_string(sampled.scalar.bits) + "-bit components are not supported");
+            }
             type.image.dim = static_cast<spv::Dim>(inst[3]);
             if (type.image.dim == spv::Dim::Rect) refuse(inst, "rectangle images are not supported");
             type.image.depth = inst[4] == 1;
@@ -125,9 +127,9 @@ void Lowering::lowerType(const Instruction& inst) {
     leafTypes_.emplace_back();
 }
 
-const std::vector<ir::Type>& Lowering::leafTypes(uint32_t id) {
+const std::vector<LeafType>& Lowering::leafTypes(uint32_t id) {
     const SpirvType& type = typeInfo(id);
-    std::vector<ir::Type>& types = leafTypes_[typeIndex_[id]];
+    std::vector<LeafType>& types = leafTypes_[typeIndex_[id]];
     if (types.empty() && type.leaves != 0) {
         if (type.leaves > kMaxLeaves) {
             refuseId(id, "has values of " + std::to_string(type.leaves) + " scalars; the limit is " +
@@ -139,7 +141,7 @@ const std::vector<ir::Type>& Lowering::leafTypes(uint32_t id) {
     return types;
 }
 
-void Lowering::appendLeafTypes(uint32_t id, std::vector<ir::Type>& types) const {
+void Lowering::appendLeafTypes(uint32_t id, std::vector<LeafType>& types) const {
     const SpirvType& type = typeInfo(id);
     switch (type.kind) {
         case SpirvType::Kind::structure:

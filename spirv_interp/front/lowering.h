@@ -122,13 +122,15 @@ class Lowering {
     // lower_types.cpp
     void lowerType(const Instruction& inst);
     const SpirvType& typeInfo(uint32_t id) const;
-    const std::vector<ir::Type>& leafTypes(uint32_t id);
-    void appendLeafTypes(uint32_t id, std::vector<ir::Type>& types) const;
+    const std::vector<LeafType>& leafTypes(uint32_t id);
+    void appendLeafTypes(uint32_t id, std::vector<LeafType>& types) const;
     uint32_t typeOfId(uint32_t id) const { return idValue(id).type; }
-    ir::Type scalarType(uint32_t id) const { return typeInfo(id).scalar; }
+    const LeafType& scalarType(uint32_t id) const { return typeInfo(id).scalar; }
+    const LeafType& scalarOfId(uint32_t id) const { return scalarType(typeOfId(id)); }
 
     // lower_constants.cpp
     void lowerConstant(const Instruction& inst);
+    ir::ValueId constantOfBits(const LeafType& type, uint64_t bits);
     uint64_t specialised(const Instruction& inst, uint64_t bits, uint32_t bytes) const;
     uint32_t constantIndex(uint32_t id);
     std::optional<uint32_t> constantOf(uint32_t id);
@@ -187,16 +189,30 @@ class Lowering {
     bool lowerMemory(const Instruction& inst);
     ir::ValueId place(const Pointer& pointer, uint32_t more);
     ir::ValueId descriptorOf(const Pointer& pointer);
-    ir::ValueId loadWord(const Pointer& pointer, uint32_t at, ir::Type type);
-    ir::ValueId loadScalar(const Pointer& pointer, uint32_t at, ir::Type type);
-    void storeScalar(const Pointer& pointer, uint32_t at, ir::ValueId value);
+    ir::ValueId loadWord(const Pointer& pointer, uint32_t at, ir::Type type, uint32_t bytes = 0);
+    ir::ValueId loadScalar(const Pointer& pointer, uint32_t at, const LeafType& type);
+    void storeScalar(const Pointer& pointer, uint32_t at, ir::ValueId value, const LeafType& type);
+    void storeWord(const Pointer& pointer, uint32_t at, ir::ValueId value, uint32_t bytes = 0);
     template <class Visit>
     void visitBuffer(const Pointer& pointer, uint32_t at, const Visit& visit);
+
+    // lower_narrow.cpp: scalars of less than 32 bits
+    ir::ValueId emitTyped(ir::Op op, const LeafType& to, Leaves operands, const LeafType& from, uint64_t imm = 0);
+    ir::ValueId halfFma(Leaves operands);
+    ir::ValueId normalised(ir::ValueId value, const LeafType& type);
+    Leaves rounded(uint32_t type, std::span<ir::ValueId> leaves);
+    ir::ValueId signExtended(ir::ValueId value, const LeafType& type);
+    ir::ValueId convertNumber(ir::Op op, const LeafType& to, ir::ValueId value, const LeafType& from, uint32_t result);
+    ir::ValueId convertInteger(bool isSigned, const LeafType& to, ir::ValueId value, const LeafType& from);
+    ir::ValueId pieceOf(ir::ValueId value, const LeafType& type);
+    ir::ValueId ofPiece(ir::ValueId piece, const LeafType& type);
+    ir::ValueId indexOf(uint32_t id);
 
     // lower_arith.cpp, lower_matrix.cpp, lower_composite.cpp
     bool lowerArithmetic(const Instruction& inst);
     bool lowerElementwise(const Instruction& inst);
     bool lowerExtendedResult(const Instruction& inst);
+    std::pair<ir::ValueId, ir::ValueId> extended(spv::Op op, ir::ValueId a, ir::ValueId b, const LeafType& type);
     void lowerBitcast(const Instruction& inst);
     void lowerSelect(const Instruction& inst);
     ir::ValueId toI32(ir::ValueId value);
@@ -260,7 +276,7 @@ class Lowering {
     std::vector<IdValue> ids_;
     std::vector<uint32_t> typeIndex_;  // by id, into types_
     std::vector<SpirvType> types_{SpirvType{}};
-    std::vector<std::vector<ir::Type>> leafTypes_{{}};
+    std::vector<std::vector<LeafType>> leafTypes_{{}};
     std::vector<Indexing> indexing_;  // by id of a variable or parameter
     std::vector<Output> outputs_;
     std::vector<uint32_t> interface_;     // ids of the entry point's interface variables

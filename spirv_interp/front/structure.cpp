@@ -12,13 +12,6 @@ struct BlockShape {
     bool merges = false;  // next[0] is a merge block
 };
 
-/// Words of the literals of an OpSwitch: by the width of its selector's type.
-uint32_t literalWordsOf(const Module& module, const Instruction& inst) {
-    const Instruction selector = module.definition(inst[1]);
-    const Instruction type = module.definition(selector[1]);
-    return type.op == spv::Op::OpTypeInt && type[2] > 32 ? 2 : 1;
-}
-
 BlockShape shapeOf(const Module& module, const Function& function, const SpirvBlock& block) {
     BlockShape shape;
     std::vector<uint32_t> labels;
@@ -57,6 +50,12 @@ BlockShape shapeOf(const Module& module, const Function& function, const SpirvBl
 }
 
 }  // namespace
+
+uint32_t literalWordsOf(const Module& module, const Instruction& inst) {
+    const Instruction selector = module.definition(inst[1]);
+    const Instruction type = module.definition(selector[1]);
+    return type.op == spv::Op::OpTypeInt && type[2] > 32 ? 2 : 1;
+}
 
 void appendTargets(const Instruction& terminator, uint32_t literalWords, std::vector<uint32_t>& labels) {
     switch (terminator.op) {

@@ -15,6 +15,9 @@ struct StructuredBlock {
 /// The reachable blocks. Every edge but back edges goes forward; the blocks of a loop are contiguous, header first.
 std::vector<StructuredBlock> structuredOrder(const Module& module, const Function& function);
 
+/// Words of the literals of an OpSwitch: by the width of its selector's type.
+uint32_t literalWordsOf(const Module& module, const Instruction& inst);
+
 /// The labels a terminator goes to, in the order of its operands. OpSwitch lists each case; literals may take two
 /// words.
 void appendTargets(const Instruction& terminator, uint32_t literalWords, std::vector<uint32_t>& labels);

@@ -40,6 +40,18 @@ void dropUnusedSlots(Program& program) {
     }
 }
 
+/// A store to a resource; kNoIndex: to any that can be written.
+void markWritten(const Program& program, uint32_t resource, std::vector<bool>& written) {
+    if (resource != kNoIndex) {
+        written[resource] = true;
+        return;
+    }
+    for (size_t r = 0; r < written.size(); ++r) {
+        const ResourceKind kind = program.resources[r].kind;
+        if (kind == ResourceKind::storageBuffer || kind == ResourceKind::workgroupMemory) written[r] = true;
+    }
+}
+
 }  // namespace
 
 void analyse(Program& program) {
@@ -63,10 +75,18 @@ void analyse(Program& program) {
                     program.hasBarriers = true;
                     break;
                 case Op::storeBuffer:
-                    written[inst.imm] = true;
+                    markWritten(program, resourceOf(inst), written);
                     break;
                 case Op::atomicBuffer:
-                    if (static_cast<AtomicOp>(immHigh(inst)) != AtomicOp::load) written[immLow(inst)] = true;
+                    if (static_cast<AtomicOp>(immHigh(inst)) != AtomicOp::load) {
+                        markWritten(program, resourceOf(inst), written);
+                    }
+                    break;
+                case Op::storeAddress:
+                case Op::atomicAddress:
+                    // An address may lie in any buffer.
+                    markWritten(program, kNoIndex, written);
+                    program.hasSideEffects = true;
                     break;
                 case Op::image:
                 case Op::imageStore: {

@@ -1,5 +1,6 @@
 #include "spirv_interp/ir/fold.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -228,6 +229,19 @@ std::optional<uint64_t> integerToFloat(Op op, Type from, uint64_t bits) {
     return floatBits<F>(op == Op::stof ? static_cast<F>(static_cast<int64_t>(bits)) : static_cast<F>(bits));
 }
 
+/// The binary16 value next to x: a multiple of the last of its 11 bits, or of 2^-24 for denormals.
+float toHalf(double x, bool towardsZero) {
+    if (x == 0 || !std::isfinite(x)) return static_cast<float>(x);
+    int exponent = 0;
+    std::frexp(x, &exponent);
+    const int step = std::max(exponent - 11, -24);
+    const double units = std::ldexp(x, -step);
+    const double rounded = std::ldexp(towardsZero ? std::trunc(units) : std::nearbyint(units), step);
+    constexpr double kLargest = 65504;
+    if (std::fabs(rounded) <= kLargest) return static_cast<float>(rounded);
+    return static_cast<float>(std::copysign(towardsZero ? kLargest : HUGE_VAL, x));
+}
+
 std::optional<uint64_t> foldConversion(Op op, Type type, Type from, uint64_t x) {
     switch (op) {
         case Op::ftos:
@@ -241,6 +255,10 @@ std::optional<uint64_t> foldConversion(Op op, Type type, Type from, uint64_t x) 
             if (from == type) return std::nullopt;
             return type == Type::f32 ? floatBits<float>(static_cast<float>(asFloat<double>(x)))
                                      : floatBits<double>(static_cast<double>(asFloat<float>(x)));
+        case Op::ftoh:
+        case Op::ftohZero:
+            return floatBits<float>(toHalf(
+                from == Type::f32 ? static_cast<double>(asFloat<float>(x)) : asFloat<double>(x), op == Op::ftohZero));
         case Op::zext:
             return from == Type::b1 ? x & 1 : x;
         case Op::bitcast:

@@ -174,7 +174,10 @@ enum class AtomicOp : uint8_t {
     exchange,
     compareExchange,
     load,
-    store
+    store,
+    fadd,
+    fmin,
+    fmax,
 };
 
 /// The static part of an image instruction. Its operands, in this order, those that are there:

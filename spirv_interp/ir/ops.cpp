@@ -97,6 +97,9 @@ ImmKind immKind(Op op) {
         case Op::atomicBuffer:
         case Op::loadLocal:
         case Op::storeLocal:
+        case Op::loadAddress:
+        case Op::storeAddress:
+        case Op::atomicAddress:
             return ImmKind::pair;
         default:
             return ImmKind::none;
@@ -135,9 +138,11 @@ uint32_t operandCountOf(const Program& program, const Inst& inst) {
         case Op::image:
         case Op::imageStore:
             return inst.imm < program.imageOps.size() ? imageOperands(program.imageOps[inst.imm]).count : kNoIndex;
-        case Op::atomicBuffer: {
+        case Op::atomicBuffer:
+        case Op::atomicAddress: {
             const auto op = static_cast<AtomicOp>(immHigh(inst));
-            return op == AtomicOp::compareExchange ? 4 : op == AtomicOp::load ? 2 : 3;
+            const uint32_t place = inst.op == Op::atomicBuffer ? 2 : 1;
+            return place + (op == AtomicOp::compareExchange ? 2 : op == AtomicOp::load ? 0 : 1);
         }
         default:
             return opInfo(inst.op).operands;
@@ -158,11 +163,17 @@ uint32_t operandTypes(const Program& program, const Inst& inst, uint32_t index) 
         case Op::interpolateAtSample:
             return bit(Type::i32);
         case Op::storeBuffer:
-            return index < 2 ? bit(Type::i32) : kWords;
+            return index < 2 ? bit(Type::i32) : immHigh(inst) != 0 ? bit(Type::i32) : kWords;
+        case Op::loadAddress:
+            return bit(Type::i64);
+        case Op::storeAddress:
+            return index < 1 ? bit(Type::i64) : immLow(inst) != 4 ? bit(Type::i32) : kWords;
         case Op::storeLocal:
             return index < 1 ? bit(Type::i32) : kWords;
         case Op::atomicBuffer:
-            return index < 2 ? bit(Type::i32) : inst.type == Type::none ? kWords : bit(inst.type);
+            return index < 2 ? bit(Type::i32) : bit(inst.type);
+        case Op::atomicAddress:
+            return index < 1 ? bit(Type::i64) : bit(inst.type);
         case Op::packHalf:
         case Op::interpolateAtOffset:
             return bit(Type::f32);
@@ -229,6 +240,8 @@ uint32_t resultTypes(Op op) {
             return kInts | kFloats;
         case Op::makeWide:
             return kWide;
+        case Op::ftoh:
+        case Op::ftohZero:
         case Op::unpackHalfLow:
         case Op::unpackHalfHigh:
         case Op::quantizeF16:
@@ -238,6 +251,9 @@ uint32_t resultTypes(Op op) {
             return bit(Type::f32);
         case Op::isHelper:
             return bit(Type::b1);
+        case Op::atomicBuffer:
+        case Op::atomicAddress:
+            return kInts | kFloats;
         default:
             return kWords;
     }
@@ -252,7 +268,7 @@ bool hasSideEffect(const Program& program, const Inst& inst) {
 bool isMovable(const Program& program, const Inst& inst) {
     if (opInfo(inst.op).kind == 'P') return inst.op != Op::phi;
     if (inst.op == Op::bufferSize) return true;
-    return inst.op == Op::loadBuffer && program.resources[inst.imm].readOnly;
+    return inst.op == Op::loadBuffer && resourceOf(inst) != kNoIndex && program.resources[resourceOf(inst)].readOnly;
 }
 
 }  // namespace vernier::ir

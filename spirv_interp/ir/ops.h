@@ -19,7 +19,7 @@ enum class ImmKind : uint8_t {
     type,      // the ir::Type of the operands
     input,     // index into Program::inputs
     output,    // index into Program::outputs
-    resource,  // index into Program::resources
+    resource,  // index into Program::resources, or kNoIndex; high 32 bits: bytes of the access, 0 for a word
     imageOp,   // index into Program::imageOps
     pair,      // two 32-bit numbers, low and high
 };
@@ -33,6 +33,29 @@ inline uint32_t immHigh(const Inst& inst) {
 }
 inline uint64_t immPair(uint32_t low, uint32_t high) {
     return low | static_cast<uint64_t>(high) << 32;
+}
+
+/// The resource that a buffer instruction names; kNoIndex: its first operand is a buffer handle.
+inline uint32_t resourceOf(const Inst& inst) {
+    return immLow(inst);
+}
+
+/// A descriptor of any resource in one i32, for pointers that may point into one of several buffers.
+inline constexpr uint32_t kHandleDescriptorBits = 20;
+inline constexpr uint32_t bufferHandle(uint32_t resource, uint32_t descriptor) {
+    return resource << kHandleDescriptorBits | descriptor;
+}
+/// Points nowhere: no program has so many resources.
+inline constexpr uint32_t kNullHandle = ~0u;
+
+/// Memory that buffer instructions work on.
+constexpr bool isBuffer(ResourceKind kind) {
+    return kind == ResourceKind::uniformBuffer || kind == ResourceKind::storageBuffer ||
+           kind == ResourceKind::pushConstants || kind == ResourceKind::workgroupMemory;
+}
+
+constexpr bool isFloatAtomic(AtomicOp op) {
+    return op == AtomicOp::fadd || op == AtomicOp::fmin || op == AtomicOp::fmax;
 }
 
 /// The bits of a b1 constant that is true, as in a lane.

@@ -307,6 +307,12 @@ class Parser {
                 inst.imm = immPair(low, static_cast<uint32_t>(in.number(~0u)));
                 return;
             }
+            case ImmKind::resource: {
+                in.expect("#", "'#'");
+                const auto low = in.acceptWord("any") ? kNoIndex : static_cast<uint32_t>(in.number(~0u));
+                inst.imm = immPair(low, in.accept(":") ? static_cast<uint32_t>(in.number(~0u)) : 0);
+                return;
+            }
             default:
                 in.expect("#", "'#'");
                 inst.imm = in.number(~0u);

@@ -310,6 +310,13 @@ class Folder {
                     return rewrite(inst, Op::bitcast, {source}, static_cast<uint64_t>(from));
                 }
                 return;
+            case Op::ftoh:
+            case Op::ftohZero:
+                // Halves already.
+                for (const Op half : {Op::ftoh, Op::ftohZero, Op::unpackHalfLow, Op::unpackHalfHigh, Op::quantizeF16}) {
+                    if (definedBy(a, half) != nullptr) return replace(inst, a);
+                }
+                return;
             case Op::lowWord:
             case Op::highWord:
                 if (const Inst* wide = definedBy(a, Op::makeWide)) {

@@ -96,6 +96,10 @@ std::string printInst(const Program& program, const Block& block, const Inst& in
                 "." + (inst.imm <= static_cast<uint64_t>(Type::f64) ? std::string(typeName(static_cast<Type>(inst.imm)))
                                                                     : number(inst.imm));
             break;
+        case ImmKind::resource:
+            out += " #" + (immLow(inst) == kNoIndex ? "any" : number(immLow(inst)));
+            if (immHigh(inst) != 0) out += ":" + number(immHigh(inst));
+            break;
         case ImmKind::pair:
             out += " #" + number(immLow(inst)) + ":" + number(immHigh(inst));
             break;

@@ -196,8 +196,10 @@ class Verifier {
         if (inst.operandCount != count) {
             return failInst(b, i, std::to_string(inst.operandCount) + " operands instead of " + std::to_string(count));
         }
-        if (inst.op == Op::atomicBuffer) {
-            if (inst.type != Type::i32) return failInst(b, i, "the type is not i32");
+        if (inst.op == Op::atomicBuffer || inst.op == Op::atomicAddress) {
+            if (isFloatAtomic(static_cast<AtomicOp>(immHigh(inst))) ? !isFloat(inst.type) : !isInteger(inst.type)) {
+                return failInst(b, i, "the type does not fit the atomic operation");
+            }
         } else if ((resultTypes(inst.op) >> static_cast<uint32_t>(inst.type) & 1) == 0) {
             return failInst(b, i, "a result of type " + std::string(typeName(inst.type)));
         }
@@ -242,8 +244,13 @@ class Verifier {
             case ImmKind::output:
                 return inst.imm >= program_.outputs.size() ? "an output that does not exist" : nullptr;
             case ImmKind::resource: {
-                if (inst.imm >= program_.resources.size()) return "a resource that does not exist";
-                return badBuffer(program_.resources[inst.imm], inst.op == Op::storeBuffer);
+                if (immHigh(inst) > 2) return "an access of a width there is none of";
+                if (immHigh(inst) != 0 && inst.op == Op::loadBuffer && inst.type != Type::i32) {
+                    return "a part of a word that is no i32";
+                }
+                if (resourceOf(inst) == kNoIndex) return nullptr;
+                if (resourceOf(inst) >= program_.resources.size()) return "a resource that does not exist";
+                return badBuffer(program_.resources[resourceOf(inst)], inst.op == Op::storeBuffer);
             }
             case ImmKind::imageOp: {
                 if (inst.imm >= program_.imageOps.size()) return "an image operation that does not exist";
@@ -260,7 +267,8 @@ class Verifier {
         if (inst.imm < 1 || inst.imm > static_cast<uint64_t>(Type::f64)) return "the operand type is none";
         const auto type = static_cast<Type>(inst.imm);
         const bool floatCompare = inst.op >= Op::foeq && inst.op <= Op::fisinf;
-        const bool fromFloat = inst.op == Op::ftos || inst.op == Op::ftou || inst.op == Op::ftof;
+        const bool fromFloat = inst.op == Op::ftos || inst.op == Op::ftou || inst.op == Op::ftof ||
+                               inst.op == Op::ftoh || inst.op == Op::ftohZero;
         if (floatCompare || fromFloat || inst.op == Op::ffrexpExponent) {
             return isFloat(type) ? nullptr : "the operand type is not a float";
         }
@@ -297,9 +305,17 @@ class Verifier {
             case Op::loadLocal:
             case Op::storeLocal:
                 return immHigh(inst) == 0 || end > program_.localWords ? "outside the local memory" : nullptr;
+            case Op::loadAddress:
+            case Op::storeAddress:
+                if (immLow(inst) != 1 && immLow(inst) != 2 && immLow(inst) != 4) return "an access of another width";
+                if (immLow(inst) != 4 && inst.op == Op::loadAddress && inst.type != Type::i32) {
+                    return "a part of a word that is no i32";
+                }
+                return immHigh(inst) != 0 ? "an atomic operation where there is none" : nullptr;
             default:
-                if (immLow(inst) >= program_.resources.size()) return "a resource that does not exist";
-                if (immHigh(inst) > static_cast<uint32_t>(AtomicOp::store)) return "an unknown atomic operation";
+                if (immHigh(inst) > static_cast<uint32_t>(AtomicOp::fmax)) return "an unknown atomic operation";
+                if (inst.op == Op::atomicAddress || resourceOf(inst) == kNoIndex) return nullptr;
+                if (resourceOf(inst) >= program_.resources.size()) return "a resource that does not exist";
                 return badBuffer(program_.resources[immLow(inst)],
                                  static_cast<AtomicOp>(immHigh(inst)) != AtomicOp::load);
         }

@@ -164,6 +164,9 @@ uint32_t atomicResult(ir::AtomicOp op, uint32_t old, uint32_t value, uint32_t co
         case ir::AtomicOp::compareExchange:
             return old == comparator ? value : old;
         case ir::AtomicOp::load:
+        case ir::AtomicOp::fadd:  // floats are not tested here
+        case ir::AtomicOp::fmin:
+        case ir::AtomicOp::fmax:
             return old;
     }
     return 0;

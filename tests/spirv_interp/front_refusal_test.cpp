@@ -37,10 +37,6 @@ TEST(Refusal, NamesInstructionIdAndLine) {
                           "#extension GL_ARB_shader_clock : enable\n#extension GL_ARB_gpu_shader_int64 : enable\n"
                           "layout(location=0) out uint o;"),
               "SPIR-V: capability ShaderClockKHR is not supported");
-    EXPECT_EQ(
-        errorOfGlsl("int8_t x = int8_t(2); o = int(x);",
-                    "#extension GL_EXT_shader_explicit_arithmetic_types_int8 : enable\nlayout(location=0) out int o;"),
-        "SPIR-V: capability Int8 is not supported");
     const std::string gather =
         errorOfGlsl("o = texture(t, vec2(0));",
                     "layout(set=0,binding=0) uniform sampler2D t; layout(location=0) out vec4 o;", ir::Stage::vertex);

@@ -98,6 +98,13 @@ uint32_t* wordAt(std::vector<std::byte>& buffer, uint64_t offset) {
                                                           : nullptr;
 }
 
+/// The bytes of a load or store: how many, by the instruction.
+std::span<std::byte> bytesAt(std::vector<std::byte>& buffer, uint64_t offset, const ir::Inst& inst) {
+    const uint32_t count = ir::immHigh(inst) == 0 ? 4 : ir::immHigh(inst);
+    if (offset % count != 0 || offset + count > buffer.size()) return {};
+    return std::span(buffer).subspan(offset, count);
+}
+
 uint32_t atomicResult(ir::AtomicOp op, uint32_t old, uint32_t value, uint32_t comparator) {
     const auto s = [](uint32_t x) { return static_cast<int32_t>(x); };
     switch (op) {
@@ -126,6 +133,12 @@ uint32_t atomicResult(ir::AtomicOp op, uint32_t old, uint32_t value, uint32_t co
             return old == comparator ? value : old;
         case ir::AtomicOp::load:
             return old;
+        case ir::AtomicOp::fadd:
+            return std::bit_cast<uint32_t>(asFloat(old) + asFloat(value));
+        case ir::AtomicOp::fmin:
+            return std::bit_cast<uint32_t>(std::fmin(asFloat(old), asFloat(value)));
+        case ir::AtomicOp::fmax:
+            return std::bit_cast<uint32_t>(std::fmax(asFloat(old), asFloat(value)));
     }
     return old;
 }
@@ -227,15 +240,16 @@ bool Machine::run(const ir::Program& program) {
                     if (v[0] < ir::immHigh(inst)) local[ir::immLow(inst) + v[0]] = static_cast<uint32_t>(v[1]);
                     break;
                 case Op::loadBuffer: {
-                    const uint32_t* word = wordAt(buffers[inst.imm], v[1]);
-                    *result = word != nullptr ? *word : 0;
+                    const std::span<std::byte> bytes = bytesAt(buffers[ir::resourceOf(inst)], v[1], inst);
+                    *result = 0;
+                    if (!bytes.empty()) std::memcpy(result, bytes.data(), bytes.size());
                     break;
                 }
-                case Op::storeBuffer:
-                    if (uint32_t* word = wordAt(buffers[inst.imm], v[1]); word != nullptr && !demoted) {
-                        *word = static_cast<uint32_t>(v[2]);
-                    }
+                case Op::storeBuffer: {
+                    const std::span<std::byte> bytes = bytesAt(buffers[ir::resourceOf(inst)], v[1], inst);
+                    if (!bytes.empty() && !demoted) std::memcpy(bytes.data(), &v[2], bytes.size());
                     break;
+                }
                 case Op::bufferSize:
                     *result = buffers[inst.imm].size();
                     break;

@@ -265,6 +265,18 @@ uint64_t saturated(long double x) {
     return static_cast<U>(static_cast<I>(x));
 }
 
+/// By the definition: the multiple of the last bit's value that is nearest, or nearest towards zero.
+float halfNextTo(double x, bool towardsZero) {
+    if (x == 0 || !std::isfinite(x)) return static_cast<float>(x);
+    double unit = 0x1p-24;
+    while (std::fabs(x) >= unit * 2048) unit *= 2;
+    double units = std::floor(std::fabs(x) / unit);
+    const double rest = std::fabs(x) / unit - units;
+    if (!towardsZero && (rest > 0.5 || (rest == 0.5 && std::fmod(units, 2) == 1))) units += 1;
+    const double magnitude = units * unit;
+    return static_cast<float>(std::copysign(magnitude > 65504 ? (towardsZero ? 65504 : HUGE_VAL) : magnitude, x));
+}
+
 uint64_t conversion(Op op, Type result, Type operand, const std::vector<uint64_t>& v) {
     const uint64_t a = v[0];
     const auto asReal = [&] {
@@ -283,6 +295,9 @@ uint64_t conversion(Op op, Type result, Type operand, const std::vector<uint64_t
             return result == Type::f64 ? bitsOf(static_cast<double>(a)) : bitsOf(static_cast<float>(a));
         case Op::ftof:
             return result == Type::f64 ? bitsOf(asReal()) : bitsOf(static_cast<float>(asReal()));
+        case Op::ftoh:
+        case Op::ftohZero:
+            return bitsOf(halfNextTo(asReal(), op == Op::ftohZero));
         case Op::zext:
             return operand == Type::b1 ? a & 1 : a;
         case Op::sext:

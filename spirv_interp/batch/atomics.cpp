@@ -1,0 +1,216 @@
+// Atomics on buffers and on memory reached by its address, and plain accesses by address. Lanes work in order. No
+// address outside a buffer, or outside a range of device memory that the bindings know, is ever touched.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "spirv_interp/batch/atomics.cpp"
+#include "base/simd_targets.h"
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <atomic>
+
+#include "spirv_interp/batch/handlers.h"
+#include "spirv_interp/batch/memory-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vernier::batch::HWY_NAMESPACE {
+namespace {
+
+/// Replaces *word by change(*word) in one step; returns the old word.
+template <class U, class F>
+U exchangeBy(U* word, F&& change) {
+    std::atomic_ref target(*word);
+    U old = target.load(std::memory_order_relaxed);
+    while (!target.compare_exchange_weak(old, change(old), std::memory_order_acq_rel, std::memory_order_relaxed)) {
+    }
+    return old;
+}
+
+/// A word of an integer and of a float with as many bits.
+template <class U>
+struct Views;
+template <>
+struct Views<uint32_t> {
+    using Signed = int32_t;
+    using Float = float;
+};
+template <>
+struct Views<uint64_t> {
+    using Signed = int64_t;
+    using Float = double;
+};
+
+template <class U>
+U atomic(ir::AtomicOp operation, U* word, U value, U comparator) {
+    std::atomic_ref target(*word);
+    const auto asSigned = [](U x) { return static_cast<typename Views<U>::Signed>(x); };
+    const auto asFloat = [](U x) { return std::bit_cast<typename Views<U>::Float>(x); };
+    const auto isNan = [&](U x) { return asFloat(x) != asFloat(x); };
+    switch (operation) {
+        case ir::AtomicOp::add:
+            return target.fetch_add(value);
+        case ir::AtomicOp::sub:
+            return target.fetch_sub(value);
+        case ir::AtomicOp::iand:
+            return target.fetch_and(value);
+        case ir::AtomicOp::ior:
+            return target.fetch_or(value);
+        case ir::AtomicOp::ixor:
+            return target.fetch_xor(value);
+        case ir::AtomicOp::exchange:
+            return target.exchange(value);
+        case ir::AtomicOp::load:
+            return target.load();
+        case ir::AtomicOp::store:
+            target.store(value);
+            return 0;
+        case ir::AtomicOp::smin:
+            return exchangeBy(word, [&](U old) { return asSigned(old) < asSigned(value) ? old : value; });
+        case ir::AtomicOp::smax:
+            return exchangeBy(word, [&](U old) { return asSigned(old) > asSigned(value) ? old : value; });
+        case ir::AtomicOp::umin:
+            return exchangeBy(word, [&](U old) { return old < value ? old : value; });
+        case ir::AtomicOp::umax:
+            return exchangeBy(word, [&](U old) { return old > value ? old : value; });
+        case ir::AtomicOp::compareExchange:
+            target.compare_exchange_strong(comparator, value);
+            return comparator;
+        case ir::AtomicOp::fadd:
+            return exchangeBy(word, [&](U old) { return std::bit_cast<U>(asFloat(old) + asFloat(value)); });
+        // A NaN gives way to the other operand, as in fmin and fmax.
+        case ir::AtomicOp::fmin:
+            return exchangeBy(word, [&](U old) { return isNan(value) || asFloat(old) < asFloat(value) ? old : value; });
+        case ir::AtomicOp::fmax:
+            return exchangeBy(word, [&](U old) { return isNan(value) || asFloat(old) > asFloat(value) ? old : value; });
+    }
+    return 0;
+}
+
+/// Runs an atomic for the lanes whose effects count; find(lane) is the word or nullptr. The others get 0.
+template <class U, class Find>
+void runAtomic(const Frame& frame, uint32_t result, uint32_t operation, uint32_t value, uint32_t comparator,
+               Find&& find) {
+    for (uint32_t lane = 0; lane < frame.lanes; ++lane) writeLane<U>(frame, result, lane, 0);
+    effectLanes(frame).forEach([&](uint32_t lane) {
+        U* word = find(lane);
+        if (word == nullptr) return;
+        writeLane<U>(frame, result, lane,
+                     atomic<U>(static_cast<ir::AtomicOp>(operation), word, readLane<U>(frame, value, lane),
+                               readLane<U>(frame, comparator, lane)));
+    });
+}
+
+template <class U>
+const Inst* atomicBuffer(Frame& frame, const Inst* inst) {
+    const Inst& in = *inst;
+    const auto* descriptors = frame.row<uint32_t>(in[1]);
+    const auto* offsets = frame.row<uint32_t>(in[2]);
+    runAtomic<U>(frame, in[0], in[4], in[5], in[6],
+                 [&](uint32_t lane) { return elementAt<U>(bufferOf(frame, in[3], descriptors[lane]), offsets[lane]); });
+    return inst + instsFor(7);
+}
+
+/// Device memory by address; remembers the range of the last access, which most accesses share.
+class AddressSpace {
+  public:
+    explicit AddressSpace(const Frame& frame) : resolver_(frame.bindings->addresses) {}
+
+    /// The T at an address, which is aligned by dropping low bits; nullptr where there is no memory.
+    template <class T>
+    T* at(uint64_t address) {
+        address &= ~uint64_t{sizeof(T) - 1};
+        if (!holds(address, sizeof(T))) {
+            if (resolver_.find == nullptr) return nullptr;
+            range_ = resolver_.find(resolver_.self, address);
+            if (!holds(address, sizeof(T))) return nullptr;
+        }
+        return reinterpret_cast<T*>(range_.data + (address - range_.address));
+    }
+
+  private:
+    bool holds(uint64_t address, uint64_t bytes) const {
+        return range_.data != nullptr && address >= range_.address && range_.size >= bytes &&
+               address - range_.address <= range_.size - bytes;
+    }
+    AddressResolver resolver_;
+    AddressRange range_;
+};
+
+/// Calls run(T()) for the unsigned type of an access of that many bytes.
+template <class Run>
+void withWidth(uint32_t bytes, Run&& run) {
+    if (bytes == 1) {
+        run(uint8_t{});
+    } else if (bytes == 2) {
+        run(uint16_t{});
+    } else {
+        run(uint32_t{});
+    }
+}
+
+const Inst* loadAddress(Frame& frame, const Inst* inst) {
+    AddressSpace memory(frame);
+    auto* results = frame.row<uint32_t>(inst->operand[0]);
+    const LaneMask& active = frame.masks[kCurrentMask];
+    // Lanes that do not run hold any address: they ask for nothing.
+    spreadWord(frame, inst->operand[0], 0);
+    withWidth(inst->operand[2], [&](auto width) {
+        active.forEach([&](uint32_t lane) {
+            const auto* element = memory.at<decltype(width)>(readLane<uint64_t>(frame, inst->operand[1], lane));
+            results[lane] = element == nullptr ? 0 : *element;
+        });
+    });
+    return inst + 1;
+}
+
+const Inst* storeAddress(Frame& frame, const Inst* inst) {
+    AddressSpace memory(frame);
+    const auto* values = frame.row<uint32_t>(inst->operand[1]);
+    withWidth(inst->operand[2], [&](auto width) {
+        using T = decltype(width);
+        effectLanes(frame).forEach([&](uint32_t lane) {
+            T* element = memory.at<T>(readLane<uint64_t>(frame, inst->operand[0], lane));
+            if (element != nullptr) {
+                std::atomic_ref(*element).store(static_cast<T>(values[lane]), std::memory_order_relaxed);
+            }
+        });
+    });
+    return inst + 1;
+}
+
+template <class U>
+const Inst* atomicAddress(Frame& frame, const Inst* inst) {
+    const Inst& in = *inst;
+    AddressSpace memory(frame);
+    runAtomic<U>(frame, in[0], in[2], in[3], in[4],
+                 [&](uint32_t lane) { return memory.at<U>(readLane<uint64_t>(frame, in[1], lane)); });
+    return inst + instsFor(5);
+}
+
+}  // namespace
+
+void addAtomics(HandlerTable& table) {
+    const auto add = [&](Op op, Handler handler) { table[static_cast<size_t>(op)][0] = handler; };
+    add(Op::atomicBuffer, atomicBuffer<uint32_t>);
+    add(Op::atomicBuffer64, atomicBuffer<uint64_t>);
+    add(Op::loadAddress, loadAddress);
+    add(Op::storeAddress, storeAddress);
+    add(Op::atomicAddress, atomicAddress<uint32_t>);
+    add(Op::atomicAddress64, atomicAddress<uint64_t>);
+}
+
+}  // namespace vernier::batch::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vernier::batch {
+namespace {
+AddHandlers selectAtomics(Isa isa) {
+    VERNIER_SELECT_ISA(isa, addAtomics)
+}
+}  // namespace
+void addAtomics(Isa isa, HandlerTable& table) {
+    selectAtomics(isa)(table);
+}
+}  // namespace vernier::batch
+#endif
