@@ -62,7 +62,7 @@ struct ResourceBindings {
     const uint32_t* count = nullptr;  // by resource
     /// Finds the routine for an image and a sampler that come from two descriptors; called once per batch and pair.
     ImageBinding (*combine)(const ImageBinding& image, const void* sampler) = nullptr;
-    AddressResolver addresses;  // for physical storage buffers
+    AddressResolver addresses{};  // for physical storage buffers
 };
 
 }  // namespace vernier
