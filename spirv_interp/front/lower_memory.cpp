@@ -199,7 +199,7 @@ void Lowering::visitBuffer(const Pointer& pointer, uint32_t at, const Visit& vis
     const SpirvType& type = typeInfo(typeId);
     Pointer part = pointer;
     if (pointer.wordLayout) {
-        for (const ir::Type leaf : leafTypes(typeId)) {
+        for (const LeafType& leaf : leafTypes(typeId)) {
             visit(at, leaf);
             at += ir::isWide(leaf) ? 8 : 4;
         }

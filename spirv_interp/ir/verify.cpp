@@ -286,10 +286,7 @@ class Verifier {
     }
 
     static const char* badBuffer(const Resource& resource, bool written) {
-        const bool buffer =
-            resource.kind == ResourceKind::uniformBuffer || resource.kind == ResourceKind::storageBuffer ||
-            resource.kind == ResourceKind::pushConstants || resource.kind == ResourceKind::workgroupMemory;
-        if (!buffer) return "the resource is no buffer";
+        if (!isBuffer(resource.kind)) return "the resource is no buffer";
         if (!written) return nullptr;
         if (resource.kind != ResourceKind::storageBuffer && resource.kind != ResourceKind::workgroupMemory) {
             return "a store to a buffer that cannot be written";
