@@ -15,11 +15,10 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SSE4
-/// One lane-half of the fused multiply-add below. The product of two floats is exact in double (24 + 24 <= 53 bits);
-/// the sum is rounded to odd, after which rounding to float is correct (Boldo and Melquiond, "Emulation of FMA and
-/// correctly rounded sums: proved algorithms using rounding to odd", IEEE TC 57(4), 2008).
+/// x + y, rounded to odd: rounding that to float is correct (Boldo and Melquiond, "Emulation of FMA and correctly
+/// rounded sums: proved algorithms using rounding to odd", IEEE TC 57(4), 2008).
 template <class DD, class VD = hn::Vec<DD>>
-HWY_INLINE VD addRoundToOdd(DD dd, VD x, VD y) {
+HWY_NOINLINE VD addRoundToOdd(DD dd, VD x, VD y) {
     const hn::RebindToSigned<DD> di;
     const VD sum = hn::Add(x, y);
     // TwoSum (Knuth): the exact rounding error of the sum.
@@ -36,10 +35,25 @@ HWY_INLINE VD addRoundToOdd(DD dd, VD x, VD y) {
     const auto moved = hn::Add(bits, step);
     return hn::BitCast(dd, hn::IfThenElse(hn::And(even, inexact), moved, bits));
 }
+
+/// One half of the fused multiply-add below. The product of two floats is exact in double (24 + 24 <= 53 bits).
+/// Rounding the sum to double and then to float goes wrong only from the middle between two floats, which for normal
+/// floats is a pattern of the 29 bits that float lacks: only then, and for denormal floats, is the sum rounded to odd.
+template <class DD, class VD = hn::Vec<DD>>
+HWY_INLINE VD fusedHalf(DD dd, VD a, VD b, VD c) {
+    const hn::RebindToSigned<DD> di;
+    const VD product = hn::Mul(a, b);
+    const VD sum = hn::Add(product, c);
+    const auto lacking = hn::And(hn::BitCast(di, sum), hn::Set(di, 0x1FFFFFFF));
+    const auto middle = hn::RebindMask(dd, hn::Eq(lacking, hn::Set(di, 0x10000000)));
+    const auto small = hn::Lt(hn::Abs(sum), hn::Set(dd, 0x1p-126));
+    if (HWY_LIKELY(hn::AllFalse(dd, hn::Or(middle, small)))) return sum;
+    return addRoundToOdd(dd, product, c);
+}
 #endif
 
 /// a * b + c with one rounding, the same bits on every target. Float lanes only. On SSE4 (no FMA instruction) it is
-/// emulated exactly and slowly.
+/// emulated exactly, at several times the cost.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V fusedMulAdd(D d, V a, V b, V c) {
 #if HWY_TARGET == HWY_SSE4
@@ -47,8 +61,7 @@ HWY_INLINE V fusedMulAdd(D d, V a, V b, V c) {
     const hn::Half<D> dh;
     const hn::RepartitionToWide<D> dd;
     const auto half = [&](auto va, auto vb, auto vc) {
-        const auto product = hn::Mul(hn::PromoteTo(dd, va), hn::PromoteTo(dd, vb));
-        return hn::DemoteTo(dh, addRoundToOdd(dd, product, hn::PromoteTo(dd, vc)));
+        return hn::DemoteTo(dh, fusedHalf(dd, hn::PromoteTo(dd, va), hn::PromoteTo(dd, vb), hn::PromoteTo(dd, vc)));
     };
     const auto lower = half(hn::LowerHalf(dh, a), hn::LowerHalf(dh, b), hn::LowerHalf(dh, c));
     const auto upper = half(hn::UpperHalf(dh, a), hn::UpperHalf(dh, b), hn::UpperHalf(dh, c));

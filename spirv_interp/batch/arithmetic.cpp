@@ -61,7 +61,6 @@ VERNIER_ELEMENT(fsmoothstep, float, float, (V edge0, V edge1, V x),
                 const V t = clamped(hn::Div(hn::Sub(x, edge0), hn::Sub(edge1, edge0)), number(0.0f), number(1.0f));
                 return hn::Mul(hn::Mul(t, t), hn::Sub(number(3.0f), hn::Mul(number(2.0f), t)));)
 VERNIER_ELEMENT(fsqrt, float, float, (V a), return hn::Sqrt(a);)
-VERNIER_ELEMENT(finverseSqrt, float, float, (V a), return hn::Div(number(1.0f), hn::Sqrt(a));)
 
 VERNIER_ELEMENT(multiplyAdd, float, float, (V a, V b, V c), return hn::Add(hn::Mul(a, b), c);)
 VERNIER_ELEMENT(multiplySubtract, float, float, (V a, V b, V c), return hn::Sub(hn::Mul(a, b), c);)

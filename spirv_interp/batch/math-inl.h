@@ -1,13 +1,16 @@
-// Transcendental functions on vectors, written once for every tier and included once per SIMD target. Only +
-// - * / sqrt, rounding and bit operations, never fused, so that every instruction set gives the same bits.
-// What a lane gets depends on that lane alone.
+// Transcendental functions on vectors, written once for every tier and included once per SIMD target. Only
+// correctly rounded operations (+ - * / sqrt, fused multiply-add, rounding) and bit operations: every
+// instruction set gives the same bits. What a lane gets depends on that lane alone; where a whole vector needs
+// no special care a shorter way is taken that gives its lanes the same bits.
 //
-// A Tier names the lanes it computes in and its polynomials (math_coefficients.h):
-//   Fast      float lanes, short polynomials: about 2^-12 relative
-//   Standard  float lanes: well inside the precision table of the Vulkan specification ("Precision and
-//   Operation of SPIR-V
-//             Instructions")
-//   Fine      double lanes, rounded to float at the end
+// A Tier names the lanes it computes in and its polynomials (math_coefficients.h); docs/precision.md has the
+// errors measured.
+//   Fast       float lanes, short polynomials: about 2^-12 relative
+//   Standard   float lanes: well inside the precision table of the Vulkan specification ("Precision and
+//              Operation of SPIR-V Instructions")
+//   Fine       double lanes, polynomials good to 2^-28, rounded to float once: within 1 ULP
+//   Reference  double lanes, polynomials as good as doubles are: correctly rounded but for results within
+//              about 2^-25 ULP of the middle between two floats
 #if defined(VERNIER_BATCH_MATH_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef VERNIER_BATCH_MATH_INL_H
 #undef VERNIER_BATCH_MATH_INL_H
@@ -21,6 +24,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "base/simd-inl.h"
+#include "spirv_interp/batch/far_angle.h"
 #include "spirv_interp/batch/math_coefficients.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -30,38 +35,44 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 struct Fast : coefficients::Fast {
     using T = float;
+    static constexpr int kNewtonSteps = 1;  // of the inverse square root, before the last
 };
 struct Standard : coefficients::Standard {
     using T = float;
+    static constexpr int kNewtonSteps = 2;
 };
 struct Fine : coefficients::Fine {
     using T = double;
 };
+struct Reference : coefficients::Reference {
+    using T = double;
+};
 
-/// Constants of a lane type. The parts of pi/2 and ln 2 have so few bits that their products with the
-/// multiples that occur are exact (Cody and Waite, "Software Manual for the Elementary Functions", 1980).
+/// Constants of a lane type. pi and ln 2 are in parts: multiples of the first parts are exact, in double
+/// because the parts have few bits (Cody and Waite, "Software Manual for the Elementary Functions", 1980), in
+/// float because the multiplication is fused with a subtraction whose result fits.
 template <class T>
 struct Lane;
 template <>
 struct Lane<float> {
     using Bits = uint32_t;
     static constexpr int kMantissa = 23, kBias = 127;
-    static constexpr float kHalfPi[4] = {0x1.92p+0f, 0x1.fb4p-12f, 0x1.444p-24f, 0x1.68c234p-39f};
-    static constexpr float kReducible = 8192;  // up to here kHalfPi serves
-    static constexpr float kLn2[2] = {0x1.62e4p-1f, 0x1.7f7d1cp-20f};
+    static constexpr float kPi[3] = {0x1.921fb6p+1f, -0x1.777a5cp-24f, 0};  // 48 bits suffice for kNearAngle
+    static constexpr float kLn2[2] = {0x1.62e43p-1f, -0x1.05c61p-29f};
     static constexpr float kExp2Low = -160, kExp2High = 160, kExpLow = -111, kExpHigh = 111;
-    static constexpr float kLargest = 0x1p126f, kSmallest = 0x1p-126f;
+    static constexpr float kLargest = 0x1p126f;
 };
 template <>
 struct Lane<double> {
     using Bits = uint64_t;
     static constexpr int kMantissa = 52, kBias = 1023;
-    static constexpr double kHalfPi[4] = {0x1.921fbp+0, 0x1.5110bp-22, 0x1.18469898cc517p-44, 0.0};
-    static constexpr double kReducible = 0x1p31;
-    static constexpr double kLn2[2] = {0x1.62e42fee0p-1, 0x1.a39ef35793c76p-33};
-    static constexpr double kExp2Low = -1000, kExp2High = 1000, kExpLow = -700, kExpHigh = 700;
-    static constexpr double kLargest = 0x1p1022, kSmallest = 0x1p-1022;
+    static constexpr double kPi[3] = {0x1.921fb544p+1, 0x1.0b4611a8p-33, -0x1.d9cceba3f91f2p-65};
+    static constexpr double kLn2[2] = {0x1.62e42ffp-1, -0x1.718432a1b0e26p-35};
+    static constexpr double kExp2Low = -1000, kExp2High = 1000, kExpLow = -690, kExpHigh = 690;
+    static constexpr double kLargest = 0x1p1022;
 };
+/// Up to here the multiples of pi and pi / 2 have so few bits.
+inline constexpr float kNearAngle = 0x1p19f;
 
 template <class Tier>
 struct Functions {
@@ -72,6 +83,9 @@ struct Functions {
     using V = hn::Vec<DT>;
     using M = hn::Mask<DT>;
     using VBits = hn::Vec<DU>;
+    static constexpr bool kSingle = sizeof(T) == sizeof(float);
+    static constexpr typename L::Bits kInfinity = (typename L::Bits{2} * L::kBias + 1) << L::kMantissa;
+    static constexpr typename L::Bits kNaN = kInfinity | typename L::Bits{1} << (L::kMantissa - 1);
 
     static HWY_INLINE V set(T value) { return hn::Set(DT(), value); }
     static HWY_INLINE VBits bits(V v) { return hn::BitCast(DU(), v); }
@@ -80,91 +94,160 @@ struct Functions {
     static HWY_INLINE V choose(M mask, V yes, V no) { return hn::IfThenElse(mask, yes, no); }
     static HWY_INLINE V signOf(V v) { return hn::And(v, set(T{-0.0})); }
 
+    /// a * b + c: fused in float, in double (which has bits to spare) rounded twice.
+    static HWY_INLINE V mulAdd(V a, V b, V c) {
+        if constexpr (kSingle) {
+            return ::vernier::HWY_NAMESPACE::fusedMulAdd(DT(), a, b, c);
+        } else {
+            return hn::Add(hn::Mul(a, b), c);
+        }
+    }
     template <size_t kCount>
     static HWY_INLINE V polynomial(const T (&c)[kCount], V x) {
         V sum = set(c[kCount - 1]);
-        for (size_t k = kCount - 1; k-- > 0;) sum = hn::Add(hn::Mul(sum, x), set(c[k]));
+        for (size_t k = kCount - 1; k-- > 0;) sum = mulAdd(sum, x, set(c[k]));
         return sum;
     }
     /// x + x^3 p(x^2)
     template <size_t kCount>
     static HWY_INLINE V oddPolynomial(const T (&c)[kCount], V x) {
         const V z = hn::Mul(x, x);
-        return hn::Add(x, hn::Mul(hn::Mul(x, z), polynomial(c, z)));
+        return mulAdd(hn::Mul(x, z), polynomial(c, z), x);
     }
 
-    /// An integral number's low bits, in the low bits of the lane: adding 1.5 * 2^mantissa puts them there.
-    static HWY_INLINE VBits lowBits(V integral) {
-        return bits(hn::Add(integral, set(static_cast<T>(typename L::Bits{3} << (L::kMantissa - 1)))));
+    /// Adding this to a number rounds it to an integer n and leaves n in the low bits of the lane.
+    static constexpr T kRounder = static_cast<T>(typename L::Bits{3} << (L::kMantissa - 1));
+
+    /// v * 2^n for v in [1/2, 2] and the integer n of a rounder sum, where the result is a normal number.
+    static HWY_INLINE V scaleNormal(V v, V rounded) {
+        return number(hn::Add(bits(v), hn::ShiftLeft<L::kMantissa>(bits(rounded))));
     }
-    /// 2^n for integral n of a normal number.
-    static HWY_INLINE V powerOfTwo(V n) {
-        return number(hn::ShiftLeft<L::kMantissa>(lowBits(hn::Add(n, set(L::kBias)))));
-    }
-    /// v * 2^n: in two steps, so that denormals are rounded once and n may leave the range of normal numbers.
-    static HWY_INLINE V scale(V v, V n) {
-        const V half = hn::Floor(hn::Mul(n, set(T{0.5})));
-        return hn::Mul(hn::Mul(v, powerOfTwo(half)), powerOfTwo(hn::Sub(n, half)));
+    /// v * 2^n for any float result: in two steps, of which only the second can round.
+    static HWY_INLINE V scale(V v, V rounded) {
+        if constexpr (kSingle) {
+            const hn::RebindToSigned<DT> di;
+            const auto n = hn::Sub(hn::BitCast(di, rounded), hn::Set(di, std::bit_cast<int32_t>(kRounder)));
+            const auto half = hn::ShiftRight<1>(n);
+            const auto rest = hn::Add(hn::Sub(n, half), hn::Set(di, L::kBias));
+            const V first = hn::BitCast(DT(), hn::Add(hn::BitCast(di, v), hn::ShiftLeft<L::kMantissa>(half)));
+            return hn::Mul(first, hn::BitCast(DT(), hn::ShiftLeft<L::kMantissa>(rest)));
+        } else {
+            return scaleNormal(v, rounded);  // floats are never denormal as doubles
+        }
     }
     /// x86 minimum and maximum return their second operand when either is NaN: NaN comes through.
     static HWY_INLINE V between(V x, T low, T high) { return hn::Max(set(low), hn::Min(set(high), x)); }
 
-    static HWY_INLINE V exp2(V x) {
-        const V inside = between(x, L::kExp2Low, L::kExp2High);
-        const V n = hn::Round(inside);
-        const V f = hn::Sub(inside, n);
-        return scale(hn::Add(set(1), hn::Mul(f, polynomial(Tier::exp2, f))), n);
-    }
+    /// `value`, which bit operations made, or x where that is NaN.
+    static HWY_INLINE V orNaN(V x, V value) { return choose(hn::IsNaN(x), x, value); }
 
+    /// A number in [1/2, 2] and the power of two it is to be scaled by, as a rounder sum.
+    struct Power {
+        V value, rounded;
+    };
+    static HWY_INLINE Power power2(V x) {
+        const V rounded = hn::Add(x, set(kRounder));
+        const V f = hn::Sub(x, hn::Sub(rounded, set(kRounder)));
+        return {mulAdd(f, polynomial(Tier::exp2, f), set(1)), rounded};
+    }
+    static HWY_INLINE Power powerE(V x) {
+        const V rounded = mulAdd(x, set(static_cast<T>(0x1.71547652b82fep+0)), set(kRounder));
+        const V n = hn::Sub(rounded, set(kRounder));
+        const V r = mulAdd(n, set(-L::kLn2[1]), mulAdd(n, set(-L::kLn2[0]), x));
+        return {mulAdd(r, polynomial(Tier::exp, r), set(1)), rounded};
+    }
+    static HWY_INLINE bool allWithin(V x, T limit) { return hn::AllTrue(DT(), hn::Lt(hn::Abs(x), set(limit))); }
+    static HWY_INLINE V exp2(V x) {
+        if (allWithin(x, 125)) {
+            const Power p = power2(x);
+            return scaleNormal(p.value, p.rounded);
+        }
+        const Power p = power2(between(x, L::kExp2Low, L::kExp2High));
+        return orNaN(x, scale(p.value, p.rounded));
+    }
+    static HWY_INLINE V exp(V x) {
+        if (allWithin(x, 86)) {
+            const Power p = powerE(x);
+            return scaleNormal(p.value, p.rounded);
+        }
+        return expScaled(x, 0);
+    }
     /// e^x * 2^shift
     static HWY_INLINE V expScaled(V x, T shift) {
-        const V inside = between(x, L::kExpLow, L::kExpHigh);
-        const V n = hn::Round(hn::Mul(inside, set(T{0x1.71547652b82fep+0})));
-        const V r = hn::Sub(hn::Sub(inside, hn::Mul(n, set(L::kLn2[0]))), hn::Mul(n, set(L::kLn2[1])));
-        const V tail = hn::Mul(hn::Mul(r, r), polynomial(Tier::exp, r));
-        return scale(hn::Add(set(1), hn::Add(r, tail)), hn::Add(n, set(shift)));
+        const Power p = powerE(between(x, L::kExpLow, L::kExpHigh));
+        return orNaN(x, scale(p.value, hn::Add(p.rounded, set(shift))));
     }
-    static HWY_INLINE V exp(V x) { return expScaled(x, 0); }
 
-    /// x = 2^exponent * mantissa with the mantissa in [sqrt(1/2), sqrt(2)); s = (mantissa - 1) / (mantissa +
-    /// 1), and log(mantissa) = 2 atanh(s) = 2 s + 2 s^3 logarithm(s^2).
+    /// x = 2^exponent * (1 + t) with 1 + t in [sqrt(1/2), sqrt(2)).
     struct Logarithm {
-        V exponent, s;
-        HWY_INLINE V ofMantissa() const {
-            const V twice = hn::Add(s, s), z = hn::Mul(s, s);
-            return hn::Add(twice, hn::Mul(hn::Mul(twice, z), polynomial(Tier::logarithm, z)));
-        }
+        V exponent, t;
     };
     static HWY_INLINE Logarithm split(V x) {
-        const M denormal = hn::Lt(x, set(L::kSmallest));
-        const T up = static_cast<T>(typename L::Bits{1} << (L::kMantissa + 1));
-        const V normal = choose(denormal, hn::Mul(x, set(up)), x);
-        constexpr auto kRootHalf = std::bit_cast<typename L::Bits>(static_cast<T>(0x1.6a09e667f3bcdp-1));
-        constexpr auto kOne = std::bit_cast<typename L::Bits>(T{1});
-        constexpr auto kMantissaBits = (typename L::Bits{1} << L::kMantissa) - 1;
-        const VBits moved = hn::Add(bits(normal), setBits(kOne - kRootHalf));
-        const V mantissa = number(hn::Add(hn::And(moved, setBits(kMantissaBits)), setBits(kRootHalf)));
-        // The biased exponent becomes a number by standing in the low mantissa bits of 2^mantissa.
-        const T base = static_cast<T>(typename L::Bits{1} << L::kMantissa);
-        const V biased = hn::Sub(number(hn::Or(hn::ShiftRight<L::kMantissa>(moved), bits(set(base)))), set(base));
-        const V bias = choose(denormal, set(T{L::kBias + L::kMantissa + 1}), set(T{L::kBias}));
-        return {hn::Sub(biased, bias), hn::Div(hn::Sub(mantissa, set(1)), hn::Add(mantissa, set(1)))};
+        const hn::RebindToSigned<DT> di;
+        using I = hn::TFromD<decltype(di)>;
+        constexpr auto kRootHalf = std::bit_cast<I>(static_cast<T>(0x1.6a09e667f3bcdp-1));
+        const auto all = hn::BitCast(di, x);
+        // The exponent above that of sqrt(1/2), which is -1.
+        const auto above = hn::ShiftRight<L::kMantissa>(hn::Sub(all, hn::Set(di, kRootHalf)));
+        const V mantissa = hn::BitCast(DT(), hn::Sub(all, hn::ShiftLeft<L::kMantissa>(above)));
+        V exponent;
+        if constexpr (kSingle) {
+            exponent = hn::ConvertTo(DT(), above);
+        } else {
+            // Not every instruction set converts 64-bit integers: the rounder's low bits do.
+            exponent =
+                hn::Sub(hn::BitCast(DT(), hn::Add(above, hn::Set(di, std::bit_cast<I>(kRounder)))), set(kRounder));
+        }
+        return {exponent, hn::Sub(mantissa, set(1))};
     }
-    /// The logarithm's value outside (0, inf).
-    static HWY_INLINE V logLimits(V x, V inside) {
-        const V inf = set(std::numeric_limits<T>::infinity());
+    /// log(1 + t), by the series of 2 atanh(s) with s = t / (2 + t). In double only.
+    static HWY_INLINE V logOfMantissa(V t) {
+        const V s = hn::Div(t, hn::Add(t, set(2)));
+        const V twice = hn::Add(s, s), z = hn::Mul(s, s);
+        return mulAdd(hn::Mul(twice, z), polynomial(Tier::logarithm, z), twice);
+    }
+    static HWY_INLINE V log2Normal(V x) {
+        const Logarithm l = split(x);
+        if constexpr (kSingle) {
+            return mulAdd(l.t, polynomial(Tier::log2, l.t), l.exponent);
+        } else {
+            return mulAdd(logOfMantissa(l.t), set(0x1.71547652b82fep+0), l.exponent);
+        }
+    }
+    static HWY_INLINE V logNormal(V x) {
+        const Logarithm l = split(x);
+        V mantissa;
+        if constexpr (kSingle) {
+            mantissa = mulAdd(hn::Mul(l.t, l.t), polynomial(Tier::log, l.t), l.t);
+        } else {
+            mantissa = logOfMantissa(l.t);
+        }
+        return mulAdd(l.exponent, set(L::kLn2[0]), mulAdd(l.exponent, set(L::kLn2[1]), mantissa));
+    }
+    /// Positive normal numbers.
+    static HWY_INLINE M usual(V x) {
+        constexpr typename L::Bits kLowest = typename L::Bits{1} << L::kMantissa;
+        return hn::And(hn::Ge(x, number(setBits(kLowest))), hn::Lt(x, number(setBits(kInfinity))));
+    }
+    /// `normal` of positive normal numbers, and the logarithm to the base with the given logarithm of 2^24
+    /// elsewhere.
+    template <class F>
+    static HWY_INLINE V logarithm(V x, T ofUp, F&& normal) {
+        const M common = usual(x);
+        if (HWY_LIKELY(hn::AllTrue(DT(), common))) return normal(x);
+        const M denormal = hn::AndNot(common, hn::Gt(x, set(0)));
+        V inside = normal(choose(denormal, hn::Mul(x, set(0x1p24f)), x));
+        if constexpr (kSingle) inside = choose(denormal, hn::Sub(inside, set(ofUp)), inside);
+        const V inf = number(setBits(kInfinity));
         const V upper = choose(hn::Lt(x, inf), inside, x);  // inf and NaN
         const V below = choose(hn::Lt(x, set(0)), number(setBits(kNaN)), upper);
         return choose(hn::Eq(x, set(0)), hn::Neg(inf), below);
     }
     static HWY_INLINE V log2(V x) {
-        const Logarithm l = split(x);
-        return logLimits(x, hn::Add(l.exponent, hn::Mul(l.ofMantissa(), set(T{0x1.71547652b82fep+0}))));
+        return logarithm(x, 24, [](V v) HWY_ATTR { return log2Normal(v); });
     }
     static HWY_INLINE V log(V x) {
-        const Logarithm l = split(x);
-        const V low = hn::Add(l.ofMantissa(), hn::Mul(l.exponent, set(L::kLn2[1])));
-        return logLimits(x, hn::Add(hn::Mul(l.exponent, set(L::kLn2[0])), low));
+        return logarithm(x, static_cast<T>(0x1.0a2b23f3bab73p+4), [](V v) HWY_ATTR { return logNormal(v); });
     }
 
     /// exp2(y log2 x), with 1 for y = 0 and for x = 1; NaN for x < 0.
@@ -174,79 +257,78 @@ struct Functions {
         return choose(one, set(1), power);
     }
 
-    /// An angle less its nearest multiple of pi/2, and the multiple's low bits.
-    struct Angle {
-        V rest;
-        VBits quadrant;
-    };
-    static HWY_INLINE V lessHalfPis(V x, V n) {
-        V rest = hn::Sub(x, hn::Mul(n, set(L::kHalfPi[0])));
-        rest = hn::Sub(rest, hn::Mul(n, set(L::kHalfPi[1])));
-        rest = hn::Sub(rest, hn::Mul(n, set(L::kHalfPi[2])));
-        if constexpr (L::kHalfPi[3] != 0) rest = hn::Sub(rest, hn::Mul(n, set(L::kHalfPi[3])));
-        return rest;
-    }
-    static HWY_INLINE Angle reduce(V x) {
-        const M far = hn::Gt(hn::Abs(x), set(L::kReducible));
-        const V near = hn::IfThenZeroElse(far, x);
-        V n = hn::Round(hn::Mul(near, set(T{0x1.45f306dc9c883p-1})));
-        V rest = lessHalfPis(near, n);
-        if (!hn::AllFalse(DT(), far)) {
-            if constexpr (sizeof(T) == 4) {
-                // Lanes of their own in double: which lanes share a vector does not matter.
-                using Wide = Functions<Fine>;
-                const hn::Half<DT> half;
-                const auto lower = Wide::reduceFar(hn::PromoteTo(typename Wide::DT(), hn::LowerHalf(half, x)));
-                const auto upper = Wide::reduceFar(hn::PromoteTo(typename Wide::DT(), hn::UpperHalf(half, x)));
-                rest = choose(far, hn::Combine(DT(), hn::DemoteTo(half, upper.rest), hn::DemoteTo(half, lower.rest)),
-                              rest);
-                n = choose(far, hn::Combine(DT(), hn::DemoteTo(half, upper.turns), hn::DemoteTo(half, lower.turns)), n);
-            } else {
-                rest = choose(far, hn::Mul(x, set(0)), rest);
+    /// 1 / sqrt(x). In float from an estimate made of the exponent and mantissa bits, and Newton's iteration; the
+    /// last step has a fused residual, which leaves an error of about 1 ULP.
+    static HWY_INLINE V inverseSqrt(V x) {
+        if constexpr (kSingle) {
+            V y = number(hn::Sub(setBits(0x5F375A86), hn::ShiftRight<1>(bits(x))));
+            const V half = hn::Mul(x, set(0.5f));
+            for (int k = 0; k < Tier::kNewtonSteps; ++k) {
+                y = hn::Mul(y, hn::Sub(set(1.5f), hn::Mul(hn::Mul(half, y), y)));
             }
+            y = mulAdd(hn::Mul(y, set(0.5f)), mulAdd(hn::Neg(hn::Mul(x, y)), y, set(1)), y);
+            const M common = usual(x);
+            if (HWY_LIKELY(hn::AllTrue(DT(), common))) return y;
+            return choose(common, y, hn::Div(set(1), hn::Sqrt(x)));
+        } else {
+            return hn::Div(set(1), hn::Sqrt(x));
         }
-        return {rest, lowBits(n)};
     }
-    struct FarAngle {
-        V rest, turns;  // turns: multiples of pi/2, in [0, 4)
+
+    /// An angle less its nearest multiple of a step, and the multiple's lowest bit as a sign.
+    struct Angle {
+        V rest, sign;
     };
-    /// Angles up to 2^31; beyond, where neighbouring floats are many turns apart, every angle counts as 0
-    /// (and an infinite one as NaN).
-    static HWY_INLINE FarAngle reduceFar(V x) {
-        const V known = choose(hn::Gt(hn::Abs(x), set(L::kReducible)), hn::Mul(x, set(0)), x);
-        const V n = hn::Round(hn::Mul(known, set(T{0x1.45f306dc9c883p-1})));
-        const V turns = hn::Sub(n, hn::Mul(hn::Floor(hn::Mul(n, set(T{0.25}))), set(T{4})));
-        return {lessHalfPis(known, n), turns};
+    static HWY_INLINE V lessMultiple(V x, V n, T scale) {
+        V rest = mulAdd(n, set(-L::kPi[0] * scale), x);
+        rest = mulAdd(n, set(-L::kPi[1] * scale), rest);
+        return kSingle ? rest : mulAdd(n, set(-L::kPi[2] * scale), rest);
     }
-    struct SineCosine {
-        V sine, cosine;
-    };
-    static HWY_INLINE SineCosine kernels(V r) {
-        const V z = hn::Mul(r, r);
-        const V cosine =
-            hn::Add(hn::Sub(set(1), hn::Mul(z, set(T{0.5}))), hn::Mul(hn::Mul(z, z), polynomial(Tier::cosine, z)));
-        return {oddPolynomial(Tier::sine, r), cosine};
+    static HWY_INLINE V oddSign(V rounded) { return number(hn::ShiftLeft<sizeof(T) * 8 - 1>(bits(rounded))); }
+    /// Puts lanes beyond kNearAngle right, which are rare, with `reduceFar(float)`; infinite ones become NaN.
+    template <class F>
+    static HWY_INLINE Angle withFar(V x, Angle near, F&& reduceFar) {
+        const M far = hn::Gt(hn::Abs(x), set(kNearAngle));
+        if (HWY_LIKELY(hn::AllFalse(DT(), far))) return near;
+        constexpr size_t kCapacity = 64 / sizeof(T);
+        alignas(64) T angle[kCapacity], rest[kCapacity], sign[kCapacity];
+        hn::Store(x, DT(), angle);
+        for (size_t lane = 0; lane < hn::Lanes(DT()); ++lane) {
+            const auto single = static_cast<float>(angle[lane]);
+            const bool isFar = single - single == 0 && (single > kNearAngle || single < -kNearAngle);
+            const FarAngle reduced = isFar ? reduceFar(single) : FarAngle{};
+            rest[lane] = isFar ? static_cast<T>(reduced.rest) : std::numeric_limits<T>::quiet_NaN();
+            sign[lane] = reduced.odd ? T{-0.0} : T{0};
+        }
+        return {choose(far, hn::Load(DT(), rest), near.rest), choose(far, hn::Load(DT(), sign), near.sign)};
     }
-    static HWY_INLINE M isOdd(VBits quadrant) {
-        return hn::RebindMask(DT(), hn::Ne(hn::And(quadrant, setBits(1)), setBits(0)));
+    static HWY_INLINE V sineOf(Angle angle) {
+        const V z = hn::Mul(angle.rest, angle.rest);
+        const V sine = hn::Mul(angle.rest, mulAdd(z, polynomial(Tier::sine, z), set(1)));
+        return hn::Xor(between(sine, -1, 1), signOf(angle.sign));
     }
-    /// The sine `quarters` quarter turns on.
-    static HWY_INLINE V turned(V x, typename L::Bits quarters) {
-        const Angle angle = reduce(x);
-        const SineCosine k = kernels(angle.rest);
-        const VBits quadrant = hn::Add(angle.quadrant, setBits(quarters));
-        const V value = choose(isOdd(quadrant), k.cosine, k.sine);
-        const VBits sign = hn::ShiftLeft < L::kMantissa == 23 ? 30 : 62 > (hn::And(quadrant, setBits(2)));
-        return hn::Xor(value, number(sign));
+    static HWY_INLINE V sin(V x) {
+        const V rounded = mulAdd(x, set(static_cast<T>(0x1.45f306dc9c883p-2)), set(kRounder));
+        const V n = hn::Sub(rounded, set(kRounder));
+        return sineOf(
+            withFar(x, {lessMultiple(x, n, 1), oddSign(rounded)}, [](float far) { return lessHalfTurns(far, false); }));
     }
-    static HWY_INLINE V sin(V x) { return turned(x, 0); }
-    static HWY_INLINE V cos(V x) { return turned(x, 1); }
+    /// The sine a quarter turn on: x = (n - 1/2) pi + rest.
+    static HWY_INLINE V cos(V x) {
+        const V turns = mulAdd(x, set(static_cast<T>(0x1.45f306dc9c883p-2)), set(T{0.5}));
+        const V rounded = hn::Add(turns, set(kRounder));
+        const V n = hn::Sub(hn::Sub(rounded, set(kRounder)), set(T{0.5}));
+        return sineOf(
+            withFar(x, {lessMultiple(x, n, 1), oddSign(rounded)}, [](float far) { return lessHalfTurns(far, true); }));
+    }
     static HWY_INLINE V tan(V x) {
-        const Angle angle = reduce(x);
-        const SineCosine k = kernels(angle.rest);
-        const M odd = isOdd(angle.quadrant);
-        const V quotient = hn::Div(choose(odd, k.cosine, k.sine), choose(odd, k.sine, k.cosine));
-        return hn::Xor(quotient, hn::IfThenElseZero(odd, set(T{-0.0})));
+        const V rounded = mulAdd(x, set(static_cast<T>(0x1.45f306dc9c883p-1)), set(kRounder));
+        const V n = hn::Sub(rounded, set(kRounder));
+        const Angle angle =
+            withFar(x, {lessMultiple(x, n, T{0.5}), oddSign(rounded)}, [](float far) { return lessQuarterTurns(far); });
+        const V direct = oddPolynomial(Tier::tangent, angle.rest);
+        const M odd = hn::RebindMask(DT(), hn::Ne(bits(signOf(angle.sign)), setBits(0)));
+        return choose(odd, hn::Div(set(-1), direct), direct);
     }
 
     /// asin of |x| <= 1/2, or of sqrt((1 - |x|) / 2) above: asin(x) = pi/2 - 2 asin(sqrt((1 - x) / 2)).
@@ -366,10 +448,6 @@ struct Functions {
         const V value = hn::Mul(log1p(ratio), set(T{0.5}));
         return hn::Or(choose(hn::Gt(a, set(1)), number(setBits(kNaN)), value), signOf(x));
     }
-
-  private:
-    static constexpr typename L::Bits kNaN =
-        ((typename L::Bits{2} * L::kBias + 1) << L::kMantissa) | typename L::Bits{1} << (L::kMantissa - 1);
 };
 
 }  // namespace vernier::batch::HWY_NAMESPACE::math

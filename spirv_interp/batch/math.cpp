@@ -66,6 +66,7 @@ VERNIER_MATH(fexp2, exp2)
 VERNIER_MATH(flog, log)
 VERNIER_MATH(flog2, log2)
 VERNIER_MATH(fpow, pow)
+VERNIER_MATH(finverseSqrt, inverseSqrt)
 }  // namespace function
 #undef VERNIER_MATH
 
@@ -87,6 +88,9 @@ void addStandardMath(HandlerTable& table) {
 void addFineMath(HandlerTable& table) {
     addTier<math::Fine>(table);
 }
+void addReferenceMath(HandlerTable& table) {
+    addTier<math::Reference>(table);
+}
 
 }  // namespace vernier::batch::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -95,8 +99,9 @@ HWY_AFTER_NAMESPACE();
 namespace vernier::batch {
 namespace {
 AddHandlers selectFast(Isa isa){VERNIER_SELECT_ISA(isa, addFastMath)} AddHandlers
-    selectStandard(Isa isa){VERNIER_SELECT_ISA(isa, addStandardMath)} AddHandlers selectFine(Isa isa) {
-    VERNIER_SELECT_ISA(isa, addFineMath)
+    selectStandard(Isa isa){VERNIER_SELECT_ISA(isa, addStandardMath)} AddHandlers
+    selectFine(Isa isa){VERNIER_SELECT_ISA(isa, addFineMath)} AddHandlers selectReference(Isa isa) {
+    VERNIER_SELECT_ISA(isa, addReferenceMath)
 }
 }  // namespace
 
@@ -107,8 +112,9 @@ void addMath(Isa isa, MathTier tier, HandlerTable& table) {
         case MathTier::standard:
             return selectStandard(isa)(table);
         case MathTier::fine:
-        case MathTier::reference:
             return selectFine(isa)(table);
+        case MathTier::reference:
+            return selectReference(isa)(table);
     }
 }
 }  // namespace vernier::batch

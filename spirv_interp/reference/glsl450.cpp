@@ -46,7 +46,7 @@ W smoothStep(const W& edge0, const W& edge1, const W& x) {
 }
 
 bool isElementary(uint32_t function) {
-    return (function >= GLSLstd450Sin && function <= GLSLstd450Log2);
+    return (function >= GLSLstd450Sin && function <= GLSLstd450Log2) || function == GLSLstd450InverseSqrt;
 }
 
 /// x - floor(x) rounds up to 1 just below an integer.

@@ -114,7 +114,14 @@ bool Machine<Number>::glslGeometricIn(const Instruction& i, uint32_t function) {
         case GLSLstd450Normalize: {
             Vector<W> x = argument(0);
             if (x.size() == 1) return finish({x[0] > W(0) ? W(1) : x[0] < W(0) ? W(-1) : W(0)});
-            const W norm = length(x), reciprocal = W(1) / norm;
+            const W norm = length(x);
+            W reciprocal = W(1) / norm;
+            if constexpr (std::is_floating_point_v<W>) {
+                if (program_.options.elementary != nullptr && module_.scalarType(resultType(i)).width == 32) {
+                    const W square = dot(x, x);
+                    reciprocal = program_.options.elementary->evaluate(GLSLstd450InverseSqrt, toFloat32(square), 0);
+                }
+            }
             for (W& component : x) component = stepwise ? W(component * reciprocal) : W(component / norm);
             return finish(x);
         }

@@ -166,7 +166,7 @@ struct Outcome {
 };
 
 /// Stands in for the functions whose accuracy an implementation chooses: the trigonometric, hyperbolic, exponential
-/// and logarithmic ones of GLSL.std.450 on 32-bit floats.
+/// and logarithmic ones of GLSL.std.450 and InverseSqrt (Normalize's too) on 32-bit floats.
 class ElementaryFunctions {
   public:
     virtual ~ElementaryFunctions() = default;
@@ -185,7 +185,7 @@ struct Options {
     ///   Fract: min(x - floor(x), the largest number below 1)   Radians, Degrees: x * constant
     ///   Length: sqrt(dot(x, x)), of a scalar |x|               Distance: Length(x - y)
     ///   Normalize: x * InverseSqrt(dot(x, x)), of a scalar sign(x)
-    ///   InverseSqrt: 1 / sqrt(x)                               FMix: x * (1 - a) + y * a
+    ///   InverseSqrt: 1 / sqrt(x), if not `elementary`          FMix: x * (1 - a) + y * a
     ///   SmoothStep: t * t * (3 - 2 * t) with t = clamp((x - e0) / (e1 - e0), 0, 1)
     ///   Refract: eta * I - (eta * d + sqrt(k)) * N, k = 1 - eta * eta * (1 - d * d), d = dot(N, I)
     ///   Determinant: expanded along the first column           MatrixInverse: cofactors times 1 / determinant

@@ -35,12 +35,25 @@ class TierFunctions final : public reference::ElementaryFunctions {
   private:
     std::shared_ptr<const BatchProgram> compile(uint32_t function, bool two) const {
         constexpr std::pair<GLSLstd450, ir::Op> kOps[] = {
-            {GLSLstd450Sin, ir::Op::fsin},     {GLSLstd450Cos, ir::Op::fcos},     {GLSLstd450Tan, ir::Op::ftan},
-            {GLSLstd450Asin, ir::Op::fasin},   {GLSLstd450Acos, ir::Op::facos},   {GLSLstd450Atan, ir::Op::fatan},
-            {GLSLstd450Sinh, ir::Op::fsinh},   {GLSLstd450Cosh, ir::Op::fcosh},   {GLSLstd450Tanh, ir::Op::ftanh},
-            {GLSLstd450Asinh, ir::Op::fasinh}, {GLSLstd450Acosh, ir::Op::facosh}, {GLSLstd450Atanh, ir::Op::fatanh},
-            {GLSLstd450Atan2, ir::Op::fatan2}, {GLSLstd450Pow, ir::Op::fpow},     {GLSLstd450Exp, ir::Op::fexp},
-            {GLSLstd450Log, ir::Op::flog},     {GLSLstd450Exp2, ir::Op::fexp2},   {GLSLstd450Log2, ir::Op::flog2},
+            {GLSLstd450Sin, ir::Op::fsin},
+            {GLSLstd450Cos, ir::Op::fcos},
+            {GLSLstd450Tan, ir::Op::ftan},
+            {GLSLstd450Asin, ir::Op::fasin},
+            {GLSLstd450Acos, ir::Op::facos},
+            {GLSLstd450Atan, ir::Op::fatan},
+            {GLSLstd450Sinh, ir::Op::fsinh},
+            {GLSLstd450Cosh, ir::Op::fcosh},
+            {GLSLstd450Tanh, ir::Op::ftanh},
+            {GLSLstd450Asinh, ir::Op::fasinh},
+            {GLSLstd450Acosh, ir::Op::facosh},
+            {GLSLstd450Atanh, ir::Op::fatanh},
+            {GLSLstd450Atan2, ir::Op::fatan2},
+            {GLSLstd450Pow, ir::Op::fpow},
+            {GLSLstd450Exp, ir::Op::fexp},
+            {GLSLstd450Log, ir::Op::flog},
+            {GLSLstd450Exp2, ir::Op::fexp2},
+            {GLSLstd450Log2, ir::Op::flog2},
+            {GLSLstd450InverseSqrt, ir::Op::finverseSqrt},
         };
         ir::Op op = ir::Op::undef;
         for (const auto& [number, operation] : kOps)
@@ -123,11 +136,13 @@ class ReferenceRun final : public reference::Resources<Number> {
         for (const SpecConstant& s : subject_.specialization) specialization[s.id] = s.value;
         const auto module = reference::Module::parse(subject_.words, specialization);
         if (!module) return failed(module.error().message);
-        static const TierFunctions kFast(MathTier::fast), kStandard(MathTier::standard), kFine(MathTier::fine);
+        static const std::array<TierFunctions, 4> kByTier{
+            TierFunctions(MathTier::fast), TierFunctions(MathTier::standard), TierFunctions(MathTier::fine),
+            TierFunctions(MathTier::reference)};
         reference::Options options;
         options.roundToFloat = true;
         options.stepwise = true;
-        options.elementary = tier_ == MathTier::fast ? &kFast : tier_ == MathTier::standard ? &kStandard : &kFine;
+        options.elementary = &kByTier[static_cast<size_t>(tier_)];
         options.stepBudget = 1u << 27;
         const auto model =
             subject_.stage == ir::Stage::vertex ? spv::ExecutionModelVertex : spv::ExecutionModelFragment;

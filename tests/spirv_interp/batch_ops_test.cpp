@@ -149,6 +149,7 @@ std::vector<OpCase> casesOf(Op op) {
     const uint32_t count = ir::opInfo(op).operands;
     for (const Type result : kTypes) {
         if ((ir::resultTypes(op) >> static_cast<int>(result) & 1) == 0) continue;
+        if (op == Op::finverseSqrt && result == Type::f32) continue;  // follows the tier: batch_math_test
         for (const Type first : kTypes) {
             const bool typed = ir::immKind(op) == ir::ImmKind::type;
             if (!typed && first != kTypes[0]) break;
