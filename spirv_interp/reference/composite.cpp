@@ -87,7 +87,12 @@ bool Machine<Number>::executeComposite(const Instruction& i) {
         case spv::OpSelect: {
             const Scalars<Number>& condition = data(i.operand(0));
             if (condition.size() == 1) {
-                Value<Number> v = value(i.operand(condition[0].bits != 0 ? 1 : 2));
+                const Id chosen = i.operand(condition[0].bits != 0 ? 1 : 2);
+                Value<Number> v;
+                if (module_.info(chosen).kind == IdKind::variable)
+                    v.pointer = pointer(chosen);
+                else
+                    v = value(chosen);
                 setValue(i, std::move(v));
                 return true;
             }

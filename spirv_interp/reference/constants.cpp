@@ -15,8 +15,9 @@ ConstantScalar scalarFromBits(const Type& type, uint64_t bits) {
     bits &= widthMask(type.width);
     switch (type.kind) {
         case TypeKind::floating:
-            return {type.width == 64 ? std::bit_cast<double>(bits)
-                                     : static_cast<double>(std::bit_cast<float>(static_cast<uint32_t>(bits))),
+            return {type.width == 64   ? std::bit_cast<double>(bits)
+                    : type.width == 16 ? static_cast<double>(halfToFloat32(static_cast<uint32_t>(bits)))
+                                       : static_cast<double>(std::bit_cast<float>(static_cast<uint32_t>(bits))),
                     0};
         case TypeKind::integer:
             return {0, bits};
@@ -149,8 +150,10 @@ class ConstantParser {
                     scalars.push_back({0, static_cast<uint64_t>(asSigned(x.bits, from.width)) & widthMask(to.width)});
                     continue;
                 case spv::OpFConvert:
-                    scalars.push_back(
-                        {to.width == 32 ? static_cast<double>(static_cast<float>(x.number)) : x.number, 0});
+                    scalars.push_back({to.width == 64   ? x.number
+                                       : to.width == 32 ? static_cast<double>(static_cast<float>(x.number))
+                                                        : halfToFloat32(doubleToHalf(x.number)),
+                                       0});
                     continue;
                 case spv::OpQuantizeToF16:
                     scalars.push_back({halfToFloat32(float32ToHalf(static_cast<float>(x.number))), 0});

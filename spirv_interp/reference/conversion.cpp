@@ -23,8 +23,12 @@ bool Machine<Number>::executeConversion(const Instruction& i) {
             });
         case spv::OpConvertSToF:
         case spv::OpConvertUToF:
-            return convert([&](const S& x, const Type& from, const Type&) {
-                return S::ofNumber(fromInteger<Number>(x.bits, from.width, i.op == spv::OpConvertSToF));
+            return convert([&](const S& x, const Type& from, const Type& to) {
+                const bool isSigned = i.op == spv::OpConvertSToF;
+                // Straight to the float: by way of a double it would be rounded twice.
+                if (program_.options.roundToFloat && to.width == 32)
+                    return S::ofNumber(Number(fromInteger<float>(x.bits, from.width, isSigned)));
+                return S::ofNumber(fromInteger<Number>(x.bits, from.width, isSigned));
             });
         case spv::OpUConvert:
             return convert(
@@ -34,11 +38,20 @@ bool Machine<Number>::executeConversion(const Instruction& i) {
                 return S::ofBits(static_cast<uint64_t>(asSigned(x.bits, from.width)) & widthMask(to.width));
             });
         case spv::OpFConvert:
-            return convert([](const S& x, const Type&, const Type&) { return x; });
+            return convert([&](const S& x, const Type&, const Type& to) {
+                const bool towardsZero = to.width == 16 && module_.decorationsOf(i.result).towardsZero;
+                if (!towardsZero) return x;
+                return S::ofNumber(Number(halfToFloat32(doubleToHalf(static_cast<double>(x.number), true))));
+            });
         case spv::OpQuantizeToF16:
             return convert([](const S& x, const Type&, const Type&) {
                 return S::ofNumber(Number(halfToFloat32(float32ToHalf(toFloat32(x.number)))));
             });
+        // An address is the scalar of a pointer.
+        case spv::OpConvertPtrToU:
+        case spv::OpConvertUToPtr:
+            setResult(i, S::ofBits(bits(i.operand(0)) & widthMask(resultType(i).width)));
+            return true;
         case spv::OpBitcast:
             setResult(i, bitcast(i));
             return true;
@@ -47,28 +60,22 @@ bool Machine<Number>::executeConversion(const Instruction& i) {
     }
 }
 
-/// Through a row of 32-bit words, the lower half of a 64-bit scalar first (SPIR-V specification, OpBitcast).
+/// Through a row of bytes, the lowest first (SPIR-V specification, OpBitcast).
 template <class Number>
 Scalars<Number> Machine<Number>::bitcast(const Instruction& i) const {
     const Type& from = module_.scalarType(module_.valueType(i.operand(0)));
     const Type& to = module_.scalarType(resultType(i));
-    std::vector<uint32_t> words;
+    std::vector<uint8_t> bytes;
     for (const Scalar<Number>& x : data(i.operand(0))) {
-        const uint64_t bits = from.kind != TypeKind::floating ? x.bits
-                              : from.width == 64              ? float64Bits(x.number)
-                                                              : float32Bits(x.number);
-        words.push_back(static_cast<uint32_t>(bits));
-        if (from.width == 64) words.push_back(static_cast<uint32_t>(bits >> 32));
+        const uint64_t bits = scalarBits(x, from);
+        for (uint32_t shift = 0; shift < from.width; shift += 8) bytes.push_back(static_cast<uint8_t>(bits >> shift));
     }
     Scalars<Number> result;
-    const size_t step = to.width / 32;
-    for (size_t w = 0; w + step <= words.size(); w += step) {
-        const uint64_t bits = step == 2 ? words[w] | uint64_t{words[w + 1]} << 32 : words[w];
-        if (to.kind != TypeKind::floating)
-            result.push_back(Scalar<Number>::ofBits(bits));
-        else
-            result.push_back(Scalar<Number>::ofNumber(to.width == 64 ? fromFloat64Bits<Number>(bits)
-                                                                     : fromFloat32Bits<Number>(bits)));
+    const size_t step = to.width / 8;
+    for (size_t at = 0; at + step <= bytes.size(); at += step) {
+        uint64_t bits = 0;
+        for (size_t k = 0; k < step; ++k) bits |= uint64_t{bytes[at + k]} << (8 * k);
+        result.push_back(bitsScalar<Number>(bits, to));
     }
     return result;
 }

@@ -4,17 +4,23 @@
 
 namespace vernier::reference {
 
-uint32_t float32ToHalf(float value) {
+uint32_t doubleToHalf(double value, bool towardsZero) {
+    const auto whole = [=](double x) { return towardsZero ? std::trunc(x) : std::nearbyint(x); };
     const uint32_t sign = std::signbit(value) ? 0x8000u : 0u;
     if (std::isnan(value)) return sign | 0x7E00u;
-    const double magnitude = std::fabs(static_cast<double>(value));
+    const double magnitude = std::fabs(value);
     // 65520 is half-way between the largest half, 65504, and the next power of two.
-    if (magnitude >= 65520.0) return sign | 0x7C00u;
-    if (magnitude < 0x1p-14) return sign | static_cast<uint32_t>(std::nearbyint(magnitude * 0x1p24));
+    if (std::isinf(value) || (magnitude >= 65520.0 && !towardsZero)) return sign | 0x7C00u;
+    if (magnitude >= 65504.0) return sign | 0x7BFFu;
+    if (magnitude < 0x1p-14) return sign | static_cast<uint32_t>(whole(magnitude * 0x1p24));
     const int exponent = std::ilogb(magnitude);
-    const auto significand = static_cast<uint32_t>(std::nearbyint(std::ldexp(magnitude, 10 - exponent)));
+    const auto significand = static_cast<uint32_t>(whole(std::ldexp(magnitude, 10 - exponent)));
     // A significand rounded up to 2048 carries into the exponent.
     return sign | ((static_cast<uint32_t>(exponent + 15) << 10) + significand - 1024u);
+}
+
+uint32_t float32ToHalf(float value) {
+    return doubleToHalf(value);
 }
 
 float halfToFloat32(uint32_t half) {

@@ -128,12 +128,12 @@ template <class Number>
 bool Machine<Number>::implicitDerivatives(ImageRequest<Number>& r) {
     const size_t dimensions = spatialDimensions(r.shape.dim);
     std::vector<Number> offer(r.coordinates.begin(), r.coordinates.begin() + static_cast<ptrdiff_t>(dimensions));
-    if (!exchange(std::move(offer))) return false;
+    if (!exchange(offer)) return false;
     for (size_t k = 0; k < dimensions; ++k) {
         r.ddx[k] = rounded(difference(k, true, program_.options.coarseDerivatives));
         r.ddy[k] = rounded(difference(k, false, program_.options.coarseDerivatives));
     }
-    quad_.reset();
+    group_.reset();
     return true;
 }
 

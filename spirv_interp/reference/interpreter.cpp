@@ -5,7 +5,9 @@
 #include <limits>
 #include <new>
 
+#include "spirv_interp/reference/drive.h"
 #include "spirv_interp/reference/machine.h"
+#include "spirv_interp/reference/work_group.h"
 
 namespace vernier::reference {
 namespace {
@@ -23,35 +25,25 @@ Result<T> guarded(const F& f) {
 }
 
 template <class Number>
-Value<Number> constantValue(const Constant& constant) {
+Value<Number> constantValue(const ModuleData& module, const Constant& constant) {
     Value<Number> value;
+    if (const Type& type = module.types[constant.type]; type.kind == TypeKind::pointer) {
+        // Only null is a constant.
+        value.pointer.emplace();
+        value.pointer->type = type.element;
+        value.pointer->outside = true;
+        value.pointer->isBuffer = value.pointer->isPhysical = type.storage == spv::StorageClassPhysicalStorageBuffer;
+        value.pointer->kind = BufferKind::storage;
+    }
     for (const ConstantScalar& s : constant.scalars) value.scalars.push_back({static_cast<Number>(s.number), s.bits});
     value.defined = true;
     return value;
 }
 
-/// Lets the invocations run, each until it waits or is done; then lets those go on that wait at the earliest
-/// place.
+/// A quad or a single invocation. There is no work-group to wait for.
 template <class Number>
-void drive(std::array<std::optional<Machine<Number>>, 4>& machines) {
-    using Status = typename Machine<Number>::Status;
-    while (true) {
-        std::optional<std::vector<size_t>> earliest;
-        std::array<bool, 4> waiting{};
-        for (size_t k = 0; k < 4; ++k) {
-            if (!machines[k]) continue;
-            waiting[k] = machines[k]->run() == Status::waiting;
-            if (waiting[k] && (!earliest || machines[k]->position() < *earliest)) earliest = machines[k]->position();
-        }
-        if (!earliest) return;
-        typename Machine<Number>::QuadValues values;
-        for (size_t k = 0; k < 4; ++k) {
-            waiting[k] = waiting[k] && machines[k]->position() == *earliest;
-            if (waiting[k]) values[k] = machines[k]->offer();
-        }
-        for (size_t k = 0; k < 4; ++k)
-            if (waiting[k]) machines[k]->resume(values);
-    }
+void driveAlone(std::vector<std::optional<Machine<Number>>>& machines) {
+    if (!drive(machines)) fail("OpControlBarrier outside a compute shader");
 }
 
 }  // namespace
@@ -89,7 +81,8 @@ template <class Number>
 Result<Interpreter<Number>> Interpreter<Number>::create(const Module& module, spv::ExecutionModel model,
                                                         std::string_view entryPoint, const Options& options) {
     return guarded<Interpreter>([&]() -> Result<Interpreter> {
-        if (model != spv::ExecutionModelVertex && model != spv::ExecutionModelFragment)
+        if (model != spv::ExecutionModelVertex && model != spv::ExecutionModelFragment &&
+            model != spv::ExecutionModelGLCompute)
             return unsupported("SPIR-V reference interpreter: execution model " +
                                std::to_string(static_cast<uint32_t>(model)));
         const auto& entries = module.entryPoints();
@@ -100,7 +93,7 @@ Result<Interpreter<Number>> Interpreter<Number>::create(const Module& module, sp
             state->program.entryPoint = k;
             state->program.options = options;
             for (const Constant& constant : module.data().constants)
-                state->program.constants.push_back(constantValue<Number>(constant));
+                state->program.constants.push_back(constantValue<Number>(module.data(), constant));
             return Interpreter(std::move(state));
         }
         return invalidArgument("SPIR-V: no entry point \"" + std::string(entryPoint) + "\" of execution model " +
@@ -112,9 +105,9 @@ template <class Number>
 Result<Outcome<Number>> Interpreter<Number>::run(const InterfaceValues<Number>& inputs,
                                                  Resources<Number>& resources) const {
     return guarded<Outcome<Number>>([&] {
-        std::array<std::optional<Machine<Number>>, 4> machines;
+        std::vector<std::optional<Machine<Number>>> machines(4);
         machines[0].emplace(state_->program, inputs, resources, 0, false);
-        drive(machines);
+        driveAlone(machines);
         return machines[0]->outcome();
     });
 }
@@ -124,13 +117,27 @@ Result<std::array<Outcome<Number>, 4>> Interpreter<Number>::runQuad(
     const std::array<InterfaceValues<Number>, 4>& inputs, const std::array<bool, 4>& helper,
     Resources<Number>& resources) const {
     return guarded<std::array<Outcome<Number>, 4>>([&] {
-        std::array<std::optional<Machine<Number>>, 4> machines;
+        std::vector<std::optional<Machine<Number>>> machines(4);
         for (uint32_t k = 0; k < 4; ++k) machines[k].emplace(state_->program, inputs[k], resources, k, helper[k]);
-        drive(machines);
+        driveAlone(machines);
         std::array<Outcome<Number>, 4> outcomes;
         for (size_t k = 0; k < 4; ++k) outcomes[k] = machines[k]->outcome();
         return outcomes;
     });
+}
+
+template <class Number>
+Status Interpreter<Number>::runWorkGroup(const WorkGroup& group, Resources<Number>& resources) const {
+    const Result<bool> result = guarded<bool>([&] {
+        reference::runWorkGroup(state_->program, group, resources);
+        return true;
+    });
+    return result ? Status() : Status(result.error());
+}
+
+template <class Number>
+std::array<uint32_t, 3> Interpreter<Number>::localSize() const {
+    return workGroupSize(*state_->program.module, state_->program.entryPoint);
 }
 
 template class Interpreter<float>;

@@ -1,4 +1,4 @@
-// The reference interpreter: SPIR-V vertex and fragment shaders, one invocation at a time, in any of three
+// The reference interpreter: SPIR-V vertex, fragment and compute shaders, one invocation at a time, in any of three
 // number types. It is slow, plain and meant to be obviously right: the judge of the batch interpreter, and
 // the shader of the oracle.
 //
@@ -13,7 +13,8 @@
 // type: results are not rounded to float unless Options::roundToFloat asks for it (then each instruction is
 // computed in Number and its result rounded). 64-bit floats of a module are held in Number too: with Number =
 // float they have only float's precision. Bit casts and packing go through the bits of the declared type
-// (float32 or float64), rounding to nearest.
+// (float16, float32 or float64), rounding to nearest. 16-bit floats are rounded to their format
+// after every instruction when Number is float.
 #pragma once
 
 #include <array>
@@ -42,6 +43,16 @@ struct ExecutionModes {
     bool earlyFragmentTests = false;
     bool depthReplacing = false;
     bool depthGreater = false, depthLess = false, depthUnchanged = false;
+    std::array<uint32_t, 3> localSize{1, 1, 1};  // LocalSize; LocalSizeId's values
+};
+
+/// Subgroups are consecutive invocations of a work-group by LocalInvocationIndex; the last may be incomplete.
+inline constexpr uint32_t kSubgroupSize = 32;
+
+/// Which work-group of a dispatch.
+struct WorkGroup {
+    std::array<uint32_t, 3> id{0, 0, 0};     // WorkgroupId
+    std::array<uint32_t, 3> count{1, 1, 1};  // NumWorkgroups
 };
 
 struct EntryPoint {
@@ -207,9 +218,20 @@ struct Options {
 template <class Number>
 class Interpreter {
   public:
-    /// Vertex and fragment entry points only.
+    /// Vertex, fragment and compute entry points.
     static Result<Interpreter> create(const Module& module, spv::ExecutionModel model,
                                       std::string_view entryPoint = "main", const Options& options = {});
+
+    /// One work-group. Between barriers the invocations run one after the other (those of a subgroup up to its
+    /// operations), so that a program with races gets one of its possible results. An OpControlBarrier that not all
+    /// invocations reach that have not ended is an Error. Work-group variables without initialiser begin as 0.
+    ///
+    /// A subgroup operation is carried out by the invocations of the subgroup that have come to the same dynamic
+    /// instance of the instruction: the same calls, and in every loop around it the same iteration. Invocations that
+    /// part come together again at the merge block, and those that leave a loop wait behind it for the others.
+    Status runWorkGroup(const WorkGroup& group, Resources<Number>& resources) const;
+    /// Of a compute entry point: LocalSize, or the constant decorated WorkgroupSize.
+    std::array<uint32_t, 3> localSize() const;
 
     /// One invocation on its own: all derivatives are 0.
     Result<Outcome<Number>> run(const InterfaceValues<Number>& inputs, Resources<Number>& resources) const;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "spirv_interp/reference/integer_ops.h"
+
 namespace vernier::reference {
 namespace {
 
@@ -12,13 +14,14 @@ constexpr size_t kMaxCallDepth = 128;
 
 template <class Number>
 Machine<Number>::Machine(const Program<Number>& program, const InterfaceValues<Number>& inputs,
-                         Resources<Number>& resources, uint32_t invocation, bool helper)
+                         Resources<Number>& resources, uint32_t invocation, bool helper, SharedObjects<Number>* shared)
     : program_(program),
       module_(*program.module),
       resources_(resources),
       invocation_(invocation),
       helper_(helper),
-      variables_(module_.variables.size()) {
+      variables_(module_.variables.size()),
+      shared_(shared) {
     createInterface(inputs);
     const Id entry = module_.entryPointData[program.entryPoint].function;
     call(module_.functions[module_.info(entry).index], 0, {});
@@ -46,7 +49,7 @@ void Machine<Number>::charge(uint64_t steps) {
 template <class Number>
 void Machine<Number>::execute(const Instruction& i) {
     const bool known = executeArithmetic(i) || executeComposite(i) || executeMemory(i) || executeControl(i) ||
-                       executeConversion(i) || executeImage(i) || executeAtomic(i);
+                       executeConversion(i) || executeImage(i) || executeAtomic(i) || executeSubgroup(i);
     if (!known) failUnsupported(name(i.op));
 }
 
@@ -66,6 +69,7 @@ bool Machine<Number>::executeControl(const Instruction& i) {
             for (size_t k = 2; k < i.operands.size(); k += literalWords + 1) {
                 uint64_t literal = i.operand(k);
                 if (literalWords == 2) literal |= uint64_t{i.operand(k + 1)} << 32;
+                literal &= widthMask(module_.valueType(i.operand(0)).width);
                 const Id label = i.operand(k + literalWords);
                 if (literal != selector) continue;
                 target = label;
@@ -135,6 +139,7 @@ void Machine<Number>::call(const Function& function, Id result, const std::vecto
     frame.function = &function;
     frame.next = function.blocks[0].begin;
     frame.block = function.blocks[0].label;
+    frame.blockRank = function.blocks[0].rank;
     frame.values.resize(function.slots);
     frame.caller = result;
     for (size_t p = 0; p < arguments.size(); ++p) {
@@ -182,9 +187,23 @@ void Machine<Number>::enterBlock(Id label) {
         charge(1);
         phis.emplace_back(&phi, value(incoming));
     }
+    noteLoops(frame, block);
     frame.block = label;
+    frame.blockRank = block.rank;
     frame.next = next;
     for (auto& [phi, incoming] : phis) setValue(*phi, std::move(incoming));
+}
+
+/// Keeps the loops around the frame's place: those that `target` is outside of are left, a back edge counts.
+template <class Number>
+void Machine<Number>::noteLoops(Frame& frame, const Block& target) {
+    auto& loops = frame.loops;
+    while (!loops.empty() && (target.rank < loops.back().first || target.rank >= loops.back().end)) loops.pop_back();
+    if (!loops.empty() && target.rank == loops.back().first) {
+        ++loops.back().iteration;
+    } else if (target.loopEnd != 0) {
+        loops.push_back({target.rank, target.loopEnd, 0});
+    }
 }
 
 template <class Number>
@@ -215,6 +234,7 @@ const Value<Number>& Machine<Number>::value(Id id) const {
 template <class Number>
 const Scalars<Number>& Machine<Number>::data(Id id) const {
     const Value<Number>& v = value(id);
+    if (v.pointer && v.scalars.empty()) const_cast<Value<Number>&>(v).scalars = {pointerScalar(*v.pointer)};
     if (v.scalars.empty()) fail(name(id) + " is no numeric value");
     return v.scalars;
 }
@@ -232,8 +252,7 @@ template <class Number>
 int64_t Machine<Number>::signedInteger(Id id) const {
     const Type& type = module_.valueType(id);
     if (type.kind != TypeKind::integer) fail(name(id) + " is no integer");
-    const uint64_t b = bits(id);
-    return type.width == 64 ? static_cast<int64_t>(b) : static_cast<int32_t>(static_cast<uint32_t>(b));
+    return asSigned(bits(id), type.width);
 }
 
 template <class Number>
@@ -246,41 +265,56 @@ void Machine<Number>::setValue(const Instruction& i, Value<Number> v) {
     charge(v.scalars.size() / kScalarsPerStep);
     if (!v.pointer && !v.image && v.scalars.size() != resultCount(i))
         fail(name(i.op) + " " + name(i.result) + " has a value that does not fit its type");
+    const Type& type = resultType(i);
+    if (!v.pointer && !v.image && type.kind == TypeKind::pointer) v.pointer = scalarPointer(type, v.scalars[0].bits);
     v.defined = true;
     slot(i) = std::move(v);
 }
 
 template <class Number>
 void Machine<Number>::setResult(const Instruction& i, Scalars<Number> scalars) {
-    if (program_.options.roundToFloat) {
-        const Type& type = module_.scalarType(resultType(i));
-        if (type.kind == TypeKind::floating && type.width == 32)
-            for (Scalar<Number>& s : scalars) s.number = rounded(s.number);
-    }
+    const Type& type = module_.scalarType(resultType(i));
+    if (type.kind == TypeKind::floating)
+        for (Scalar<Number>& s : scalars) round(s, type.width);
     Value<Number> v;
     v.scalars = std::move(scalars);
     setValue(i, std::move(v));
 }
 
 template <class Number>
-std::vector<size_t> Machine<Number>::position() const {
-    std::vector<size_t> result;
-    for (const Frame& frame : frames_) result.push_back(frame.next);
+std::vector<uint64_t> Machine<Number>::position() const {
+    std::vector<uint64_t> result;
+    for (const Frame& frame : frames_) {
+        for (const auto& loop : frame.loops) {
+            result.push_back(loop.first);
+            result.push_back(loop.iteration);
+        }
+        result.push_back(frame.blockRank);
+        result.push_back(frame.next);
+    }
     return result;
 }
 
 template <class Number>
-bool Machine<Number>::exchange(std::vector<Number> offer) {
-    if (quad_) return true;
+bool Machine<Number>::meet(Meeting meeting, Scalars<Number> offer) {
+    if (group_) return true;
+    meeting_ = meeting;
     offer_ = std::move(offer);
     status_ = Status::waiting;
-    --frames_.back().next;  // the instruction runs again when the values are there
+    --frames_.back().next;  // the instruction runs again when the others are there
     return false;
 }
 
 template <class Number>
-void Machine<Number>::resume(QuadValues values) {
-    quad_ = std::move(values);
+bool Machine<Number>::exchange(const std::vector<Number>& offer) {
+    Scalars<Number> scalars;
+    for (const Number& number : offer) scalars.push_back(Scalar<Number>::ofNumber(number));
+    return meet(Meeting::exchange, std::move(scalars));
+}
+
+template <class Number>
+void Machine<Number>::resume(GroupValues values) {
+    group_ = std::move(values);
     status_ = Status::running;
 }
 
@@ -291,8 +325,8 @@ Number Machine<Number>::difference(size_t component, bool alongX, bool coarse) c
     const uint32_t step = alongX ? 1 : 2, other = alongX ? 2 : 1;
     const std::array<uint32_t, 2> starts{coarse ? 0 : invocation_ & other, coarse ? other : invocation_ & other};
     for (const uint32_t start : starts) {
-        const std::vector<Number>&from = (*quad_)[start], &to = (*quad_)[start + step];
-        if (component < from.size() && component < to.size()) return to[component] - from[component];
+        const Scalars<Number>&from = (*group_)[start], &to = (*group_)[start + step];
+        if (component < from.size() && component < to.size()) return to[component].number - from[component].number;
     }
     return Number(0);
 }
@@ -303,7 +337,7 @@ void Machine<Number>::derivative(const Instruction& i) {
     const Scalars<Number>& p = data(i.operand(0), resultCount(i));
     std::vector<Number> offer;
     for (const Scalar<Number>& s : p) offer.push_back(s.number);
-    if (!exchange(std::move(offer))) return;
+    if (!exchange(offer)) return;
     const bool coarse =
         i.op == spv::OpDPdxCoarse || i.op == spv::OpDPdyCoarse || i.op == spv::OpFwidthCoarse ||
         ((i.op == spv::OpDPdx || i.op == spv::OpDPdy || i.op == spv::OpFwidth) && program_.options.coarseDerivatives);
@@ -317,7 +351,7 @@ void Machine<Number>::derivative(const Instruction& i) {
             result.push_back(
                 Scalar<Number>::ofNumber(fabs(difference(k, true, coarse)) + fabs(difference(k, false, coarse))));
     }
-    quad_.reset();
+    group_.reset();
     setResult(i, std::move(result));
 }
 

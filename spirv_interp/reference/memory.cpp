@@ -17,17 +17,14 @@ Scalar<Number> readScalar(std::span<const std::byte> bytes, uint64_t offset, con
     if (bytes.size() < size || offset > bytes.size() - size) return {};
     uint64_t raw = 0;
     std::memcpy(&raw, bytes.data() + offset, size);
-    if (type.kind == TypeKind::integer) return Scalar<Number>::ofBits(raw);
-    return Scalar<Number>::ofNumber(type.width == 64 ? fromFloat64Bits<Number>(raw) : fromFloat32Bits<Number>(raw));
+    return bitsScalar<Number>(raw, type);
 }
 
 template <class Number>
 void writeScalar(std::span<std::byte> bytes, uint64_t offset, const Type& type, const Scalar<Number>& scalar) {
     const size_t size = type.width / 8;
     if (bytes.size() < size || offset > bytes.size() - size) return;
-    const uint64_t raw = type.kind == TypeKind::integer ? scalar.bits
-                         : type.width == 64             ? float64Bits(scalar.number)
-                                                        : float32Bits(scalar.number);
+    const uint64_t raw = scalarBits(scalar, type);
     std::memcpy(bytes.data() + offset, &raw, size);
 }
 
@@ -82,10 +79,18 @@ Pointer<Number> Machine<Number>::variablePointer(const Variable& variable) {
         case spv::StorageClassStorageBuffer: {
             pointer.isBuffer = true;
             pointer.atDescriptors = type.isArray();
-            const Type& block = type.isArray() ? module_.types[type.element] : type;
-            if (variable.storage == spv::StorageClassStorageBuffer || module_.decorationsOf(block.id).bufferBlock)
+            const Type* block = &type;
+            while (block->isArray()) block = &module_.types[block->element];
+            if (variable.storage == spv::StorageClassStorageBuffer || module_.decorationsOf(block->id).bufferBlock)
                 pointer.kind = BufferKind::storage;
             return pointer;
+        }
+        case spv::StorageClassWorkgroup: {
+            if (shared_ == nullptr) fail("work-group variable " + name(variable.id) + " outside a compute shader");
+            auto& object = (*shared_)[static_cast<uint32_t>(&variable - module_.variables.data())];
+            pointer.object = object;
+            if (object) return pointer;
+            break;
         }
         default:
             break;
@@ -95,8 +100,81 @@ Pointer<Number> Machine<Number>::variablePointer(const Variable& variable) {
     pointer.object = std::make_shared<Object<Number>>();
     pointer.object->cells.resize(count);
     pointer.object->written.resize(count);
+    if (variable.storage == spv::StorageClassWorkgroup)
+        (*shared_)[static_cast<uint32_t>(&variable - module_.variables.data())] = pointer.object;
     if (variable.initializer != 0) store(pointer, data(variable.initializer, count));
     return pointer;
+}
+
+template <class Number>
+Scalar<Number> Machine<Number>::pointerScalar(const Pointer<Number>& p) const {
+    if (p.isPhysical) return Scalar<Number>::ofBits(p.outside ? 0 : p.offset);
+    pointers_.push_back(p);
+    return Scalar<Number>::ofBits(pointers_.size());
+}
+
+template <class Number>
+Pointer<Number> Machine<Number>::scalarPointer(const Type& type, uint64_t bits) const {
+    Pointer<Number> p;
+    if (type.storage == spv::StorageClassPhysicalStorageBuffer) {
+        p.isBuffer = p.isPhysical = true;
+        p.kind = BufferKind::storage;
+        p.offset = bits;
+    } else if (bits != 0 && bits <= pointers_.size()) {
+        p = pointers_[bits - 1];
+    } else {
+        p.outside = true;  // null
+    }
+    p.type = type.element;
+    return p;
+}
+
+/// OpPtrAccessChain's first index: elements of the array that the pointer points into.
+template <class Number>
+Pointer<Number> Machine<Number>::element(Pointer<Number> p, const Type& pointerType, Id indexId) const {
+    const int64_t i = signedInteger(indexId);
+    const Type& type = module_.types[p.type];
+    const auto stride =
+        static_cast<int64_t>(p.isBuffer ? module_.decorationsOf(pointerType.id).arrayStride.value_or(0) : type.scalars);
+    __extension__ using Wide = __int128;
+    const Wide offset = Wide(i) * stride + static_cast<int64_t>(p.offset);
+    const auto end = p.object ? static_cast<int64_t>(p.object->cells.size() - type.scalars) : kMaxOffset;
+    p.outside = p.outside || offset < 0 || offset > end;
+    p.offset = p.outside ? 0 : static_cast<uint64_t>(offset);
+    return p;
+}
+
+/// The bytes that hold an access of `size` bytes at `offset`, which becomes an offset into them.
+template <class Number>
+std::span<std::byte> Machine<Number>::bytesOf(const Pointer<Number>& p, uint64_t& offset, uint64_t size) {
+    if (!p.isPhysical) return resources_.buffer(p.kind, p.descriptor);
+    const uint64_t address = offset;
+    offset = 0;
+    return resources_.memory(address, size);
+}
+
+template <class Number>
+Scalars<Number> Machine<Number>::loadTexel(const Pointer<Number>& p) {
+    const Texel<Number> texel = resources_.fetch(*p.texel);
+    return {texel[0]};
+}
+
+template <class Number>
+bool Machine<Number>::comparePointers(const Instruction& i) {
+    const Pointer<Number> a = pointer(i.operand(0)), b = pointer(i.operand(1));
+    const bool same = a.object == b.object && a.offset == b.offset && a.outside == b.outside &&
+                      a.isBuffer == b.isBuffer && a.kind == b.kind && a.descriptor == b.descriptor;
+    if (i.op != spv::OpPtrDiff) {
+        setResult(i, Scalar<Number>::ofBits(same == (i.op == spv::OpPtrEqual) ? 1 : 0));
+        return true;
+    }
+    const Type& pointerType = module_.valueType(i.operand(0));
+    const auto stride = static_cast<int64_t>(a.isBuffer ? module_.decorationsOf(pointerType.id).arrayStride.value_or(0)
+                                                        : module_.types[a.type].scalars);
+    const int64_t bytes = static_cast<int64_t>(a.offset) - static_cast<int64_t>(b.offset);
+    setResult(i, Scalar<Number>::ofBits(static_cast<uint64_t>(stride != 0 ? bytes / stride : 0) &
+                                        widthMask(resultType(i).width)));
+    return true;
 }
 
 template <class Number>
@@ -117,9 +195,10 @@ Pointer<Number> Machine<Number>::index(Pointer<Number> p, Id indexId) const {
     const Type& type = module_.types[p.type];
     const int64_t i = signedInteger(indexId);
     if (p.atDescriptors) {
-        p.descriptor.arrayIndex = static_cast<uint32_t>(i);
-        p.atDescriptors = false;
+        // Arrays of arrays: one number, the last index changing fastest.
+        p.descriptor.arrayIndex = p.descriptor.arrayIndex * type.count + static_cast<uint32_t>(i);
         p.type = type.element;
+        p.atDescriptors = module_.types[p.type].isArray();
         return p;
     }
     // Moves by i * stride bytes; what ends outside all buffers stays outside.
@@ -203,6 +282,7 @@ void Machine<Number>::forEachScalar(const Type& type, uint64_t offset, MatrixLay
             break;
         case TypeKind::integer:
         case TypeKind::floating:
+        case TypeKind::pointer:
             visit(type, offset);
             break;
         default:
@@ -224,10 +304,12 @@ Scalars<Number> Machine<Number>::loadScalars(const Pointer<Number>& p) {
         const auto begin = p.object->cells.begin() + static_cast<ptrdiff_t>(p.offset);
         result.assign(begin, begin + static_cast<ptrdiff_t>(count));
     } else if (p.isBuffer && !p.atDescriptors) {
-        const std::span<const std::byte> bytes = resources_.buffer(p.kind, p.descriptor);
         forEachScalar(type, p.offset, p.matrix, p.componentStride, [&](const Type& scalar, uint64_t offset) {
+            const std::span<const std::byte> bytes = bytesOf(p, offset, scalar.width / 8);
             result.push_back(readScalar<Number>(bytes, offset, scalar));
         });
+    } else if (p.texel) {
+        result = loadTexel(p);
     } else {
         fail("a load through a pointer to type " + name(type.id));
     }
@@ -265,13 +347,20 @@ void Machine<Number>::store(const Pointer<Number>& p, const Scalars<Number>& sca
         }
         return;
     }
+    if (p.texel) {
+        Texel<Number> texel{};
+        texel[0] = scalars[0];
+        if (!helper_) resources_.write(*p.texel, texel);
+        return;
+    }
     if (!p.isBuffer || p.kind != BufferKind::storage || p.atDescriptors)
         fail("a store to type " + name(type.id) + " in read-only memory");
     if (helper_) return;
-    const std::span<std::byte> bytes = resources_.buffer(p.kind, p.descriptor);
     size_t next = 0;
-    forEachScalar(type, p.offset, p.matrix, p.componentStride,
-                  [&](const Type& scalar, uint64_t offset) { writeScalar(bytes, offset, scalar, scalars[next++]); });
+    forEachScalar(type, p.offset, p.matrix, p.componentStride, [&](const Type& scalar, uint64_t offset) {
+        const std::span<std::byte> bytes = bytesOf(p, offset, scalar.width / 8);
+        writeScalar(bytes, offset, scalar, scalars[next++]);
+    });
 }
 
 template <class Number>
@@ -328,6 +417,35 @@ bool Machine<Number>::executeMemory(const Instruction& i) {
             setValue(i, std::move(v));
             return true;
         }
+        case spv::OpPtrAccessChain:
+        case spv::OpInBoundsPtrAccessChain: {
+            Pointer<Number> p = element(pointer(i.operand(0)), module_.valueType(i.operand(0)), i.operand(1));
+            for (const Id id : i.operands.subspan(2)) p = index(std::move(p), id);
+            Value<Number> v;
+            v.pointer = std::move(p);
+            setValue(i, std::move(v));
+            return true;
+        }
+        case spv::OpPtrEqual:
+        case spv::OpPtrNotEqual:
+        case spv::OpPtrDiff:
+            return comparePointers(i);
+        case spv::OpImageTexelPointer: {
+            const Value<Number> image = load(pointer(i.operand(0)));
+            if (!image.image) fail("OpImageTexelPointer of no image");
+            auto r = std::make_shared<ImageRequest<Number>>(request(*image.image));
+            const Scalars<Number>& coordinates = data(i.operand(1));
+            for (size_t k = 0; k < coordinates.size() && k < 4; ++k)
+                r->texel[k] = static_cast<int32_t>(static_cast<uint32_t>(coordinates[k].bits));
+            r->sample = static_cast<int32_t>(signedInteger(i.operand(2)));
+            r->lodMode = LodMode::explicitLod;
+            Value<Number> v;
+            v.pointer.emplace();
+            v.pointer->type = resultType(i).element;
+            v.pointer->texel = std::move(r);
+            setValue(i, std::move(v));
+            return true;
+        }
         case spv::OpArrayLength:
             setResult(i, Scalar<Number>::ofBits(arrayLength(i) & 0xFFFFFFFFu));
             return true;
@@ -343,7 +461,7 @@ bool Machine<Number>::executeAtomic(const Instruction& i) {
         const Pointer<Number> p = pointer(i.operand(0));
         const Type& type = module_.types[p.type];
         if (type.kind != TypeKind::integer) failUnsupported(name(i.op) + " on type " + name(type.id));
-        const uint64_t old = loadScalars(p)[0].bits;
+        const uint64_t old = loadScalars(p)[0].bits & widthMask(type.width);
         store(p, {Scalar<Number>::ofBits(combine(old, type.width) & widthMask(type.width))});
         if (i.result != 0) setResult(i, Scalar<Number>::ofBits(old));
         return true;
@@ -401,6 +519,22 @@ bool Machine<Number>::executeAtomic(const Instruction& i) {
             return extreme(true, true);
         case spv::OpAtomicUMax:
             return extreme(false, true);
+        case spv::OpAtomicFAddEXT:
+        case spv::OpAtomicFMinEXT:
+        case spv::OpAtomicFMaxEXT: {
+            using std::isnan;
+            const Pointer<Number> p = pointer(i.operand(0));
+            const Scalar<Number> old = loadScalars(p)[0], v = scalar(i.operand(3));
+            Scalar<Number> next = v;
+            if (i.op == spv::OpAtomicFAddEXT)
+                next.number = old.number + v.number;
+            else if (isnan(v.number) || (i.op == spv::OpAtomicFMinEXT ? old.number < v.number : v.number < old.number))
+                next = old;
+            round(next, module_.types[p.type].width);
+            store(p, {next});
+            setResult(i, old);
+            return true;
+        }
         case spv::OpMemoryBarrier:
             return true;
         default:
@@ -439,6 +573,8 @@ Outcome<Number> Machine<Number>::outcome() const {
 
 #define VERNIER_INSTANTIATE(Number)                                                       \
     template void Machine<Number>::createInterface(const InterfaceValues<Number>&);       \
+    template Scalar<Number> Machine<Number>::pointerScalar(const Pointer<Number>&) const; \
+    template Pointer<Number> Machine<Number>::scalarPointer(const Type&, uint64_t) const; \
     template const Pointer<Number>& Machine<Number>::pointer(Id);                         \
     template Scalars<Number> Machine<Number>::loadScalars(const Pointer<Number>&);        \
     template void Machine<Number>::store(const Pointer<Number>&, const Scalars<Number>&); \

@@ -37,6 +37,7 @@ struct Decorations {
         set, inputAttachmentIndex;
     bool flat = false, noPerspective = false, centroid = false, sample = false;
     bool block = false, bufferBlock = false, rowMajor = false, isVolatile = false;
+    bool towardsZero = false;  // FPRoundingMode
 };
 
 enum class TypeKind : uint8_t {
@@ -59,7 +60,7 @@ enum class TypeKind : uint8_t {
 struct Type {
     Id id = 0;
     TypeKind kind = TypeKind::voidType;
-    uint32_t width = 32;            // integer, floating
+    uint32_t width = 32;            // integer, floating, pointer
     bool isSigned = false;          // integer
     uint32_t element = 0;           // index of the element type (vector, matrix, array), pointee, image of a sampled
                                     // image, return type of a function
@@ -105,7 +106,11 @@ std::pair<std::string, size_t> literalString(std::span<const uint32_t> words, si
 
 struct Block {
     Id label = 0;
-    size_t begin = 0, end = 0;  // Function::instructions
+    size_t begin = 0, end = 0;         // Function::instructions
+    Id merge = 0, continueTarget = 0;  // of its OpSelectionMerge or OpLoopMerge
+    // structure.cpp: the place in structured order, and for the header of a loop one past the last place in it.
+    uint32_t rank = 0;
+    uint32_t loopEnd = 0;  // 0: no loop header
 };
 
 struct Function {
@@ -220,6 +225,7 @@ struct ModuleData {
 void parseModule(ModuleData& module);                                    // parse.cpp
 void parseType(ModuleData& module, const Instruction& instruction);      // types.cpp
 void parseConstant(ModuleData& module, const Instruction& instruction);  // constants.cpp
+void orderBlocks(Function& function);                                    // structure.cpp
 void reflect(ModuleData& module);                                        // reflect.cpp
 
 }  // namespace vernier::reference

@@ -58,6 +58,8 @@ Number fromFloat64Bits(uint64_t bits) {
 /// IEEE 754 binary16 from binary32, to nearest even (Vulkan spec, "16-Bit Floating-Point Numbers").
 uint32_t float32ToHalf(float value);
 float halfToFloat32(uint32_t half);
+/// From binary64 with one rounding: to nearest even, or towards zero.
+uint32_t doubleToHalf(double value, bool towardsZero = false);
 
 /// Truncates, saturates to `width` bits; NaN gives 0. Returns the two's complement bits.
 template <class Number>
@@ -88,8 +90,8 @@ uint64_t toInteger(const Number& x, uint32_t width, bool isSigned) {
 template <class Number>
 Number fromInteger(uint64_t bits, uint32_t width, bool isSigned) {
     if (!isSigned) return static_cast<Number>(bits);
-    return static_cast<Number>(width == 32 ? static_cast<int64_t>(static_cast<int32_t>(static_cast<uint32_t>(bits)))
-                                           : static_cast<int64_t>(bits));
+    const uint32_t unused = 64 - width;
+    return static_cast<Number>(static_cast<int64_t>(bits << unused) >> unused);
 }
 
 }  // namespace vernier::reference

@@ -68,6 +68,9 @@ class Parser {
         module_.ids.resize(size_t{maxId} + 1);
         forEachInstruction(module_.words, [this](const Instruction& instruction) { visit(instruction); });
         if (function_) fail("the module ends inside function " + name(function_->id));
+        for (const size_t k : localSizeIds_)
+            for (uint32_t& size : module_.entryPoints[k].modes.localSize)
+                size = static_cast<uint32_t>(module_.constantInteger(size));
         for (const EntryPointData& entry : module_.entryPointData)
             if (module_.info(entry.function).kind != IdKind::function)
                 fail("entry point " + name(entry.function) + " is no function");
@@ -126,8 +129,9 @@ class Parser {
             case spv::OpExtInstImport:
                 return importSet(i);
             case spv::OpMemoryModel:
-                if (i.operand(0) != spv::AddressingModelLogical)
-                    failUnsupported("addressing model that is not Logical");
+                if (i.operand(0) != spv::AddressingModelLogical &&
+                    i.operand(0) != spv::AddressingModelPhysicalStorageBuffer64)
+                    failUnsupported("addressing model " + std::to_string(i.operand(0)));
                 return;
             case spv::OpEntryPoint:
                 return entryPoint(i);
@@ -173,9 +177,25 @@ class Parser {
             case spv::OpTypeRuntimeArray:
             case spv::OpTypeStruct:
             case spv::OpTypePointer:
-            case spv::OpTypeFunction:
+            case spv::OpTypeFunction: {
+                const bool forward = module_.ids[i.result].kind != IdKind::none;
                 parseType(module_, i);
+                if (forward) return;
                 return define(i.result, {IdKind::type, static_cast<uint32_t>(module_.types.size() - 1), 0, 0});
+            }
+            case spv::OpTypeForwardPointer:
+                if (i.operand(0) >= module_.ids.size()) fail(name(i.operand(0)) + " is used but not defined");
+                parseType(module_, i);
+                return define(i.operand(0), {IdKind::type, static_cast<uint32_t>(module_.types.size() - 1), 0, 0});
+            case spv::OpDecorationGroup:
+                return;  // its decorations are kept like anything's
+            case spv::OpGroupDecorate:
+                for (const Id target : i.operands.subspan(1)) copyGroup(i.operand(0), module_.decorations[target]);
+                return;
+            case spv::OpGroupMemberDecorate:
+                for (size_t k = 1; k + 1 < i.operands.size(); k += 2)
+                    copyGroup(i.operand(0), module_.memberDecorations[{i.operands[k], i.operands[k + 1]}]);
+                return;
             default:
                 failUnsupported(name(i.op) + " outside a function");
         }
@@ -231,10 +251,44 @@ class Parser {
                 case spv::ExecutionModeDepthUnchanged:
                     modes.depthUnchanged = true;
                     break;
+                case spv::ExecutionModeLocalSize:
+                case spv::ExecutionModeLocalSizeId:
+                    for (size_t d = 0; d < 3; ++d) modes.localSize[d] = i.operand(2 + d);
+                    // The constants of LocalSizeId come later in the module.
+                    if (mode == spv::ExecutionModeLocalSizeId) localSizeIds_.push_back(k);
+                    break;
                 default:
                     break;  // the other modes concern other stages or leave results open
             }
         }
+    }
+
+    /// The decorations of a group on top of those that are there.
+    void copyGroup(Id group, Decorations& d) const {
+        const Decorations& from = module_.decorationsOf(group);
+        const auto take = [](auto& to, const auto& value) {
+            if (value) to = value;
+        };
+        take(d.location, from.location);
+        take(d.component, from.component);
+        take(d.index, from.index);
+        take(d.builtin, from.builtin);
+        take(d.specId, from.specId);
+        take(d.arrayStride, from.arrayStride);
+        take(d.matrixStride, from.matrixStride);
+        take(d.offset, from.offset);
+        take(d.binding, from.binding);
+        take(d.set, from.set);
+        take(d.inputAttachmentIndex, from.inputAttachmentIndex);
+        take(d.flat, from.flat);
+        take(d.noPerspective, from.noPerspective);
+        take(d.centroid, from.centroid);
+        take(d.sample, from.sample);
+        take(d.block, from.block);
+        take(d.bufferBlock, from.bufferBlock);
+        take(d.rowMajor, from.rowMajor);
+        take(d.isVolatile, from.isVolatile);
+        take(d.towardsZero, from.towardsZero);
     }
 
     static void decorate(Decorations& d, const Instruction& i, size_t first) {
@@ -299,6 +353,9 @@ class Parser {
             case spv::DecorationVolatile:
                 d.isVolatile = true;
                 break;
+            case spv::DecorationFPRoundingMode:
+                d.towardsZero = i.operand(first + 1) == spv::FPRoundingModeRTZ;
+                break;
             default:
                 break;  // precision, aliasing, invariance: no difference to an interpreter that never
                         // contracts
@@ -319,6 +376,7 @@ class Parser {
             case spv::StorageClassUniform:
             case spv::StorageClassOutput:
             case spv::StorageClassPrivate:
+            case spv::StorageClassWorkgroup:
             case spv::StorageClassPushConstant:
             case spv::StorageClassStorageBuffer:
                 break;
@@ -355,6 +413,7 @@ class Parser {
                 if (inBlock_) fail("function " + name(function_->id) + " ends in a block without terminator");
                 if (function_->parameters.size() != module_.types[functionType_].members.size())
                     fail("function " + name(function_->id) + " has not the parameters of its type");
+                orderBlocks(*function_);
                 function_ = nullptr;
                 return;
             case spv::OpFunctionParameter:
@@ -370,9 +429,12 @@ class Parser {
                 inBlock_ = true;
                 return;
             }
-            // Structure is declared for compilers: an interpreter only has to follow the branches.
+            // Structure says where invocations that have parted come together again.
             case spv::OpSelectionMerge:
             case spv::OpLoopMerge:
+                if (!inBlock_) fail(name(i.op) + " outside a block");
+                function_->blocks.back().merge = i.operand(0);
+                if (i.op == spv::OpLoopMerge) function_->blocks.back().continueTarget = i.operand(1);
                 return;
             default:
                 break;
@@ -390,6 +452,7 @@ class Parser {
     Function* function_ = nullptr;  // the one being parsed
     uint32_t functionType_ = 0;
     bool inBlock_ = false;
+    std::vector<size_t> localSizeIds_;  // entry points
 };
 
 }  // namespace

@@ -7,6 +7,7 @@ namespace vernier::reference {
 namespace {
 
 ScalarKind scalarKind(const Type& type) {
+    if (type.width < 32) failUnsupported("an input or output of " + std::to_string(type.width) + " bits");
     const bool wide = type.width == 64;
     switch (type.kind) {
         case TypeKind::boolean:
@@ -150,8 +151,8 @@ DescriptorBinding reflectBinding(const ModuleData& module, const Variable& varia
     binding.inputAttachmentIndex = d.inputAttachmentIndex.value_or(0);
     if (const auto found = module.names.find(variable.id); found != module.names.end()) binding.name = found->second;
     const Type* type = &module.types[module.types[variable.pointerType].element];
-    if (type->isArray()) {
-        binding.count = type->kind == TypeKind::runtimeArray ? 0 : type->count;
+    while (type->isArray()) {
+        binding.count *= type->kind == TypeKind::runtimeArray ? 0 : type->count;
         type = &module.types[type->element];
     }
     switch (type->kind) {

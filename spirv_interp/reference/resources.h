@@ -104,6 +104,9 @@ class Resources {
     /// BufferKind::storage.
     virtual std::span<std::byte> buffer(BufferKind, const Descriptor&) { return {}; }
 
+    /// The bytes at an address of physical storage, `size` or none.
+    virtual std::span<std::byte> memory(uint64_t /*address*/, uint64_t /*size*/) { return {}; }
+
     /// OpImageSample*: filtered and, with `dref`, compared (result in component 0).
     virtual Texel<Number> sample(const ImageRequest<Number>&) { return {}; }
     /// OpImageGather and OpImageDrefGather.

@@ -56,6 +56,14 @@ class TypeParser {
                 type_.kind = TypeKind::pointer;
                 type_.storage = enumerant<spv::StorageClass>(i_.operand(0));
                 element(i_.operand(1));
+                type_.depth = 0;  // what it points at is no part of it
+                pointer();
+                break;
+            case spv::OpTypeForwardPointer:
+                type_.id = i_.operand(0);
+                type_.kind = TypeKind::pointer;
+                type_.storage = enumerant<spv::StorageClass>(i_.operand(1));
+                pointer();
                 break;
             case spv::OpTypeFunction:
                 type_.kind = TypeKind::function;
@@ -83,9 +91,17 @@ class TypeParser {
 
   private:
     void scalar(TypeKind kind, uint32_t width) {
-        if (width != 32 && width != 64) failUnsupported(name(i_.op) + " of width " + std::to_string(width));
+        const bool narrow = width == 16 || (width == 8 && kind == TypeKind::integer);
+        if (width != 32 && width != 64 && !narrow) failUnsupported(name(i_.op) + " of width " + std::to_string(width));
         type_.kind = kind;
         type_.width = width;
+        type_.scalars = 1;
+        type_.holdable = true;
+    }
+
+    /// One scalar: an address in physical storage, or a number of the invocation's own for a logical pointer.
+    void pointer() {
+        type_.width = 64;
         type_.scalars = 1;
         type_.holdable = true;
     }
@@ -168,7 +184,16 @@ class TypeParser {
 }  // namespace
 
 void parseType(ModuleData& module, const Instruction& instruction) {
-    module.types.push_back(TypeParser(module, instruction).run());
+    Type type = TypeParser(module, instruction).run();
+    const bool forward = type.id < module.ids.size() && module.ids[type.id].kind == IdKind::type;
+    if (forward) {
+        // A pointer that was announced: structs may already have it as a member.
+        if (instruction.op != spv::OpTypePointer || module.typeOf(type.id).kind != TypeKind::pointer)
+            fail(name(type.id) + " is defined twice");
+        module.types[module.typeIndex(type.id)] = std::move(type);
+    } else {
+        module.types.push_back(std::move(type));
+    }
 }
 
 const Type& ModuleData::scalarType(const Type& type) const {
@@ -202,6 +227,7 @@ uint64_t ModuleData::byteSize(const Type& type, uint32_t matrixStride, bool rowM
         case TypeKind::boolean:
         case TypeKind::integer:
         case TypeKind::floating:
+        case TypeKind::pointer:
             return type.width / 8;
         case TypeKind::vector:
             return uint64_t{type.count} * types[type.element].width / 8;

@@ -1,0 +1,15 @@
+// A work-group: its invocations as machines, in subgroups, that meet at barriers.
+#pragma once
+
+#include "spirv_interp/reference/machine.h"
+
+namespace vernier::reference {
+
+/// The constant decorated WorkgroupSize, or else the entry point's LocalSize.
+std::array<uint32_t, 3> workGroupSize(const ModuleData& module, size_t entryPoint);
+
+/// Throws Failure.
+template <class Number>
+void runWorkGroup(const Program<Number>& program, const WorkGroup& group, Resources<Number>& resources);
+
+}  // namespace vernier::reference
