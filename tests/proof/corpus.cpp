@@ -43,7 +43,7 @@ void directive(CorpusProgram& program, const std::string& text, int& vulkanMinor
     if (word == "invocations") {
         line >> subject.invocations;
     } else if (word == "groups") {
-        for (uint32_t& n : program.groups) line >> n;
+        for (uint32_t& n : subject.groups) line >> n;
     } else if (word == "inputs") {
         world.inputs = fillingOf(line);
     } else if (word == "input") {

@@ -23,7 +23,6 @@ namespace vernier::proof {
 
 struct CorpusProgram {
     Case subject;
-    std::array<uint32_t, 3> groups{1, 1, 1};
     std::string source;
 };
 

@@ -20,7 +20,7 @@ TEST(Harness, EveryCorpusProgramWritesDifferentValues) {
         const CorpusProgram program = loadCorpusProgram(file);
         const Program lowered = lower(program.subject);
         ASSERT_EQ(lowered.error, "") << file;
-        const Shape all = maskShapes(program.subject.invocations, 1)[0];
+        const Shape all = maskShapes(program.subject)[0];
         const Ending ending = runBatch(program.subject, lowered.ir, all, {bestIsa(), MathTier::standard, 64});
         size_t most = 0;
         for (size_t s = 0; s < ending.outputs.size(); ++s) {
@@ -50,12 +50,28 @@ ir::Op mutated(ir::Op op) {
     }
 }
 
+TEST(Harness, EveryComputeProgramChangesItsMemory) {
+    for (const std::string& file : corpusFiles(".comp")) {
+        const CorpusProgram program = loadCorpusProgram(file);
+        const Program lowered = lower(program.subject);
+        ASSERT_EQ(lowered.error, "") << file;
+        const Ending ending =
+            runBatch(program.subject, lowered.ir, maskShapes(program.subject)[0], {bestIsa(), MathTier::standard, 64});
+        size_t changed = 0;
+        for (const auto& [slot, bytes] : ending.memory->buffers())
+            changed += bytes != program.subject.world.bufferContents(slot) ? 1 : 0;
+        for (const auto& [slot, image] : ending.memory->images())
+            changed += image.texels() != program.subject.world.imageContents(slot).texels() ? 1 : 0;
+        EXPECT_GE(changed, 1u) << file;
+    }
+}
+
 TEST(Harness, MutatedProgramsAreFound) {
     size_t mutants = 0, found = 0;
     for (const char* file : {"julia.frag", "noise_value.frag", "bytecode_vm.frag", "skinning.vert"}) {
         const CorpusProgram program = loadCorpusProgram(file);
         const Program lowered = lower(program.subject);
-        const Shape all = maskShapes(program.subject.invocations, 1)[0];
+        const Shape all = maskShapes(program.subject)[0];
         const Ending expected = runReference(program.subject, lowered.ir, all, MathTier::standard);
         size_t each = 0;
         for (size_t b = 0; b < lowered.ir.blocks.size(); ++b) {

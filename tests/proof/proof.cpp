@@ -53,7 +53,10 @@ std::vector<Isa> isas() {
     return all;
 }
 
-std::vector<Shape> maskShapes(uint32_t invocations, uint64_t seed) {
+std::vector<Shape> maskShapes(const Case& subject) {
+    if (subject.stage == ir::Stage::compute) return {{"all", {}, {}}};
+    const uint32_t invocations = subject.invocations;
+    const uint64_t seed = subject.world.seed;
     std::vector<Shape> shapes;
     const auto add = [&](const char* name, auto exec, auto store) {
         Shape shape{name, std::vector<bool>(invocations), std::vector<bool>(invocations)};
@@ -143,7 +146,7 @@ std::string differences(const Case& subject, const ProofOptions& options) {
     const Program program = lower(subject);
     if (!program.error.empty()) return program.error + "\n";
     std::string all;
-    std::vector<Shape> shapes = maskShapes(subject.invocations, subject.world.seed);
+    std::vector<Shape> shapes = maskShapes(subject);
     if (!options.allShapes) shapes.resize(1);
     for (const Shape& shape : shapes) {
         const Ending expected = runReference(subject, program.ir, shape, options.tier);

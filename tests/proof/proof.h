@@ -37,7 +37,8 @@ struct Case {
     Words words;
     ir::Stage stage = ir::Stage::fragment;
     std::vector<SpecConstant> specialization;
-    uint32_t invocations = 64;  // vertex and fragment: a multiple of 4
+    uint32_t invocations = 64;                // vertex and fragment: a multiple of 4
+    std::array<uint32_t, 3> groups{1, 1, 1};  // compute
     World world;
 };
 
@@ -46,8 +47,9 @@ struct Shape {
     std::string name;
     std::vector<bool> exec, store;
 };
-/// All, one alone, every other quad, the first few, and random ones with helpers among them.
-std::vector<Shape> maskShapes(uint32_t invocations, uint64_t seed);
+/// All, one alone, every other quad, the first few, and random ones with helpers among them. Of a compute shader, whose
+/// work-groups are always whole: none.
+std::vector<Shape> maskShapes(const Case& subject);
 
 /// What one run leaves behind.
 struct Ending {

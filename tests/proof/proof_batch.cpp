@@ -70,7 +70,9 @@ class Bindings {
   public:
     Bindings(const ir::Program& program, Memory& memory) {
         for (const ir::Resource& r : program.resources) {
-            const uint32_t count = r.arraySize == 0 ? kRuntimeArray : r.arraySize;
+            const uint32_t count = r.kind == ir::ResourceKind::workgroupMemory ? 0
+                                   : r.arraySize == 0                          ? kRuntimeArray
+                                                                               : r.arraySize;
             base_.push_back(static_cast<uint32_t>(isBuffer(r.kind)                      ? buffers_.size()
                                                   : r.kind == ir::ResourceKind::sampler ? samplers_.size()
                                                                                         : images_.size()));
@@ -128,6 +130,17 @@ Ending runBatch(const Case& subject, const ir::Program& program, const Shape& sh
         return ending;
     }
     const Bindings bindings(program, *ending.memory);
+    if (subject.stage == ir::Stage::compute) {
+        WorkGroupContext context(*compiled);
+        const WorkGroupContext::Grid grid{subject.groups, {0, 0, 0}};
+        context.beginDispatch(bindings.get(), grid);
+        // In two parts, as threads share a dispatch.
+        const uint64_t half = grid.size() / 2;
+        if (!context.run(0, static_cast<uint32_t>(half)) ||
+            !context.run(half, static_cast<uint32_t>(grid.size() - half)))
+            ending.error = "batch: the back-edge budget is used up";
+        return ending;
+    }
     BatchContext context(*compiled);
     Interpolation interpolation{&subject.world, &program, 0};
     context.setInterpolator({&interpolation, Interpolation::at});

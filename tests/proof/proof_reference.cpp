@@ -144,10 +144,12 @@ class ReferenceRun final : public reference::Resources<Number> {
         options.stepwise = true;
         options.elementary = &kByTier[static_cast<size_t>(tier_)];
         options.stepBudget = 1u << 27;
-        const auto model =
-            subject_.stage == ir::Stage::vertex ? spv::ExecutionModelVertex : spv::ExecutionModelFragment;
+        constexpr spv::ExecutionModel kModels[] = {spv::ExecutionModelVertex, spv::ExecutionModelFragment,
+                                                   spv::ExecutionModelGLCompute};
+        const spv::ExecutionModel model = kModels[static_cast<size_t>(subject_.stage)];
         const auto interpreter = reference::Interpreter<Number>::create(*module, model, "main", options);
         if (!interpreter) return failed(interpreter.error().message);
+        if (subject_.stage == ir::Stage::compute) return runWorkGroups(*interpreter);
         variables_ = module->interfaceVariables(0);
         for (uint32_t first = 0; first < subject_.invocations && ending_.error.empty(); first += 4) {
             if (subject_.stage == ir::Stage::fragment) {
@@ -223,6 +225,17 @@ class ReferenceRun final : public reference::Resources<Number> {
   private:
     Ending failed(const std::string& message) {
         ending_.error = "reference: " + message;
+        return std::move(ending_);
+    }
+
+    Ending runWorkGroups(const reference::Interpreter<Number>& interpreter) {
+        reference::WorkGroup group;
+        group.count = subject_.groups;
+        for (group.id[2] = 0; group.id[2] < group.count[2]; ++group.id[2])
+            for (group.id[1] = 0; group.id[1] < group.count[1]; ++group.id[1])
+                for (group.id[0] = 0; group.id[0] < group.count[0]; ++group.id[0])
+                    if (const Status status = interpreter.runWorkGroup(group, *this); !status)
+                        return failed(status.error().message);
         return std::move(ending_);
     }
 

@@ -163,8 +163,9 @@ std::array<uint32_t, 4> TestImage::storage(const ImageAccess& a) {
             if (old[0] == a.comparator) texel[0] = v;
             break;
         default:
-            break;
+            return {old[0], 0, 0, 0};
     }
+    texel = {texel[0], 0, 0, 0};  // the formats that have atomics have one component
     return {old[0], 0, 0, 0};
 }
 
