@@ -8,8 +8,13 @@
 
 namespace vernier::bench {
 
-/// 1024 x 768; each bound by one thing: fill, small triangles, textures, arithmetic, ...
+/// 1024 x 768 (procedural ones 512 x 384); each bound by one thing: fill, small triangles, textures, arithmetic, ...
 std::span<const conformance::SceneEntry> speedScenes();
+
+/// Procedural pictures of 512 x 384, whose arithmetic is also measured as compute kernels.
+Result<conformance::Scene> raymarchScene();
+Result<conformance::Scene> noiseScene();
+Result<conformance::Scene> uniformScene();
 
 /// Small enough for the exact oracle; each sensitive to one axis of accuracy.
 std::span<const conformance::SceneEntry> accuracyScenes();

@@ -224,6 +224,9 @@ constexpr SceneEntry kSpeedScenes[] = {
     {"arithmetic", arithmetic},
     {"divergent", divergent},
     {"tiny_draws", tinyDraws},
+    {"raymarch_fragment", raymarchScene},
+    {"noise_fragment", noiseScene},
+    {"uniform_fragment", uniformScene},
 };
 
 }  // namespace

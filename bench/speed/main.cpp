@@ -1,19 +1,19 @@
-// vernier-bench: every driver on every speed scene, in turn A B C A B C, each in a process of its own; medians and
-// ratios.
+// vernier-bench: every driver on every speed scene or compute kernel, in turn A B C A B C, each in a process of its
+// own; medians and ratios.
 #include <algorithm>
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "base/cpu_budget.h"
 #include "base/simd.h"
+#include "bench/compute/run_kernel.h"
 #include "bench/scenes/bench_scenes.h"
 #include "bench/scenes/render_bench_scene.h"
+#include "bench/speed/table.h"
 #include "conformance/tool/render_scene.h"
 
 namespace vernier::bench {
@@ -21,128 +21,115 @@ namespace {
 
 using namespace conformance;
 
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
-}
-
-struct Measured {
-    std::vector<double> frame, startUp;  // ms, one per round; start-up: device to first image, less one steady frame
-    std::string driver, failure;
-};
-
-class Table {
-  public:
-    Table(std::vector<std::string> drivers, std::string reference)
-        : drivers_(std::move(drivers)), reference_(std::move(reference)) {}
-
-    void printHeader() const {
-        std::printf("%-16s", "scene");
-        for (const std::string& driver : drivers_) std::printf(" %12s %12s", driver.c_str(), "start-up");
-        for (const std::string& driver : drivers_)
-            if (driver != reference_) std::printf(" %11s", (driver + "/" + reference_.substr(0, 3)).c_str());
-        std::printf("\n%-16s", "");
-        for (size_t i = 0; i < drivers_.size(); ++i) std::printf(" %12s %12s", "ms/frame", "ms");
-        std::printf("\n");
-    }
-
-    void printRow(const std::string& scene, const std::map<std::string, Measured>& row) {
-        std::printf("%-16s", scene.c_str());
-        for (const std::string& driver : drivers_) {
-            const Measured& m = row.at(driver);
-            if (m.frame.empty())
-                std::printf(" %12s %12s", "failed", "-");
-            else
-                std::printf(" %12.3f %12.2f", median(m.frame), median(m.startUp));
-        }
-        const Measured& base = row.at(reference_);
-        for (const std::string& driver : drivers_) {
-            const Measured& m = row.at(driver);
-            if (driver == reference_) continue;
-            if (m.frame.empty() || base.frame.empty()) {
-                std::printf(" %11s", "-");
-                continue;
-            }
-            const double ratio = median(m.frame) / median(base.frame);
-            ratios_[driver].push_back(ratio);
-            startRatios_[driver].push_back(median(m.startUp) / median(base.startUp));
-            std::printf(" %11.2f", ratio);
-        }
-        std::printf("\n");
-        std::fflush(stdout);
-    }
-
-    void printMeans() const {
-        for (const auto& [driver, ratios] : ratios_)
-            std::printf("%s against %s over %zu scenes: frame time x %.2f, start-up x %.3f (geometric means)\n",
-                        driver.c_str(), reference_.c_str(), ratios.size(), geometricMean(ratios),
-                        geometricMean(startRatios_.at(driver)));
-    }
-
-  private:
-    static double geometricMean(const std::vector<double>& values) {
-        double sum = 0;
-        for (const double value : values) sum += std::log(value);
-        return std::exp(sum / static_cast<double>(values.size()));
-    }
-
-    std::vector<std::string> drivers_;
-    std::string reference_;
-    std::map<std::string, std::vector<double>> ratios_, startRatios_;
-};
-
 struct RunOptions {
-    std::vector<std::string> drivers, scenes;
+    std::vector<std::string> drivers, names;
     uint32_t rounds = 3;
     std::filesystem::path out = "out/bench";
     std::string json;
 };
 
-int run(const DriverPaths& paths, const RunOptions& options) {
+/// The drivers that were asked for and are present; `needsVulkan` leaves out Vernier's own API.
+std::vector<std::string> presentDrivers(const DriverPaths& paths, const RunOptions& options, bool needsVulkan) {
     std::vector<std::string> drivers;
     for (const DriverChoice& choice : driverChoices(paths)) {
         const bool wanted =
             options.drivers.empty() || std::count(options.drivers.begin(), options.drivers.end(), choice.name);
-        if (wanted && choice.present()) drivers.push_back(choice.name);
-        if (wanted && !choice.present())
+        if (!wanted || (needsVulkan && choice.name == "api")) continue;
+        if (choice.present())
+            drivers.push_back(choice.name);
+        else
             std::printf("left out: %s (%s)\n", choice.name.c_str(), choice.absence.c_str());
     }
+    return drivers;
+}
+
+/// What the drivers made of a kernel, compared with the reference's; one line each.
+nlohmann::json compareKernel(const Kernel& kernel, const std::map<std::string, Rendering>& last,
+                             const std::string& reference) {
+    nlohmann::json report;
+    const auto base = last.find(reference);
+    for (const auto& [driver, rendering] : last) {
+        if (driver == reference || base == last.end()) continue;
+        const KernelDifference difference = compareOutputs(kernel, rendering, base->second);
+        std::printf("  %s %s %s: worst difference %.3g, %.3g%% beyond %.3g (allowed: %.3g%%)\n", driver.c_str(),
+                    difference.agrees ? "agrees with" : "DIFFERS from", reference.c_str(), difference.worst,
+                    100 * difference.share, kernel.tolerance, 100 * kernel.share);
+        report[driver] = {
+            {"worst", difference.worst}, {"share_beyond", difference.share}, {"agrees", difference.agrees}};
+    }
+    return report;
+}
+
+int run(const DriverPaths& paths, const RunOptions& options, const std::vector<std::string>& names, bool compute) {
+    const std::vector<std::string> drivers = presentDrivers(paths, options, compute);
+    if (drivers.empty()) return std::fprintf(stderr, "no driver to run\n"), 2;
     const std::string reference =
         std::count(drivers.begin(), drivers.end(), "lavapipe") ? std::string("lavapipe") : drivers.back();
     std::printf("%u usable CPUs, %s, %u rounds, medians\n", usableCpuCount(), std::string(isaName(bestIsa())).c_str(),
                 options.rounds);
+    std::printf(
+        "start-up: creating pipelines and the first run, less a steady run; modules: creating shader modules\n");
     Table table(drivers, reference);
-    table.printHeader();
+    table.printHeader(compute ? "kernel" : "scene");
     nlohmann::json report;
-    for (const SceneEntry& entry : speedScenes()) {
-        const std::string scene(entry.name);
-        if (!options.scenes.empty() && !std::count(options.scenes.begin(), options.scenes.end(), scene)) continue;
+    bool agree = true;
+    for (const std::string& name : names) {
+        if (!options.names.empty() && !std::count(options.names.begin(), options.names.end(), name)) continue;
         std::map<std::string, Measured> row;
+        std::map<std::string, Rendering> last;
         for (uint32_t round = 0; round < options.rounds; ++round)
             for (const std::string& driver : drivers) {
                 Measured& measured = row[driver];
-                const Result<Rendering> rendering = renderInChild(paths, driver, scene, options.out / driver, 120);
+                Result<Rendering> rendering = renderInChild(paths, driver, name, options.out / driver, 120);
                 if (!rendering) {
                     measured.failure = rendering.error().message;
                     continue;
                 }
-                measured.driver = rendering->driver + " " + rendering->version;
-                measured.frame.push_back(rendering->timing.frame);
                 const Timing& timing = rendering->timing;
-                measured.startUp.push_back(timing.firstImage - timing.startUp - timing.frame);
+                measured.driver = rendering->driver + " " + rendering->version;
+                measured.frame.push_back(timing.frame);
+                measured.startUp.push_back(timing.toFirstResult());
+                measured.modules.push_back(timing.modules);
+                last.insert_or_assign(driver, std::move(rendering).value());
             }
-        table.printRow(scene, row);
+        table.printRow(name, row);
         for (const auto& [driver, measured] : row) {
             if (!measured.failure.empty()) std::printf("  %s: %s\n", driver.c_str(), measured.failure.c_str());
-            report[scene][driver] = {{"driver", measured.driver},
-                                     {"frame_ms", measured.frame},
-                                     {"start_up_ms", measured.startUp},
-                                     {"failure", measured.failure}};
+            report[name][driver] = {{"driver", measured.driver},
+                                    {"frame_ms", measured.frame},
+                                    {"start_up_ms", measured.startUp},
+                                    {"modules_ms", measured.modules},
+                                    {"failure", measured.failure}};
+        }
+        if (!compute) continue;
+        const nlohmann::json comparison = compareKernel(*findKernel(name), last, reference);
+        for (const auto& [driver, entry] : comparison.items()) {
+            report[name][driver]["against_" + reference] = entry;
+            agree = agree && entry["agrees"].get<bool>();
         }
     }
-    table.printMeans();
+    table.printSummary();
     if (!options.json.empty()) std::ofstream(options.json) << report.dump(2) << '\n';
-    return 0;
+    return agree ? 0 : 1;
+}
+
+/// What a child does: one scene or kernel on one driver.
+int renderOne(const DriverPaths& paths, const std::string& driver, const std::string& name,
+              const std::filesystem::path& out) {
+    const Kernel* kernel = findKernel(name);
+    if (!kernel) return renderBenchScene(paths, driver, name, out);
+    const Result<Rendering> rendering = runKernel(paths, driver, *kernel);
+    const Status status = rendering ? saveRendering(*rendering, out) : Status(rendering.error());
+    if (!status) std::fprintf(stderr, "%s\n", status.error().message.c_str());
+    return status ? 0 : 2;
+}
+
+void addRunOptions(CLI::App& command, RunOptions& options, const char* nameOption) {
+    command.add_option("--driver", options.drivers, "Only these drivers");
+    command.add_option(nameOption, options.names, "Only these");
+    command.add_option("--rounds", options.rounds, "Runs of each driver and row")->check(CLI::Range(1, 1000));
+    command.add_option("--out", options.out, "Folder for what the children write");
+    command.add_option("--json", options.json, "File for the figures");
 }
 
 int main(int argc, char** argv) {
@@ -150,21 +137,27 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     DriverPaths paths;
     addDriverOptions(app, paths);
-    CLI::App* renderCommand = app.add_subcommand("render", "Time one scene on one driver (used by run)");
+    CLI::App* renderCommand =
+        app.add_subcommand("render", "Time one scene or kernel on one driver (used by the others)");
     std::string driver, scene;
     std::filesystem::path out;
     renderCommand->add_option("--driver", driver)->required();
     renderCommand->add_option("--scene", scene)->required();
     renderCommand->add_option("--out", out)->required();
-    CLI::App* runCommand = app.add_subcommand("run", "Time all scenes on all drivers");
     RunOptions options;
-    runCommand->add_option("--driver", options.drivers, "Only these drivers");
-    runCommand->add_option("--scene", options.scenes, "Only these scenes");
-    runCommand->add_option("--rounds", options.rounds, "Runs of each driver and scene")->check(CLI::Range(1, 1000));
-    runCommand->add_option("--out", options.out, "Folder for what the children write");
-    runCommand->add_option("--json", options.json, "File for the figures");
+    CLI::App* runCommand = app.add_subcommand("run", "Time all scenes on all drivers");
+    addRunOptions(*runCommand, options, "--scene");
+    CLI::App* computeCommand =
+        app.add_subcommand("compute", "Time all compute kernels on all Vulkan drivers and compare what they compute");
+    addRunOptions(*computeCommand, options, "--kernel");
     CLI11_PARSE(app, argc, argv);
-    return *renderCommand ? renderBenchScene(paths, driver, scene, out) : run(paths, options);
+    if (*renderCommand) return renderOne(paths, driver, scene, out);
+    std::vector<std::string> names;
+    if (*computeCommand)
+        for (const Kernel& kernel : kernels()) names.emplace_back(kernel.name);
+    else
+        for (const SceneEntry& entry : speedScenes()) names.emplace_back(entry.name);
+    return run(paths, options, names, computeCommand->parsed());
 }
 
 }  // namespace

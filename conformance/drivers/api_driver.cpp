@@ -232,11 +232,14 @@ Result<std::vector<RenderedImage>> ApiDriver::render(const Scene& scene, Timing*
     SceneRun run(device_, owner.context, scene);
     double pipelineTime = 0;
     VERNIER_TRY(run.prepare(pipelineTime));
+    const Stopwatch firstFrame;
     VERNIER_TRY(run.runFrame());
+    const double firstFrameTime = firstFrame.milliseconds();
     Result<std::vector<RenderedImage>> images = run.readBack();
     if (!images || timing == nullptr) return images;
     timing->startUp = startUp_;
     timing->pipelines = pipelineTime;
+    timing->firstFrame = firstFrameTime;
     timing->firstImage = startUp_ + watch.milliseconds();
     const Result<FrameTimes> frames = measureFrames([&] { return run.runFrame(); });
     if (!frames) return frames.error();

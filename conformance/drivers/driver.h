@@ -13,10 +13,15 @@ namespace vernier::conformance {
 /// How long one scene took, in milliseconds of wall time.
 struct Timing {
     double startUp = 0;     // finding the driver and creating its device
-    double pipelines = 0;   // creating the pipelines, shaders included
+    double modules = 0;     // creating the shader modules, where the API has them
+    double pipelines = 0;   // creating the pipelines
+    double firstFrame = 0;  // the first run of the recorded commands
     double firstImage = 0;  // from before start-up until the scene's pixels are in host memory
     double frame = 0;       // the median of `frames` further runs of the recorded commands
     uint32_t frames = 0;
+
+    /// From modules to a first result, less what every later frame takes.
+    double toFirstResult() const { return pipelines + firstFrame - frame; }
 };
 
 class Driver {

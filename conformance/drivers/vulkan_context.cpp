@@ -143,6 +143,7 @@ Status VulkanContext::createDevice(uint32_t deviceIndex) {
     });
     if (family == families.end()) return unsupported(std::string(properties_.deviceName) + " has no graphics queue");
     queueFamily_ = static_cast<uint32_t>(family - families.begin());
+    compute_ = (family->queueFlags & VK_QUEUE_COMPUTE_BIT) != 0;
 
     negativeViewports_ = instanceVersion_ >= VK_API_VERSION_1_1 && properties_.apiVersion >= VK_API_VERSION_1_1;
     const char* maintenance = VK_KHR_MAINTENANCE_1_EXTENSION_NAME;

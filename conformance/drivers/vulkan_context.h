@@ -65,6 +65,8 @@ class VulkanContext {
     const VkPhysicalDeviceProperties& properties() const { return properties_; }
     const VkPhysicalDeviceFeatures& features() const { return features_; }
     VkFormatProperties formatProperties(VkFormat format) const;
+    /// Whether the queue runs compute work.
+    bool hasCompute() const { return compute_; }
     /// Whether viewports may have negative heights.
     bool hasNegativeViewports() const { return negativeViewports_; }
 
@@ -89,7 +91,7 @@ class VulkanContext {
     VkPhysicalDeviceProperties properties_{};
     VkPhysicalDeviceFeatures features_{};
     VkPhysicalDeviceMemoryProperties memory_{};
-    bool negativeViewports_ = false;
+    bool compute_ = false, negativeViewports_ = false;
     VkDevice device_ = VK_NULL_HANDLE;
     uint32_t queueFamily_ = 0;
     VkQueue queue_ = VK_NULL_HANDLE;

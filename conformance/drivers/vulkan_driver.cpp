@@ -32,6 +32,7 @@ class SceneRun {
 
     Status runFrame() { return resources_.run(frame_); }
     Result<std::vector<RenderedImage>> readBack();
+    double moduleTime() const { return builder_.moduleTime(); }
     double pipelineTime() const { return builder_.pipelineTime(); }
 
   private:
@@ -244,11 +245,15 @@ Result<std::vector<RenderedImage>> VulkanDriver::render(const Scene& scene, Timi
     }
     SceneRun run(context_, scene);
     VERNIER_TRY(run.prepare());
+    const Stopwatch firstFrame;
     VERNIER_TRY(run.runFrame());
+    const double firstFrameTime = firstFrame.milliseconds();
     Result<std::vector<RenderedImage>> images = run.readBack();
     if (images && timing != nullptr) {
         timing->startUp = startUp_;
+        timing->modules = run.moduleTime();
         timing->pipelines = run.pipelineTime();
+        timing->firstFrame = firstFrameTime;
         timing->firstImage = startUp_ + watch.milliseconds();
         const Result<FrameTimes> frames = measureFrames([&] { return run.runFrame(); });
         if (!frames) return frames.error();

@@ -42,9 +42,10 @@ Result<VulkanPass> VulkanPassBuilder::build(const ScenePass& scenePass) {
         const auto [entry, isNew] = known.try_emplace(pipelineKey(draw), pass.pipelines.size());
         if (isNew) {
             const Stopwatch watch;
+            const double modulesBefore = moduleTime_;
             Result<VulkanPipeline> pipeline = createPipeline(draw, pass.renderPass);
             if (!pipeline) return pipeline.error();
-            pipelineTime_ += watch.milliseconds();
+            pipelineTime_ += watch.milliseconds() - (moduleTime_ - modulesBefore);
             pass.pipelines.push_back(std::move(*pipeline));
         }
         Result<std::vector<VkDescriptorSet>> sets = createSets(draw, pass.pipelines[entry->second]);
@@ -169,7 +170,9 @@ Result<VkShaderModule> VulkanPassBuilder::shaderModule(uint32_t index) {
     info.codeSize = scene_.shaders[index].spirv.size() * sizeof(uint32_t);
     info.pCode = scene_.shaders[index].spirv.data();
     VkShaderModule shader = VK_NULL_HANDLE;
+    const Stopwatch watch;
     VERNIER_TRY_VK(vkCreateShaderModule(device, &info, nullptr, &shader));
+    moduleTime_ += watch.milliseconds();
     resources_.cleanup().add([device, shader] { vkDestroyShaderModule(device, shader, nullptr); });
     modules_[index] = shader;
     return shader;

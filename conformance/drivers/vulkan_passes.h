@@ -35,7 +35,8 @@ class VulkanPassBuilder {
 
     Result<VulkanPass> build(const ScenePass& pass);
 
-    /// Milliseconds spent in creating shader modules and pipelines.
+    /// Milliseconds spent in creating shader modules, and in creating pipelines from them.
+    double moduleTime() const { return moduleTime_; }
     double pipelineTime() const { return pipelineTime_; }
 
   private:
@@ -50,7 +51,7 @@ class VulkanPassBuilder {
     VulkanResources& resources_;
     const Scene& scene_;
     std::vector<VkShaderModule> modules_;
-    double pipelineTime_ = 0;
+    double moduleTime_ = 0, pipelineTime_ = 0;
 };
 
 }  // namespace vernier::conformance

@@ -1,5 +1,6 @@
 #include "conformance/tool/driver_choice.h"
 
+#include "conformance/drivers/try.h"
 #include "conformance/drivers/vulkan_driver.h"
 #if VERNIER_HAS_API
 #include "conformance/drivers/api_driver.h"
@@ -52,16 +53,23 @@ Result<std::unique_ptr<Driver>> createApiDriver(const std::string& profile) {
 }  // namespace
 #endif
 
+Status selectVulkanDriver(const DriverChoice& choice) {
+    if (!choice.present()) return unsupported("driver '" + choice.name + "': " + choice.absence);
+    if (choice.manifest.empty()) return invalidArgument("driver '" + choice.name + "' is no Vulkan driver");
+    // Older loaders read the second name only. The shader cache would hide what compiling costs.
+    ::setenv("VK_DRIVER_FILES", choice.manifest.c_str(), 1);
+    ::setenv("VK_ICD_FILENAMES", choice.manifest.c_str(), 1);
+    ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
+    return {};
+}
+
 Result<std::unique_ptr<Driver>> createDriver(const DriverChoice& choice, const DriverPaths& paths, bool validate) {
     if (!choice.present()) return unsupported("driver '" + choice.name + "': " + choice.absence);
 #if VERNIER_HAS_API
     if (choice.manifest.empty()) return createApiDriver(paths.profile);
 #endif
     (void)paths;
-    // Older loaders read the second name only. The shader cache would hide what compiling costs.
-    ::setenv("VK_DRIVER_FILES", choice.manifest.c_str(), 1);
-    ::setenv("VK_ICD_FILENAMES", choice.manifest.c_str(), 1);
-    ::setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
+    VERNIER_TRY(selectVulkanDriver(choice));
     VulkanOptions options;
     options.validate = validate;
     Result<std::unique_ptr<VulkanDriver>> driver = VulkanDriver::create(options);

@@ -37,8 +37,11 @@ struct DriverPaths {
 /// All drivers in the order of the report, present or not.
 std::vector<DriverChoice> driverChoices(const DriverPaths& paths);
 
-/// Creates the driver in this process. For Vulkan drivers it sets the loader's environment variables first,
-/// so that a process can use one only.
+/// Makes the Vulkan loader find this driver alone, by its environment variables: before the process's first Vulkan
+/// call.
+Status selectVulkanDriver(const DriverChoice& choice);
+
+/// Creates the driver in this process, which can use one Vulkan driver only (see above).
 Result<std::unique_ptr<Driver>> createDriver(const DriverChoice& choice, const DriverPaths& paths, bool validate);
 
 /// The oracle's images of a scene; `unsupported` in a build without the oracle.

@@ -50,7 +50,9 @@ Status saveRendering(const Rendering& rendering, const std::filesystem::path& di
                                      {"limits", rendering.limits},
                                      {"milliseconds",
                                       {{"startUp", timing.startUp},
+                                       {"modules", timing.modules},
                                        {"pipelines", timing.pipelines},
+                                       {"firstFrame", timing.firstFrame},
                                        {"firstImage", timing.firstImage},
                                        {"frame", timing.frame}}},
                                      {"frames", timing.frames},
@@ -71,8 +73,8 @@ Result<Rendering> loadRendering(const std::filesystem::path& directory, const st
         rendering.version = document.at("version").get<std::string>();
         rendering.limits = document.at("limits").get<std::string>();
         const nlohmann::json& times = document.at("milliseconds");
-        rendering.timing = {times.at("startUp"), times.at("pipelines"), times.at("firstImage"), times.at("frame"),
-                            document.at("frames")};
+        rendering.timing = {times.at("startUp"),    times.at("modules"), times.at("pipelines"), times.at("firstFrame"),
+                            times.at("firstImage"), times.at("frame"),   document.at("frames")};
         for (const nlohmann::json& entry : document.at("images")) {
             RenderedImage image;
             image.format = static_cast<VkFormat>(entry.at("format").get<int>());

@@ -1,0 +1,287 @@
+#include "bench/compute/run_kernel.h"
+
+#include <vernier/vernier_glsl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <memory>
+
+#include "conformance/drivers/stopwatch.h"
+#include "conformance/drivers/vulkan_context.h"
+#include "conformance/drivers/vulkan_resources.h"
+
+namespace vernier::bench {
+namespace {
+
+using namespace conformance;
+
+Result<std::vector<uint32_t>> compileKernel(const KernelPass& pass) {
+    const Result<std::string> source = readKernelSource(pass.files);
+    if (!source) return source.error();
+    const std::string name(pass.files.back());
+    VnGlslDesc desc{};
+    desc.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+    desc.source = source->c_str();
+    desc.sourceName = name.c_str();
+    VnGlslOutput* raw = nullptr;
+    const VnGlslResult result = vnCompileGlsl(&desc, &raw);
+    const std::unique_ptr<VnGlslOutput, decltype(&vnFreeGlslOutput)> output(raw, &vnFreeGlslOutput);
+    if (result != VN_GLSL_SUCCESS) return invalidArgument(name + ":\n" + (output ? output->log : "out of memory"));
+    return std::vector<uint32_t>(output->words, output->words + output->wordCount);
+}
+
+/// The same numbers on every driver: a hash of the index.
+std::vector<uint32_t> initialContents(const KernelBuffer& buffer, uint32_t seed) {
+    std::vector<uint32_t> words(buffer.elements, 0);
+    if (buffer.fill == BufferFill::zero) return words;
+    for (uint32_t i = 0; i < buffer.elements; ++i) {
+        uint32_t hash = (i + seed * 0x9E3779B9u) * 0x85EBCA6Bu;
+        hash = (hash ^ hash >> 15) * 0xC2B2AE35u;
+        hash ^= hash >> 13;
+        const float value = static_cast<float>(hash >> 8) * 0x1p-23f - 1.0f;
+        if (buffer.fill == BufferFill::smallIntegers)
+            words[i] = hash >> 24;
+        else
+            std::memcpy(&words[i], &value, sizeof value);
+    }
+    return words;
+}
+
+/// A kernel on a device, from its buffers to its output.
+class KernelRun {
+  public:
+    KernelRun(VulkanContext& context, const Kernel& kernel)
+        : context_(context), kernel_(kernel), resources_(context), device_(context.device()) {}
+
+    Status prepare() {
+        VERNIER_TRY(resources_.create(Scene{}));
+        VERNIER_TRY(createBuffers());
+        VERNIER_TRY(createLayouts());
+        VERNIER_TRY(createSet());
+        for (const KernelPass& pass : kernel_.passes) {
+            Result<std::vector<uint32_t>> words = compileKernel(pass);
+            if (!words) return words.error();
+            VERNIER_TRY(createPipeline(*words));
+        }
+        return record();
+    }
+
+    Status runOnce() { return resources_.run(commands_); }
+    double moduleTime() const { return moduleTime_; }
+    double pipelineTime() const { return pipelineTime_; }
+    RenderedImage output() const {
+        const uint32_t elements = kernel_.buffers[kernel_.output].elements;
+        RenderedImage image{kernel_.integers ? VK_FORMAT_R32_UINT : VK_FORMAT_R32_SFLOAT, {elements, 1}, {}};
+        image.texels.resize(size_t{elements} * 4);
+        std::memcpy(image.texels.data(), buffers_[kernel_.output].mapped, image.texels.size());
+        return image;
+    }
+
+  private:
+    Status createBuffers();
+    Status createLayouts();
+    Status createSet();
+    Status createPipeline(const std::vector<uint32_t>& words);
+    Status record();
+    void barrier(VkAccessFlags to, VkPipelineStageFlags stage);
+
+    VulkanContext& context_;
+    const Kernel& kernel_;
+    VulkanResources resources_;
+    VkDevice device_;
+    std::vector<VulkanBuffer> buffers_;
+    VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
+    VkPipelineLayout layout_ = VK_NULL_HANDLE;
+    VkDescriptorSet set_ = VK_NULL_HANDLE;
+    std::vector<VkPipeline> pipelines_;
+    VkCommandBuffer commands_ = VK_NULL_HANDLE;
+    double moduleTime_ = 0, pipelineTime_ = 0;
+};
+
+Status KernelRun::createBuffers() {
+    for (const KernelBuffer& each : kernel_.buffers) {
+        const std::vector<uint32_t> words = initialContents(each, static_cast<uint32_t>(buffers_.size()));
+        const Result<VulkanBuffer> buffer =
+            resources_.createHostBuffer(words.size() * 4, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+        if (!buffer) return buffer.error();
+        std::memcpy(buffer->mapped, words.data(), words.size() * 4);
+        buffers_.push_back(*buffer);
+    }
+    return {};
+}
+
+Status KernelRun::createLayouts() {
+    std::vector<VkDescriptorSetLayoutBinding> bindings;
+    for (uint32_t i = 0; i < buffers_.size(); ++i)
+        bindings.push_back({i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+    VkDescriptorSetLayoutCreateInfo setInfo{};
+    setInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+    setInfo.bindingCount = static_cast<uint32_t>(bindings.size());
+    setInfo.pBindings = bindings.data();
+    VERNIER_TRY_VK(vkCreateDescriptorSetLayout(device_, &setInfo, nullptr, &setLayout_));
+    resources_.cleanup().add([this] { vkDestroyDescriptorSetLayout(device_, setLayout_, nullptr); });
+    const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0,
+                                    static_cast<uint32_t>(kernel_.pushConstants.size() * sizeof(float))};
+    VkPipelineLayoutCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+    info.setLayoutCount = 1;
+    info.pSetLayouts = &setLayout_;
+    info.pushConstantRangeCount = range.size != 0 ? 1 : 0;
+    info.pPushConstantRanges = &range;
+    VERNIER_TRY_VK(vkCreatePipelineLayout(device_, &info, nullptr, &layout_));
+    resources_.cleanup().add([this] { vkDestroyPipelineLayout(device_, layout_, nullptr); });
+    return {};
+}
+
+Status KernelRun::createSet() {
+    const auto count = static_cast<uint32_t>(buffers_.size());
+    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, count};
+    VkDescriptorPoolCreateInfo poolInfo{};
+    poolInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+    poolInfo.maxSets = 1;
+    poolInfo.poolSizeCount = 1;
+    poolInfo.pPoolSizes = &size;
+    VkDescriptorPool pool = VK_NULL_HANDLE;
+    VERNIER_TRY_VK(vkCreateDescriptorPool(device_, &poolInfo, nullptr, &pool));
+    resources_.cleanup().add([this, pool] { vkDestroyDescriptorPool(device_, pool, nullptr); });
+    VkDescriptorSetAllocateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+    info.descriptorPool = pool;
+    info.descriptorSetCount = 1;
+    info.pSetLayouts = &setLayout_;
+    VERNIER_TRY_VK(vkAllocateDescriptorSets(device_, &info, &set_));
+    std::vector<VkDescriptorBufferInfo> ranges(count);
+    std::vector<VkWriteDescriptorSet> writes(count);
+    for (uint32_t i = 0; i < count; ++i) {
+        ranges[i] = {buffers_[i].handle, 0, VK_WHOLE_SIZE};
+        writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+        writes[i].dstSet = set_;
+        writes[i].dstBinding = i;
+        writes[i].descriptorCount = 1;
+        writes[i].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        writes[i].pBufferInfo = &ranges[i];
+    }
+    vkUpdateDescriptorSets(device_, count, writes.data(), 0, nullptr);
+    return {};
+}
+
+Status KernelRun::createPipeline(const std::vector<uint32_t>& words) {
+    const Stopwatch moduleWatch;
+    VkShaderModuleCreateInfo moduleInfo{};
+    moduleInfo.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+    moduleInfo.codeSize = words.size() * sizeof(uint32_t);
+    moduleInfo.pCode = words.data();
+    VkShaderModule shader = VK_NULL_HANDLE;
+    VERNIER_TRY_VK(vkCreateShaderModule(device_, &moduleInfo, nullptr, &shader));
+    resources_.cleanup().add([this, shader] { vkDestroyShaderModule(device_, shader, nullptr); });
+    moduleTime_ += moduleWatch.milliseconds();
+
+    const Stopwatch watch;
+    VkComputePipelineCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
+    info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+    info.stage.module = shader;
+    info.stage.pName = "main";
+    info.layout = layout_;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    VERNIER_TRY_VK(vkCreateComputePipelines(device_, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline));
+    resources_.cleanup().add([this, pipeline] { vkDestroyPipeline(device_, pipeline, nullptr); });
+    pipelineTime_ += watch.milliseconds();
+    pipelines_.push_back(pipeline);
+    return {};
+}
+
+void KernelRun::barrier(VkAccessFlags to, VkPipelineStageFlags stage) {
+    VkMemoryBarrier memory{};
+    memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+    memory.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT;
+    memory.dstAccessMask = to;
+    vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, stage, 0, 1, &memory, 0, nullptr, 0, nullptr);
+}
+
+Status KernelRun::record() {
+    const Result<VkCommandBuffer> commands = resources_.beginCommands();
+    if (!commands) return commands.error();
+    commands_ = *commands;
+    vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 0, 1, &set_, 0, nullptr);
+    if (!kernel_.pushConstants.empty())
+        vkCmdPushConstants(commands_, layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0,
+                           static_cast<uint32_t>(kernel_.pushConstants.size() * sizeof(float)),
+                           kernel_.pushConstants.data());
+    for (size_t i = 0; i < kernel_.passes.size(); ++i) {
+        if (i > 0)
+            barrier(VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT);
+        const auto& groups = kernel_.passes[i].groups;
+        vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipelines_[i]);
+        vkCmdDispatch(commands_, groups[0], groups[1], groups[2]);
+    }
+    barrier(VK_ACCESS_HOST_READ_BIT, VK_PIPELINE_STAGE_HOST_BIT);
+    VERNIER_TRY_VK(vkEndCommandBuffer(commands_));
+    return {};
+}
+
+}  // namespace
+
+Result<Rendering> runKernel(const DriverPaths& paths, const std::string& driver, const Kernel& kernel) {
+    const std::vector<DriverChoice> choices = driverChoices(paths);
+    const auto choice =
+        std::find_if(choices.begin(), choices.end(), [&](const DriverChoice& each) { return each.name == driver; });
+    if (choice == choices.end()) return invalidArgument("--driver: no driver is called '" + driver + "'");
+    VERNIER_TRY(selectVulkanDriver(*choice));
+    const Stopwatch watch;
+    VulkanContext context;
+    VERNIER_TRY(context.create({}));
+    if (!context.hasCompute()) return unsupported("the queue has no compute");
+    Rendering rendering;
+    rendering.scene = kernel.name;
+    rendering.driver = context.properties().deviceName;
+    rendering.timing.startUp = watch.milliseconds();
+    KernelRun run(context, kernel);
+    VERNIER_TRY(run.prepare());
+    const Stopwatch first;
+    VERNIER_TRY(run.runOnce());
+    rendering.timing.firstFrame = first.milliseconds();
+    rendering.timing.firstImage = watch.milliseconds();
+    const Result<FrameTimes> frames = measureFrames([&] { return run.runOnce(); });
+    if (!frames) return frames.error();
+    rendering.timing.modules = run.moduleTime();
+    rendering.timing.pipelines = run.pipelineTime();
+    rendering.timing.frame = frames->median;
+    rendering.timing.frames = frames->count;
+    rendering.images.push_back(run.output());
+    return rendering;
+}
+
+KernelDifference compareOutputs(const Kernel& kernel, const Rendering& a, const Rendering& b) {
+    KernelDifference difference;
+    const auto &x = a.images[0].texels, &y = b.images[0].texels;
+    const size_t elements = std::min(x.size(), y.size()) / 4;
+    size_t beyond = x.size() == y.size() ? 0 : elements;
+    for (size_t i = 0; i < elements; ++i) {
+        double left = 0, right = 0;
+        if (kernel.integers) {
+            uint32_t words[2];
+            std::memcpy(&words[0], x.data() + i * 4, 4);
+            std::memcpy(&words[1], y.data() + i * 4, 4);
+            left = words[0];
+            right = words[1];
+        } else {
+            float floats[2];
+            std::memcpy(&floats[0], x.data() + i * 4, 4);
+            std::memcpy(&floats[1], y.data() + i * 4, 4);
+            left = double{floats[0]};
+            right = double{floats[1]};
+        }
+        const double scale = kernel.integers ? 1 : std::max({1.0, std::abs(left), std::abs(right)});
+        const double error = std::abs(left - right) / scale;
+        if (!(error <= kernel.tolerance)) ++beyond;  // NaN too
+        if (!(error <= difference.worst)) difference.worst = error;
+    }
+    difference.share = elements ? static_cast<double>(beyond) / static_cast<double>(elements) : 1;
+    difference.agrees = difference.share <= kernel.share;
+    return difference;
+}
+
+}  // namespace vernier::bench

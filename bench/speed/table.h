@@ -1,0 +1,40 @@
+// The table that vernier-bench prints: a row per scene or kernel, ratios against one driver.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace vernier::bench {
+
+double median(std::vector<double> values);
+
+/// What one driver took, in milliseconds, a value per round.
+struct Measured {
+    std::vector<double> frame;    // a steady run
+    std::vector<double> startUp;  // creating pipelines and the first run, less a steady run
+    std::vector<double> modules;  // creating the shader modules
+    std::string driver, failure;
+};
+
+class Table {
+  public:
+    Table(std::vector<std::string> drivers, std::string reference)
+        : drivers_(std::move(drivers)), reference_(std::move(reference)) {}
+
+    void printHeader(const std::string& what) const;
+    void printRow(const std::string& name, const std::map<std::string, Measured>& row);
+    /// Geometric means and medians of the ratios over all rows.
+    void printSummary() const;
+
+  private:
+    struct Ratios {
+        std::vector<double> frame, startUp, withModules;
+    };
+
+    std::vector<std::string> drivers_;
+    std::string reference_;
+    std::map<std::string, Ratios> ratios_;
+};
+
+}  // namespace vernier::bench
