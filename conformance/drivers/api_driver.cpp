@@ -243,7 +243,7 @@ Result<std::vector<RenderedImage>> ApiDriver::render(const Scene& scene, Timing*
     timing->firstImage = startUp_ + watch.milliseconds();
     const Result<FrameTimes> frames = measureFrames([&] { return run.runFrame(); });
     if (!frames) return frames.error();
-    timing->frame = frames.value().median;
+    timing->frame = timing->warmFrame = frames.value().median;
     timing->frames = frames.value().count;
     return images;
 }

@@ -257,7 +257,7 @@ Result<std::vector<RenderedImage>> VulkanDriver::render(const Scene& scene, Timi
         timing->firstImage = startUp_ + watch.milliseconds();
         const Result<FrameTimes> frames = measureFrames([&] { return run.runFrame(); });
         if (!frames) return frames.error();
-        timing->frame = frames.value().median;
+        timing->frame = timing->warmFrame = frames.value().median;
         timing->frames = frames.value().count;
     }
     if (!context_.validationErrors().empty()) {

@@ -53,6 +53,7 @@ Status saveRendering(const Rendering& rendering, const std::filesystem::path& di
                                        {"modules", timing.modules},
                                        {"pipelines", timing.pipelines},
                                        {"firstFrame", timing.firstFrame},
+                                       {"warmFrame", timing.warmFrame},
                                        {"firstImage", timing.firstImage},
                                        {"frame", timing.frame}}},
                                      {"frames", timing.frames},
@@ -73,8 +74,14 @@ Result<Rendering> loadRendering(const std::filesystem::path& directory, const st
         rendering.version = document.at("version").get<std::string>();
         rendering.limits = document.at("limits").get<std::string>();
         const nlohmann::json& times = document.at("milliseconds");
-        rendering.timing = {times.at("startUp"),    times.at("modules"), times.at("pipelines"), times.at("firstFrame"),
-                            times.at("firstImage"), times.at("frame"),   document.at("frames")};
+        rendering.timing = {.startUp = times.at("startUp"),
+                            .modules = times.at("modules"),
+                            .pipelines = times.at("pipelines"),
+                            .firstFrame = times.at("firstFrame"),
+                            .warmFrame = times.at("warmFrame"),
+                            .firstImage = times.at("firstImage"),
+                            .frame = times.at("frame"),
+                            .frames = document.at("frames")};
         for (const nlohmann::json& entry : document.at("images")) {
             RenderedImage image;
             image.format = static_cast<VkFormat>(entry.at("format").get<int>());
