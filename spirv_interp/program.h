@@ -37,20 +37,34 @@ struct Specialization {
     std::span<const std::byte> data;
 };
 
+/// The words of a module that SPIRV-Tools has found valid (Vulkan 1.1 rules): checked once, however many programs are
+/// made from it. Immutable.
+class ValidatedModule {
+  public:
+    /// Thread-safe. Defined in front/.
+    static Result<ValidatedModule> create(std::vector<uint32_t> words);
+    std::span<const uint32_t> words() const { return words_; }
+
+  private:
+    explicit ValidatedModule(std::vector<uint32_t> words) : words_(std::move(words)) {}
+    std::vector<uint32_t> words_;
+};
+
 struct ShaderSource {
     std::span<const uint32_t> words;
+    const ValidatedModule* module = nullptr;  // instead of `words`: not validated again
     std::string entryPoint = "main";
     ir::Stage stage = ir::Stage::vertex;
     Specialization specialization;
     bool contract = false;  // fuse a * b + c where NoContraction does not forbid it
 };
 
-/// Validates the module (SPIRV-Tools, Vulkan 1.1 rules), specialises it, lowers the entry point to the IR, removes dead
+/// Validates the module unless it comes validated, specialises it, lowers the entry point to the IR, removes dead
 /// code and verifies the result. An instruction or capability that is not supported is an ErrorCode::unsupported whose
 /// message names it. Thread-safe. Defined in front/.
 Result<ir::Program> loadShader(const ShaderSource& source);
 
-/// Validation alone, as vkCreateShaderModule wants it: the header and the structure of the words.
+/// Validation alone.
 Status checkModule(std::span<const uint32_t> words);
 
 struct BatchOptions {

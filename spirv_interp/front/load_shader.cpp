@@ -67,8 +67,18 @@ Result<ir::Program> lowerModule(const ShaderSource& source) {
     return program;
 }
 
-Result<ir::Program> loadShader(const ShaderSource& source) {
-    if (const Status valid = checkModule(source.words); !valid) return valid.error();
+Result<ValidatedModule> ValidatedModule::create(std::vector<uint32_t> words) {
+    if (const Status valid = checkModule(words); !valid) return valid.error();
+    return ValidatedModule(std::move(words));
+}
+
+Result<ir::Program> loadShader(const ShaderSource& given) {
+    ShaderSource source = given;
+    if (source.module != nullptr) {
+        source.words = source.module->words();
+    } else if (const Status valid = checkModule(source.words); !valid) {
+        return valid.error();
+    }
     Result<ir::Program> program = lowerModule(source);
     if (!program) return program;
     ir::optimise(*program, {.contract = source.contract});

@@ -16,6 +16,8 @@ constexpr ComputedBuiltin kComputed[] = {
     {spv::BuiltIn::HelperInvocation, ir::Stage::fragment},    {spv::BuiltIn::NumWorkgroups, ir::Stage::compute},
     {spv::BuiltIn::WorkgroupId, ir::Stage::compute},          {spv::BuiltIn::LocalInvocationId, ir::Stage::compute},
     {spv::BuiltIn::LocalInvocationIndex, ir::Stage::compute}, {spv::BuiltIn::GlobalInvocationId, ir::Stage::compute},
+    {spv::BuiltIn::DeviceIndex, ir::Stage::vertex},           {spv::BuiltIn::DeviceIndex, ir::Stage::fragment},
+    {spv::BuiltIn::DeviceIndex, ir::Stage::compute},
 };
 
 /// Memory semantics that ask for nothing: no bit of an order and none of a storage class.
@@ -67,6 +69,8 @@ Lowering::Leaves Lowering::builtinLeaves(spv::BuiltIn builtin) {
         return leaves;
     };
     switch (builtin) {
+        case spv::BuiltIn::DeviceIndex:  // a device group is one device
+            return each(1, [this](uint8_t) { return emitter_.constantI32(0); });
         case spv::BuiltIn::NumWorkgroups:
             return each(3, [this](uint8_t c) { return inputSlot(ir::Builtin::numWorkgroups, c, ir::Type::i32); });
         case spv::BuiltIn::WorkgroupId:

@@ -4,6 +4,11 @@
 
 namespace vernier {
 
+/// A coordinate of the pixel that a fragment invocation stands for: the integer part of FragCoord.
+ir::ValueId Lowering::fragmentPixel(uint8_t axis) {
+    return convert(ir::Op::ftos, ir::Type::i32, inputSlot(ir::Builtin::fragCoord, axis, ir::Type::f32));
+}
+
 /// OpImageFetch from sampled images, OpImageRead from storage images, texel buffers and input attachments.
 void Lowering::lowerFetch(const Instruction& inst) {
     const Handle& handle = handleOf(inst[3]);
@@ -14,7 +19,19 @@ void Lowering::lowerFetch(const Instruction& inst) {
     Handle image = handle;
     image.samplerResource = ir::kNoIndex;
     std::vector<ir::ValueId> operands = imageOperandsOf(image);
-    appendCoords(image, leavesOf(inst[4]), op, operands);
+    if (op.dim == ir::ImageDim::subpass) {
+        // The coordinate counts from the fragment's own pixel ("Image Read" in the SPIR-V specification, Dim
+        // SubpassData).
+        if (program_.stage != ir::Stage::fragment) refuse(inst, "input attachments exist only in fragment shaders");
+        const Leaves offset = leavesOf(inst[4]);
+        std::vector<ir::ValueId> pixel;
+        for (uint8_t axis = 0; axis < 2 && axis < offset.size(); ++axis)
+            pixel.push_back(binary(ir::Op::iadd, fragmentPixel(axis), offset[axis]));
+        pixel.insert(pixel.end(), offset.begin() + static_cast<std::ptrdiff_t>(pixel.size()), offset.end());
+        appendCoords(image, pixel, op, operands);
+    } else {
+        appendCoords(image, leavesOf(inst[4]), op, operands);
+    }
     appendImageOperands(inst, 5, op, operands, nullptr);
     setTexel(inst, emitImage(op, scalarType(inst[1]), operands));
 }

@@ -55,6 +55,7 @@ constexpr Capability kCapabilities[] = {
     Capability::ShaderLayer,
     Capability::ShaderViewportIndex,
     Capability::DrawParameters,
+    Capability::DeviceGroup,
     Capability::MultiView,
     Capability::DenormPreserve,
     Capability::SignedZeroInfNanPreserve,

@@ -255,6 +255,7 @@ class Lowering {
     bool lowerImage(const Instruction& inst);
     void lowerSample(const Instruction& inst);
     void lowerFetch(const Instruction& inst);
+    ir::ValueId fragmentPixel(uint8_t axis);
     void lowerGather(const Instruction& inst);
     void lowerImageQuery(const Instruction& inst);
     void lowerImageWrite(const Instruction& inst);
