@@ -20,6 +20,12 @@ inline constexpr uint32_t kMaxInterfaceComponents = 128;  // between vertex and 
 inline constexpr uint32_t kMaxSamples = 4;
 inline constexpr uint32_t kMaxClipDistances = 8;
 
+// Compute. The memory is what the invocations of one work-group may share, in bytes.
+inline constexpr uint32_t kMaxWorkGroupCount[3] = {65535, 65535, 65535};
+inline constexpr uint32_t kMaxWorkGroupSize[3] = {1024, 1024, 64};
+inline constexpr uint32_t kMaxWorkGroupInvocations = 1024;
+inline constexpr uint32_t kMaxWorkGroupMemory = 32768;
+
 /// Window coordinates that reach the rasteriser lie in [kGuardBandMin, kGuardBandMax] pixels; what lies outside is
 /// clipped.
 inline constexpr int32_t kGuardBandMin = -8192;

@@ -35,7 +35,7 @@ BoundResource* elementAt(VnContext context, const char* function, uint32_t set, 
     }
     auto& elements = context->resources[{set, binding}];
     if (elements.size() <= element) elements.resize(element + 1);
-    context->resourcesChanged = true;
+    context->resourcesChanged = context->computeResourcesChanged = true;
     return &elements[element];
 }
 
@@ -43,6 +43,13 @@ BoundResource* elementAt(VnContext context, const char* function, uint32_t set, 
 
 VnResult vnBindProgram(VnContext context, VnProgram program) {
     return guardedContext(context, __func__, [&] {
+        std::shared_ptr<ProgramObject> object = context->device->programs.find(program.id);
+        if (object && object->compute) {
+            context->computeProgram = std::move(object);
+            context->computeProgramChanged = context->computeResourcesChanged = true;
+            return VN_SUCCESS;
+        }
+        if (program.id == 0) context->computeProgram = nullptr;
         context->resourcesChanged = true;
         return bindState(context, "vnBindProgram", "program", context->device->programs, program.id, context->program,
                          context->key.program);
@@ -160,7 +167,7 @@ VnResult vnPushConstants(VnContext context, uint32_t offset, const void* data, u
                                ": must be multiples of 4 inside " + std::to_string(kMaxPushConstantBytes) + " bytes");
         const auto* bytes = static_cast<const std::byte*>(data);
         std::copy_n(bytes, size, context->pushConstants.data() + offset);
-        context->pushConstantsChanged = true;
+        context->pushConstantsChanged = context->computePushConstantsChanged = true;
         return VN_SUCCESS;
     });
 }

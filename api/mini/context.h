@@ -51,6 +51,7 @@ struct VnContext_T {
     void newRecording() {
         recording = std::make_shared<vernier::mini::Recording>();
         pipelineChanged = dynamicChanged = resourcesChanged = indexBufferChanged = pushConstantsChanged = true;
+        computeProgramChanged = computeResourcesChanged = computePushConstantsChanged = true;
         vertexBuffersChanged = ~0u;
     }
     /// Hands the recording to the queue.
@@ -68,7 +69,8 @@ struct VnContext_T {
     vernier::mini::PipelineKey key;  // the attachments' part; the rest follows the bindings below
 
     // What is bound.
-    std::shared_ptr<vernier::mini::ProgramObject> program;
+    std::shared_ptr<vernier::mini::ProgramObject> program;         // for draws
+    std::shared_ptr<vernier::mini::ProgramObject> computeProgram;  // for dispatches
     std::shared_ptr<vernier::mini::VertexLayoutObject> vertexLayout;
     std::shared_ptr<vernier::mini::RasterStateObject> raster;
     std::shared_ptr<vernier::mini::DepthStencilStateObject> depthStencil;
@@ -95,10 +97,14 @@ struct VnContext_T {
     bool indexBufferChanged = true;
     bool pushConstantsChanged = true;
     uint32_t vertexBuffersChanged = ~0u;  // a bit per binding
+    // And before the next dispatch.
+    bool computeProgramChanged = true;
+    bool computeResourcesChanged = true;
+    bool computePushConstantsChanged = true;
 
     // Written by the queue while passes run; read after waitIdle().
     vernier::PassStatistics statistics;
-    uint64_t draws = 0, plans = 0;
+    uint64_t draws = 0, dispatches = 0, plans = 0;
 };
 
 namespace vernier::mini {
@@ -109,6 +115,10 @@ VnResult prepareDraw(VnContext context, const char* function);
 
 /// The plan alone: context->pipeline is set on success.
 VnResult preparePipeline(VnContext context, const char* function);
+
+/// Records descriptor sets with what is bound for the resources of the programs, of which some may be nullptr.
+VnResult recordResources(VnContext context, const char* function, command::BindPoint bindPoint,
+                         std::span<const ir::Program* const> programs);
 
 /// The dynamic state of the next draw.
 DynamicState dynamicStateOf(const VnContext_T& context);

@@ -79,94 +79,10 @@ GraphicsState graphicsStateOf(const VnContext_T& context) {
     return state;
 }
 
-/// What a program's resource needs to find at its binding.
-bool isBound(const BoundResource& bound, ir::ResourceKind kind) {
-    switch (kind) {
-        case ir::ResourceKind::uniformBuffer:
-        case ir::ResourceKind::storageBuffer:
-            return bound.buffer != nullptr;
-        case ir::ResourceKind::sampler:
-            return bound.sampler != nullptr;
-        case ir::ResourceKind::combinedImageSampler:
-            return bound.view && bound.sampler;
-        default:
-            return bound.view != nullptr;
-    }
-}
-
-VnResult checkBound(VnContext context, const char* function, const ir::Program& program) {
-    for (const ir::Resource& resource : program.resources) {
-        if (resource.kind == ir::ResourceKind::pushConstants) continue;
-        const auto found = context->resources.find({resource.set, resource.binding});
-        const uint32_t needed = std::max(resource.arraySize, 1u);
-        uint32_t bound = 0;
-        if (found != context->resources.end())
-            while (bound < std::min<size_t>(needed, found->second.size()) &&
-                   isBound(found->second[bound], resource.kind))
-                ++bound;
-        if (bound < needed)
-            return wrongState(context, function,
-                              "the program uses set " + std::to_string(resource.set) + ", binding " +
-                                  std::to_string(resource.binding) + ", element " + std::to_string(bound) +
-                                  ", but nothing of its type is bound there");
-    }
-    return VN_SUCCESS;
-}
-
-DescriptorSetLayout layoutOf(const VnContext_T& context, uint32_t set) {
-    std::vector<DescriptorBinding> bindings;
-    for (const auto& [place, elements] : context.resources) {
-        if (place.first != set) continue;
-        DescriptorBinding binding;
-        binding.binding = place.second;
-        binding.count = static_cast<uint32_t>(elements.size());
-        bindings.push_back(std::move(binding));
-    }
-    return DescriptorSetLayout::create(std::move(bindings));
-}
-
-/// A descriptor set with everything bound in `set`; the recording keeps it and what it names.
-const DescriptorSet* snapshot(VnContext context, uint32_t set) {
-    const auto made = std::make_shared<SnapshotSet>(layoutOf(*context, set));
-    context->recording->keep(made);
-    for (const auto& [place, elements] : context->resources) {
-        if (place.first != set) continue;
-        const uint32_t first = made->layout.find(place.second)->firstSlot;
-        for (uint32_t i = 0; i < elements.size(); ++i) {
-            const BoundResource& bound = elements[i];
-            for (const std::shared_ptr<const void>& object :
-                 {std::shared_ptr<const void>(bound.buffer), std::shared_ptr<const void>(bound.view),
-                  std::shared_ptr<const void>(bound.sampler)})
-                if (object) context->recording->alive.push_back(object);
-            if (bound.buffer)
-                made->set.writeBuffer(first + i, &bound.buffer->buffer, bound.offset,
-                                      bound.size ? bound.size : VK_WHOLE_SIZE);
-            // The pair was checked when it was bound: this cannot fail.
-            if (bound.view || bound.sampler)
-                static_cast<void>(made->set.writeImage(first + i, bound.view ? &bound.view->view.texture() : nullptr,
-                                                       bound.sampler ? &bound.sampler->state : nullptr,
-                                                       context->device->runtime->isa()));
-        }
-    }
-    return &made->set;
-}
-
-VnResult recordResources(VnContext context, const char* function) {
+VnResult recordDrawResources(VnContext context, const char* function) {
     const GraphicsPipeline& pipeline = *context->pipeline;
-    uint32_t usedSets = 0;
-    for (const ir::Program* program : {&pipeline.vertexIr(), pipeline.fragmentIr()}) {
-        if (!program) continue;
-        if (VnResult result = checkBound(context, function, *program)) return result;
-        for (const ir::Resource& resource : program->resources)
-            if (resource.kind != ir::ResourceKind::pushConstants) usedSets |= 1u << resource.set;
-    }
-    CommandBuffer& commands = context->recording->commands;
-    for (uint32_t set = 0; set < kMaxDescriptorSets; ++set) {
-        if (!(usedSets >> set & 1u)) continue;
-        const DescriptorSet* made = snapshot(context, set);
-        commands.record(
-            command::BindDescriptorSets{set, commands.copy(std::span<const DescriptorSet* const>(&made, 1)), {}});
-    }
+    const ir::Program* programs[] = {&pipeline.vertexIr(), pipeline.fragmentIr()};
+    if (VnResult result = recordResources(context, function, command::BindPoint::graphics, programs)) return result;
     context->resourcesChanged = false;
     return VN_SUCCESS;
 }
@@ -187,7 +103,8 @@ void recordBuffers(VnContext context) {
         commands.record(command::BindIndexBuffer{rangeOf(context, context->indexBuffer), context->indexType});
     context->indexBufferChanged = false;
     if (context->pushConstantsChanged)
-        commands.record(command::PushConstants{0, commands.copy(std::span<const std::byte>(context->pushConstants))});
+        commands.record(command::PushConstants{VK_SHADER_STAGE_ALL_GRAPHICS, 0,
+                                               commands.copy(std::span<const std::byte>(context->pushConstants))});
     context->pushConstantsChanged = false;
 }
 
@@ -271,7 +188,7 @@ VnResult prepareDraw(VnContext context, const char* function) {
         context->recording->keep(context->pipeline);
     }
     if (newPipeline || context->resourcesChanged)
-        if (VnResult result = recordResources(context, function)) return result;
+        if (VnResult result = recordDrawResources(context, function)) return result;
     if (newPipeline || context->dynamicChanged) {
         const DynamicState* fixed = commands.arena().create(dynamicStateOf(*context));
         commands.record(command::BindPipeline{context->pipeline.get(), fixed, 0});

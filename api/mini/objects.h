@@ -12,6 +12,7 @@
 
 #include "api/mini/handle_table.h"
 #include "runtime/command/device.h"
+#include "runtime/plan/compute_pipeline.h"
 #include "runtime/plan/pipeline.h"
 #include "runtime/resource/descriptor.h"
 
@@ -43,8 +44,10 @@ struct ShaderObject {
     ir::Program program;
 };
 
+/// For draws or for dispatches: one of the two is set.
 struct ProgramObject {
     std::shared_ptr<const ShaderProgram> program;
+    std::shared_ptr<const ComputePipeline> compute;
 };
 
 struct VertexLayoutObject {

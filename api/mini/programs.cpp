@@ -10,13 +10,28 @@ namespace {
 Result<ir::Stage> stageOf(VkShaderStageFlagBits stage) {
     if (stage == VK_SHADER_STAGE_VERTEX_BIT) return ir::Stage::vertex;
     if (stage == VK_SHADER_STAGE_FRAGMENT_BIT) return ir::Stage::fragment;
-    return unsupported("stage is " + std::to_string(stage) + "; only vertex and fragment stages are supported");
+    if (stage == VK_SHADER_STAGE_COMPUTE_BIT) return ir::Stage::compute;
+    return unsupported("stage is " + std::to_string(stage) + "; only vertex, fragment and compute are supported");
 }
 
 /// Shader errors have a code of their own: a broken module is no misuse of the API.
 VnResult failShader(VnDevice device, const char* function, const Error& error) {
     if (error.code != ErrorCode::invalidArgument) return fail(device, function, error);
     return fail(device, VN_ERROR_SHADER, std::string(function) + ": " + error.message);
+}
+
+VnResult createComputeProgram(VnDevice device, const VnProgramDesc& desc, const Accuracy& accuracy,
+                              VnProgram* program) {
+    if (desc.vertex.id || desc.fragment.id)
+        return invalid(device, "vnCreateProgram", "compute stands beside vertex or fragment; it must stand alone");
+    const auto compute = device->shaders.find(desc.compute.id);
+    if (!compute || compute->program.stage != ir::Stage::compute)
+        return badHandle(device, "vnCreateProgram", "compute shader");
+    auto made = ComputePipeline::create({&compute->program, accuracy, device->runtime->isa()});
+    if (!made) return failShader(device, "vnCreateProgram", made.error());
+    program->id =
+        device->programs.insert(std::make_shared<ProgramObject>(ProgramObject{nullptr, std::move(made).value()}));
+    return VN_SUCCESS;
 }
 
 }  // namespace
@@ -60,6 +75,8 @@ VnResult vnCreateProgram(VnDevice device, const VnProgramDesc* desc, VnProgram* 
         program->id = 0;
         if (desc->profile < VN_PROFILE_DEFAULT || desc->profile > VN_PROFILE_REFERENCE)
             return invalid(device, "vnCreateProgram", "profile is " + std::to_string(desc->profile));
+        const Accuracy accuracy = accuracyOf(profileOf(desc->profile, device->profile));
+        if (desc->compute.id) return createComputeProgram(device, *desc, accuracy, program);
         const auto vertex = device->shaders.find(desc->vertex.id);
         if (!vertex || vertex->program.stage != ir::Stage::vertex)
             return badHandle(device, "vnCreateProgram", "vertex shader");
@@ -69,11 +86,12 @@ VnResult vnCreateProgram(VnDevice device, const VnProgramDesc* desc, VnProgram* 
         ShaderProgramDesc linked;
         linked.vertex = &vertex->program;
         linked.fragment = fragment ? &fragment->program : nullptr;
-        linked.accuracy = accuracyOf(profileOf(desc->profile, device->profile));
+        linked.accuracy = accuracy;
         linked.isa = device->runtime->isa();
         auto made = ShaderProgram::create(linked);
         if (!made) return failShader(device, "vnCreateProgram", made.error());
-        program->id = device->programs.insert(std::make_shared<ProgramObject>(ProgramObject{std::move(made).value()}));
+        program->id =
+            device->programs.insert(std::make_shared<ProgramObject>(ProgramObject{std::move(made).value(), nullptr}));
         return VN_SUCCESS;
     });
 }

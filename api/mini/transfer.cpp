@@ -311,7 +311,9 @@ VnResult vnGetStatistics(VnContext context, VnStatistics* statistics) {
                        .perspectiveDivides = s.perspectiveDivides,
                        .destinationReads = s.destinationReads,
                        .depthReads = s.depthReads,
-                       .plans = context->plans};
+                       .plans = context->plans,
+                       .dispatches = context->dispatches,
+                       .computeInvocations = s.computeInvocations};
         return VN_SUCCESS;
     });
 }
@@ -320,15 +322,21 @@ VnResult vnResetStatistics(VnContext context) {
     return guardedContext(context, __func__, [&] {
         if (VnResult result = finish(context, "vnResetStatistics")) return result;
         context->statistics = {};
-        context->draws = context->plans = 0;
+        context->draws = context->dispatches = context->plans = 0;
         return VN_SUCCESS;
     });
 }
 
 VnResult vnExplain(VnContext context, char* text, size_t capacity, size_t* length) {
     return guardedContext(context, __func__, [&] {
-        if (VnResult result = preparePipeline(context, "vnExplain")) return result;
-        const size_t full = copyText(context->pipeline->explain(dynamicStateOf(*context)), text, capacity);
+        std::string facts;
+        if (!context->inPass && context->computeProgram) {
+            facts = context->computeProgram->compute->explain();
+        } else {
+            if (VnResult result = preparePipeline(context, "vnExplain")) return result;
+            facts = context->pipeline->explain(dynamicStateOf(*context));
+        }
+        const size_t full = copyText(facts, text, capacity);
         if (length) *length = full;
         return VN_SUCCESS;
     });

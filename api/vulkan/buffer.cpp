@@ -1,9 +1,10 @@
-// Buffers.
+// Buffers and buffer views.
 #include "api/vulkan/allocation.h"
 #include "api/vulkan/device.h"
 #include "api/vulkan/entry_points.h"
 #include "api/vulkan/memory.h"
 #include "api/vulkan/resource_limits.h"
+#include "runtime/resource/buffer_view.h"
 
 namespace vernier::vulkan {
 
@@ -21,6 +22,22 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateBuffer(VkDevice device, const VkBufferCreat
 
 VKAPI_ATTR void VKAPI_CALL DestroyBuffer(VkDevice, VkBuffer buffer, const VkAllocationCallbacks* pAllocator) {
     destroyHandle(pAllocator, buffer);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateBufferView(VkDevice device, const VkBufferViewCreateInfo* pCreateInfo,
+                                                const VkAllocationCallbacks* pAllocator, VkBufferView* pView) {
+    return guarded([&] {
+        const BufferViewInfo info{pCreateInfo->format, pCreateInfo->offset, pCreateInfo->range};
+        Result<BufferView> view =
+            BufferView::create(*object(pCreateInfo->buffer), info, object(device)->runtime->isa());
+        if (!view) return object(device)->report("vkCreateBufferView", view.error());
+        return createHandle(pAllocator, pView, std::move(view).value());
+    });
+}
+
+VKAPI_ATTR void VKAPI_CALL DestroyBufferView(VkDevice, VkBufferView bufferView,
+                                             const VkAllocationCallbacks* pAllocator) {
+    destroyHandle(pAllocator, bufferView);
 }
 
 VKAPI_ATTR void VKAPI_CALL GetBufferMemoryRequirements(VkDevice, VkBuffer buffer,

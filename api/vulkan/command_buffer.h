@@ -36,6 +36,7 @@ struct CommandBuffer : Dispatchable {
     Pass pass;
     const Pipeline* pipeline = nullptr;
     bool pipelineFits = false;  // `pipeline` may draw in the current subpass
+    const Pipeline* computePipeline = nullptr;
 
     bool executable() const { return state == State::executable && result == VK_SUCCESS; }
     void reset();

@@ -15,6 +15,7 @@ void CommandBuffer::reset() {
     pass = {};
     pipeline = nullptr;
     pipelineFits = false;
+    computePipeline = nullptr;
 }
 
 void CommandBuffer::fail(const char* command, std::string_view text) {

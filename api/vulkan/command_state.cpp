@@ -1,5 +1,6 @@
 // Commands that set state: pipelines, descriptors, push constants, vertex and index buffers, dynamic state.
 #include <algorithm>
+#include <optional>
 
 #include "api/vulkan/command_buffer.h"
 #include "api/vulkan/descriptor.h"
@@ -17,6 +18,13 @@ bool fits(const GraphicsState& state, const SubpassFormats& formats) {
     return std::equal(formats.colors, formats.colors + formats.colorCount, state.colorFormats.begin());
 }
 
+/// Empty for a bind point that does not exist here.
+std::optional<command::BindPoint> bindPoint(VkPipelineBindPoint point) {
+    if (point == VK_PIPELINE_BIND_POINT_GRAPHICS) return command::BindPoint::graphics;
+    if (point == VK_PIPELINE_BIND_POINT_COMPUTE) return command::BindPoint::compute;
+    return std::nullopt;
+}
+
 template <class Command>
 void record(VkCommandBuffer handle, const Command& command) {
     recording(handle, [&](CommandBuffer& buffer) { buffer.stream.record(command); });
@@ -31,10 +39,16 @@ void CommandBuffer::checkPipeline() {
 VKAPI_ATTR void VKAPI_CALL CmdBindPipeline(VkCommandBuffer commandBuffer, VkPipelineBindPoint pipelineBindPoint,
                                            VkPipeline pipeline) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
-        if (pipelineBindPoint != VK_PIPELINE_BIND_POINT_GRAPHICS) {
-            return buffer.fail("vkCmdBindPipeline", "pipelineBindPoint must be GRAPHICS");
-        }
         const Pipeline& bound = *object(pipeline);
+        const std::optional<command::BindPoint> point = bindPoint(pipelineBindPoint);
+        const bool isCompute = bound.compute != nullptr;
+        if (!point || (*point == command::BindPoint::compute) != isCompute) {
+            return buffer.fail("vkCmdBindPipeline", "pipelineBindPoint is not that of the pipeline");
+        }
+        if (isCompute) {
+            buffer.computePipeline = &bound;
+            return buffer.stream.record(command::BindComputePipeline{bound.compute.get()});
+        }
         buffer.pipeline = &bound;
         buffer.checkPipeline();
         buffer.stream.record(command::BindPipeline{bound.graphics.get(), &bound.fixed, bound.dynamicMask});
@@ -46,7 +60,8 @@ VKAPI_ATTR void VKAPI_CALL CmdBindDescriptorSets(VkCommandBuffer commandBuffer, 
                                                  const VkDescriptorSet* pDescriptorSets, uint32_t dynamicOffsetCount,
                                                  const uint32_t* pDynamicOffsets) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
-        if (pipelineBindPoint != VK_PIPELINE_BIND_POINT_GRAPHICS) return;  // nothing can use them
+        const std::optional<command::BindPoint> point = bindPoint(pipelineBindPoint);
+        if (!point) return buffer.fail("vkCmdBindDescriptorSets", "pipelineBindPoint must be GRAPHICS or COMPUTE");
         std::span<const uint32_t> offsets = copyArray(buffer, dynamicOffsetCount, pDynamicOffsets);
         const std::span sets = buffer.stream.arena().array<const DescriptorSet*>(descriptorSetCount);
         const std::span perSet = buffer.stream.arena().array<std::span<const uint32_t>>(descriptorSetCount);
@@ -58,15 +73,16 @@ VKAPI_ATTR void VKAPI_CALL CmdBindDescriptorSets(VkCommandBuffer commandBuffer, 
             perSet[i] = offsets.first(count);
             offsets = offsets.subspan(count);
         }
-        buffer.stream.record(command::BindDescriptorSets{firstSet, sets, perSet});
+        buffer.stream.record(command::BindDescriptorSets{*point, firstSet, sets, perSet});
     });
 }
 
-VKAPI_ATTR void VKAPI_CALL CmdPushConstants(VkCommandBuffer commandBuffer, VkPipelineLayout, VkShaderStageFlags,
-                                            uint32_t offset, uint32_t size, const void* pValues) {
+VKAPI_ATTR void VKAPI_CALL CmdPushConstants(VkCommandBuffer commandBuffer, VkPipelineLayout,
+                                            VkShaderStageFlags stageFlags, uint32_t offset, uint32_t size,
+                                            const void* pValues) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
         const auto bytes = copyArray(buffer, size, static_cast<const std::byte*>(pValues));
-        buffer.stream.record(command::PushConstants{offset, bytes});
+        buffer.stream.record(command::PushConstants{stageFlags, offset, bytes});
     });
 }
 

@@ -12,8 +12,7 @@ namespace vernier::vulkan {
 namespace {
 
 bool supportedType(VkDescriptorType type) {
-    return static_cast<uint32_t>(type) < kDescriptorTypeCount && type != VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER &&
-           type != VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
+    return static_cast<uint32_t>(type) < kDescriptorTypeCount;
 }
 
 bool hasSampler(VkDescriptorType type) {

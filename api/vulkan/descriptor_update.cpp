@@ -5,6 +5,7 @@
 #include "api/vulkan/descriptor.h"
 #include "api/vulkan/device.h"
 #include "api/vulkan/entry_points.h"
+#include "runtime/resource/buffer_view.h"
 #include "runtime/resource/image.h"
 
 namespace vernier::vulkan {
@@ -48,6 +49,10 @@ const TextureView* textureOf(VkImageView view) {
     return view != VK_NULL_HANDLE ? &object(view)->texture() : nullptr;
 }
 
+const TextureView* texelsOf(VkBufferView view) {
+    return view != VK_NULL_HANDLE ? &object(view)->texture() : nullptr;
+}
+
 void writeOne(const Device& device, DescriptorSet& set, const SlotCursor& cursor, const void* source) {
     const auto& image = *static_cast<const VkDescriptorImageInfo*>(source);
     const auto& buffer = *static_cast<const VkDescriptorBufferInfo*>(source);
@@ -68,6 +73,10 @@ void writeOne(const Device& device, DescriptorSet& set, const SlotCursor& cursor
         case VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT:
             status = set.writeImage(cursor.slot(), textureOf(image.imageView), nullptr, isa);
             break;
+        case VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER:
+        case VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER:
+            set.writeTexelBuffer(cursor.slot(), texelsOf(*static_cast<const VkBufferView*>(source)), isa);
+            break;
         case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER:
         case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER:
         case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC:
@@ -85,16 +94,28 @@ bool matches(const SlotCursor& cursor, VkDescriptorType type) {
     return cursor.valid() && cursor.type() == type;
 }
 
+/// Element `i` of the array that the descriptor type reads; nullptr when the array is.
+const void* sourceOf(const VkWriteDescriptorSet& info, uint32_t i) {
+    const auto element = [i](const auto* array) -> const void* { return array != nullptr ? array + i : nullptr; };
+    switch (info.descriptorType) {
+        case VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER:
+        case VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER:
+            return element(info.pTexelBufferView);
+        case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER:
+        case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER:
+        case VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC:
+        case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC:
+            return element(info.pBufferInfo);
+        default:
+            return element(info.pImageInfo);
+    }
+}
+
 void write(const Device& device, const VkWriteDescriptorSet& info) {
     DescriptorSet& set = object(info.dstSet)->set;
     SlotCursor cursor(set.layout(), info.dstBinding, info.dstArrayElement);
     for (uint32_t i = 0; i < info.descriptorCount && matches(cursor, info.descriptorType); ++i, cursor.next()) {
-        const void* image = info.pImageInfo != nullptr ? info.pImageInfo + i : nullptr;
-        const void* buffer = info.pBufferInfo != nullptr ? info.pBufferInfo + i : nullptr;
-        const bool isBuffer = cursor.type() >= VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER &&
-                              cursor.type() <= VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC;
-        const void* source = isBuffer ? buffer : image;
-        if (source != nullptr) writeOne(device, set, cursor, source);
+        if (const void* source = sourceOf(info, i)) writeOne(device, set, cursor, source);
     }
 }
 

@@ -12,9 +12,6 @@
 namespace vernier::vulkan {
 namespace {
 
-/// There are no texel buffers.
-constexpr VkFormatFeatureFlags kUsedBufferFeatures = VK_FORMAT_FEATURE_VERTEX_BUFFER_BIT;
-
 struct UsageNeed {
     VkImageUsageFlagBits usage;
     VkFormatFeatureFlags anyOf;
@@ -72,7 +69,7 @@ VkExtent3D maxExtent(VkImageType type) {
 VkFormatProperties formatProperties(VkFormat format) {
     const FormatInfo* info = findFormat(format);
     if (info == nullptr) return {};
-    return {info->linearTilingFeatures, info->optimalTilingFeatures, info->bufferFeatures & kUsedBufferFeatures};
+    return {info->linearTilingFeatures, info->optimalTilingFeatures, info->bufferFeatures};
 }
 
 VkResult imageFormatProperties(const PhysicalDevice& device, VkFormat format, VkImageType type, VkImageTiling tiling,

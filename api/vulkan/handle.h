@@ -11,6 +11,7 @@
 
 namespace vernier {
 class Buffer;
+class BufferView;
 class Image;
 class ImageView;
 class QueryPool;
@@ -60,6 +61,7 @@ VERNIER_HANDLE(VkQueue, Queue)
 VERNIER_HANDLE(VkCommandBuffer, CommandBuffer)
 VERNIER_HANDLE(VkDeviceMemory, DeviceMemory)
 VERNIER_HANDLE(VkBuffer, vernier::Buffer)
+VERNIER_HANDLE(VkBufferView, vernier::BufferView)
 VERNIER_HANDLE(VkImage, vernier::Image)
 VERNIER_HANDLE(VkImageView, vernier::ImageView)
 VERNIER_HANDLE(VkSampler, vernier::SamplerState)

@@ -7,6 +7,7 @@
 #include "api/vulkan/resource_limits.h"
 #include "runtime/geometry/primitive_setup.h"
 #include "runtime/limits.h"
+#include "runtime/resource/buffer_view.h"
 #include "runtime/resource/memory.h"
 #include "runtime/texture/texture.h"
 
@@ -45,7 +46,7 @@ void setDescriptorLimits(VkPhysicalDeviceLimits& limits) {
 void setAlignments(VkPhysicalDeviceLimits& limits) {
     limits.bufferImageGranularity = 1;
     limits.minMemoryMapAlignment = kBufferAlignment;
-    limits.minTexelBufferOffsetAlignment = 16;
+    limits.minTexelBufferOffsetAlignment = kTexelBufferAlignment;
     limits.minUniformBufferOffsetAlignment = 16;
     limits.minStorageBufferOffsetAlignment = 16;
     limits.optimalBufferCopyOffsetAlignment = 1;
@@ -53,10 +54,17 @@ void setAlignments(VkPhysicalDeviceLimits& limits) {
     limits.nonCoherentAtomSize = 1;
 }
 
+void setComputeLimits(VkPhysicalDeviceLimits& limits) {
+    limits.maxComputeSharedMemorySize = kMaxWorkGroupMemory;
+    std::copy_n(kMaxWorkGroupCount, 3, limits.maxComputeWorkGroupCount);
+    limits.maxComputeWorkGroupInvocations = kMaxWorkGroupInvocations;
+    std::copy_n(kMaxWorkGroupSize, 3, limits.maxComputeWorkGroupSize);
+}
+
 }  // namespace
 
 VkPhysicalDeviceLimits deviceLimits(const VkPhysicalDeviceFeatures& features, const Accuracy& accuracy) {
-    // Tessellation, geometry, compute and sparse limits stay 0: those stages do not exist.
+    // Tessellation, geometry and sparse limits stay 0: those stages do not exist.
     VkPhysicalDeviceLimits limits{};
     limits.maxImageDimension1D = kMaxImageDimension2D;
     limits.maxImageDimension2D = kMaxImageDimension2D;
@@ -67,6 +75,7 @@ VkPhysicalDeviceLimits deviceLimits(const VkPhysicalDeviceFeatures& features, co
     limits.maxSamplerAllocationCount = UINT32_MAX;
     setDescriptorLimits(limits);
     setAlignments(limits);
+    setComputeLimits(limits);
 
     limits.maxVertexInputAttributes = kMaxVertexAttributes;
     limits.maxVertexInputBindings = kMaxVertexBindings;
@@ -107,7 +116,7 @@ VkPhysicalDeviceLimits deviceLimits(const VkPhysicalDeviceFeatures& features, co
     limits.framebufferColorSampleCounts = kSampleCounts;
     limits.framebufferDepthSampleCounts = kSampleCounts;
     limits.framebufferStencilSampleCounts = kSampleCounts;
-    limits.framebufferNoAttachmentsSampleCounts = VK_SAMPLE_COUNT_1_BIT;
+    limits.framebufferNoAttachmentsSampleCounts = kSampleCounts;
     limits.maxColorAttachments = kMaxColorAttachments;
     limits.sampledImageColorSampleCounts = kSampleCounts;
     limits.sampledImageIntegerSampleCounts = kSampleCounts;

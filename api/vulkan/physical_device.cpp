@@ -37,8 +37,9 @@ VkPhysicalDeviceMemoryProperties oneHeap(VkDeviceSize size) {
     return memory;
 }
 
-/// One queue, in order. No compute bit: there are no compute pipelines.
-constexpr VkQueueFamilyProperties kQueueFamily{VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_TRANSFER_BIT, 1, 64, {1, 1, 1}};
+/// One queue, in order.
+constexpr VkQueueFamilyProperties kQueueFamily{
+    VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT, 1, 64, {1, 1, 1}};
 
 }  // namespace
 

@@ -15,7 +15,7 @@ namespace {
 ShaderSource shaderSource(const VkPipelineShaderStageCreateInfo& stage, ir::Stage kind,
                           std::vector<Specialization::Entry>& entries) {
     ShaderSource source;
-    source.words = object(stage.module)->words;
+    source.module = &object(stage.module)->module;
     source.entryPoint = stage.pName;
     source.stage = kind;
     if (const VkSpecializationInfo* special = stage.pSpecializationInfo) {
@@ -27,34 +27,6 @@ ShaderSource shaderSource(const VkPipelineShaderStageCreateInfo& stage, ir::Stag
         source.specialization = {entries, {static_cast<const std::byte*>(special->pData), special->dataSize}};
     }
     return source;
-}
-
-Result<ir::Program> loadStage(const VkPipelineShaderStageCreateInfo& stage, ir::Stage kind) {
-    if (stage.module == VK_NULL_HANDLE) return invalidArgument("a stage without a shader module");
-    std::vector<Specialization::Entry> entries;
-    return loadShader(shaderSource(stage, kind, entries));
-}
-
-/// Resources that the driver has no descriptors for.
-Status checkResources(const ir::Program* program) {
-    if (program == nullptr) return {};
-    for (const ir::Resource& resource : program->resources) {
-        const char* what = nullptr;
-        switch (resource.kind) {
-            case ir::ResourceKind::inputAttachment:
-                what = "an input attachment";
-                break;
-            case ir::ResourceKind::uniformTexelBuffer:
-            case ir::ResourceKind::storageTexelBuffer:
-                what = "a texel buffer";
-                break;
-            default:
-                continue;
-        }
-        return unsupported("set " + std::to_string(resource.set) + ", binding " + std::to_string(resource.binding) +
-                           ": the shader reads " + what + ", which is not supported");
-    }
-    return {};
 }
 
 Result<std::shared_ptr<const ShaderProgram>> loadProgram(const Device& device, const VkGraphicsPipelineCreateInfo& info,
@@ -98,11 +70,6 @@ VkResult createOne(const Device& device, const VkGraphicsPipelineCreateInfo& inf
     if (!state) return device.report("vkCreateGraphicsPipelines", state.error());
     auto program = loadProgram(device, info, state->state.rasterizerDiscard);
     if (!program) return device.report("vkCreateGraphicsPipelines", program.error());
-    for (const ir::Program* stage : {&(*program)->vertexIr(), (*program)->fragmentIr()}) {
-        if (const Status status = checkResources(stage); !status) {
-            return device.report("vkCreateGraphicsPipelines", status.error());
-        }
-    }
     auto graphics = GraphicsPipeline::create({std::move(state->state), std::move(program).value()});
     if (!graphics) return device.report("vkCreateGraphicsPipelines", graphics.error());
     return createHandle(callbacks, out, std::move(graphics).value(), state->fixed, state->dynamicMask);
@@ -110,15 +77,20 @@ VkResult createOne(const Device& device, const VkGraphicsPipelineCreateInfo& inf
 
 }  // namespace
 
+Result<ir::Program> loadStage(const VkPipelineShaderStageCreateInfo& stage, ir::Stage kind) {
+    if (stage.module == VK_NULL_HANDLE) return invalidArgument("a stage without a shader module");
+    std::vector<Specialization::Entry> entries;
+    return loadShader(shaderSource(stage, kind, entries));
+}
+
 VKAPI_ATTR VkResult VKAPI_CALL CreateShaderModule(VkDevice device, const VkShaderModuleCreateInfo* pCreateInfo,
                                                   const VkAllocationCallbacks* pAllocator,
                                                   VkShaderModule* pShaderModule) {
     return guarded([&] {
         std::vector<uint32_t> words(pCreateInfo->pCode, pCreateInfo->pCode + pCreateInfo->codeSize / sizeof(uint32_t));
-        if (const Status status = checkModule(words); !status) {
-            return object(device)->report("vkCreateShaderModule", status.error());
-        }
-        return createHandle(pAllocator, pShaderModule, std::move(words));
+        Result<ValidatedModule> module = ValidatedModule::create(std::move(words));
+        if (!module) return object(device)->report("vkCreateShaderModule", module.error());
+        return createHandle(pAllocator, pShaderModule, std::move(module).value());
     });
 }
 

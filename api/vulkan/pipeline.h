@@ -1,4 +1,4 @@
-// Graphics pipelines, shader modules and pipeline caches.
+// Pipelines, shader modules and pipeline caches.
 #pragma once
 
 #include <cstdint>
@@ -6,25 +6,34 @@
 #include <vector>
 
 #include "api/vulkan/handle.h"
+#include "runtime/plan/compute_pipeline.h"
 #include "runtime/plan/pipeline.h"
+#include "spirv_interp/program.h"
 
 namespace vernier::vulkan {
 
+/// Validated when it is created, so that its pipelines need not be.
 struct ShaderModule {
-    explicit ShaderModule(std::vector<uint32_t> code) : words(std::move(code)) {}
-    std::vector<uint32_t> words;
+    explicit ShaderModule(ValidatedModule code) : module(std::move(code)) {}
+    ValidatedModule module;
 };
 
 /// Nothing is kept between pipelines: the data of a cache is its header alone.
 struct PipelineCache {};
 
+/// Of one of the two kinds.
 struct Pipeline {
     Pipeline(std::shared_ptr<const GraphicsPipeline> made, const DynamicState& values, uint32_t mask)
         : graphics(std::move(made)), fixed(values), dynamicMask(mask) {}
+    explicit Pipeline(std::shared_ptr<const ComputePipeline> made) : compute(std::move(made)) {}
     std::shared_ptr<const GraphicsPipeline> graphics;
     DynamicState fixed;
-    uint32_t dynamicMask;
+    uint32_t dynamicMask = 0;
+    std::shared_ptr<const ComputePipeline> compute;
 };
+
+/// Loads the program of a stage with its specialization (pipeline.cpp).
+Result<ir::Program> loadStage(const VkPipelineShaderStageCreateInfo& stage, ir::Stage kind);
 
 /// The state of VkGraphicsPipelineCreateInfo in the runtime's terms (pipeline_state.cpp).
 struct PipelineState {

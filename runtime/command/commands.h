@@ -11,6 +11,7 @@
 #include <span>
 
 #include "runtime/limits.h"
+#include "runtime/plan/compute_pipeline.h"
 #include "runtime/plan/pipeline.h"
 #include "runtime/resource/descriptor.h"
 #include "runtime/resource/image.h"
@@ -56,12 +57,19 @@ struct BindPipeline {
     const DynamicState* fixed = nullptr;
     uint32_t dynamicMask = 0;  // bit per VkDynamicState value below 32: left as set by commands
 };
+struct BindComputePipeline {
+    const ComputePipeline* pipeline = nullptr;
+};
+/// Draws and dispatches have descriptor sets and push constants of their own.
+enum class BindPoint : uint8_t { graphics, compute };
 struct BindDescriptorSets {
+    BindPoint bindPoint = BindPoint::graphics;
     uint32_t firstSet = 0;
     std::span<const DescriptorSet* const> sets;
     std::span<const std::span<const uint32_t>> dynamicOffsets;  // one per set
 };
 struct PushConstants {
+    VkShaderStageFlags stages = VK_SHADER_STAGE_ALL;
     uint32_t offset = 0;
     std::span<const std::byte> bytes;
 };
@@ -113,6 +121,17 @@ struct DrawIndirect {
     uint32_t drawCount = 0;
     uint32_t stride = 0;
     BufferRange countBuffer;  // buffer == nullptr: drawCount counts
+};
+/// Outside a pass; not begun before all commands before it are done, and done before the next begins.
+struct Dispatch {
+    std::array<uint32_t, 3> base{};  // added to WorkgroupId
+    std::array<uint32_t, 3> count{};
+    PassStatistics* statistics = nullptr;  // where to add what was counted, or nullptr
+};
+/// VkDispatchIndirectCommand is read when the command runs. Counts above kMaxWorkGroupCount run nothing.
+struct DispatchIndirect {
+    BufferRange arguments;
+    PassStatistics* statistics = nullptr;
 };
 struct CopyBuffer {
     const Buffer* source = nullptr;

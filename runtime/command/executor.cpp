@@ -51,18 +51,18 @@ const Arguments* argumentsAt(const command::BufferRange& range, VkDeviceSize off
 
 }  // namespace
 
-Executor::Executor(Device& device) : device_(device), pass_(device.pool()) {}
+Executor::Executor(Device& device) : device_(device), pass_(device.pool()), dispatcher_(device.pool()) {}
 Executor::~Executor() = default;
 
 bool Executor::run(const CommandBuffer& commands) {
     pipeline_ = nullptr;
     dynamic_ = {};
     dynamicSnapshot_ = nullptr;
-    bound_ = {};
-    pushConstants_ = {};
+    drawBindings_ = {};
+    computePipeline_ = nullptr;
+    computeBindings_ = {};
     vertexStreams_ = {};
     indices_ = {};
-    bindingsChanged_ = true;
     arena_.reset();
     runAll(commands);
     if (inPass_) run(command::EndRendering{});
@@ -86,23 +86,34 @@ void Executor::run(const command::BindPipeline& command) {
     pipeline_ = command.pipeline;
     if (command.fixed) applyFixedState(*command.fixed, command.dynamicMask, dynamic_);
     dynamicSnapshot_ = nullptr;
-    bindingsChanged_ = true;
+    drawBindings_.changed = true;
+}
+
+void Executor::run(const command::BindComputePipeline& command) {
+    computePipeline_ = command.pipeline;
+    computeBindings_.changed = true;
 }
 
 void Executor::run(const command::BindDescriptorSets& command) {
-    for (size_t i = 0; i < command.sets.size() && command.firstSet + i < std::size(bound_.sets); ++i) {
-        bound_.sets[command.firstSet + i] = command.sets[i];
-        bound_.dynamicOffsets[command.firstSet + i] =
+    Bindings& to = bindings(command.bindPoint);
+    for (size_t i = 0; i < command.sets.size() && command.firstSet + i < std::size(to.bound.sets); ++i) {
+        to.bound.sets[command.firstSet + i] = command.sets[i];
+        to.bound.dynamicOffsets[command.firstSet + i] =
             i < command.dynamicOffsets.size() ? command.dynamicOffsets[i] : std::span<const uint32_t>{};
     }
-    bindingsChanged_ = true;
+    to.changed = true;
 }
 
 void Executor::run(const command::PushConstants& command) {
-    if (command.offset > pushConstants_.size()) return;
-    const size_t room = pushConstants_.size() - command.offset;
-    std::copy_n(command.bytes.data(), std::min(command.bytes.size(), room), pushConstants_.data() + command.offset);
-    bindingsChanged_ = true;
+    const auto write = [&](Bindings& to) {
+        if (command.offset > to.pushConstants.size()) return;
+        const size_t room = to.pushConstants.size() - command.offset;
+        std::copy_n(command.bytes.data(), std::min(command.bytes.size(), room),
+                    to.pushConstants.data() + command.offset);
+        to.changed = true;
+    };
+    if (command.stages & ~VkShaderStageFlags{VK_SHADER_STAGE_COMPUTE_BIT}) write(drawBindings_);
+    if (command.stages & VK_SHADER_STAGE_COMPUTE_BIT) write(computeBindings_);
 }
 
 void Executor::run(const command::BindVertexBuffers& command) {
@@ -161,19 +172,20 @@ void Executor::run(const command::SetStencil& command) {
     dynamicSnapshot_ = nullptr;
 }
 
-void Executor::refreshBindings() {
-    if (!bindingsChanged_) return;
-    bindingsChanged_ = false;
-    bound_.pushConstants = arena_.copy(std::span<const std::byte>(pushConstants_));
-    vertexResources_ = resolveBindings(pipeline_->vertexIr(), bound_, arena_);
+void Executor::refreshDrawBindings() {
+    if (!drawBindings_.changed) return;
+    drawBindings_.changed = false;
+    BoundDescriptors& bound = drawBindings_.bound;
+    bound.pushConstants = arena_.copy(std::span<const std::byte>(drawBindings_.pushConstants));
+    vertexResources_ = resolveBindings(pipeline_->vertexIr(), bound, arena_);
     fragmentResources_ =
-        pipeline_->fragmentIr() ? resolveBindings(*pipeline_->fragmentIr(), bound_, arena_) : ResourceBindings{};
+        pipeline_->fragmentIr() ? resolveBindings(*pipeline_->fragmentIr(), bound, arena_) : ResourceBindings{};
 }
 
 void Executor::draw(const command::Draw& command, uint32_t drawIndex) {
     if (!pipeline_ || !inPass_ || command.count == 0 || command.instances == 0) return;
     if (command.indexed && !indices_.data) return;
-    refreshBindings();
+    refreshDrawBindings();
     if (!dynamicSnapshot_) dynamicSnapshot_ = arena_.create(dynamic_);
     DrawCall call;
     call.pipeline = pipeline_;
@@ -213,6 +225,32 @@ void Executor::run(const command::DrawIndirect& command) {
             draw({false, a->vertexCount, a->instanceCount, a->firstVertex, a->firstInstance, 0}, i);
         }
     }
+}
+
+void Executor::dispatch(const WorkGroupContext::Grid& grid, PassStatistics* statistics) {
+    if (!computePipeline_ || inPass_ || lost_ || grid.size() == 0) return;
+    if (computeBindings_.changed) {
+        computeBindings_.changed = false;
+        computeArena_.reset();
+        BoundDescriptors& bound = computeBindings_.bound;
+        bound.pushConstants = computeBindings_.pushConstants;
+        computeResources_ = resolveBindings(computePipeline_->ir(), bound, computeArena_);
+    }
+    if (!dispatcher_.run(*computePipeline_, computeResources_, grid)) lost_ = true;
+    const uint64_t invocations = grid.size() * computePipeline_->invocations();
+    finished_.computeInvocations += invocations;
+    if (statistics) statistics->computeInvocations += invocations;
+}
+
+void Executor::run(const command::Dispatch& command) {
+    dispatch({command.count, command.base}, command.statistics);
+}
+
+void Executor::run(const command::DispatchIndirect& command) {
+    const auto* a = argumentsAt<VkDispatchIndirectCommand>(command.arguments, 0);
+    if (!a) return;
+    const std::array<uint32_t, 3> count{a->x, a->y, a->z};
+    if (checkGroupCounts(count)) dispatch({count, {}}, command.statistics);
 }
 
 void Executor::run(const command::ExecuteCommands& command) {

@@ -9,6 +9,7 @@
 #include "base/arena.h"
 #include "runtime/command/command_buffer.h"
 #include "runtime/command/device.h"
+#include "runtime/command/dispatcher.h"
 #include "runtime/raster/render_pass.h"
 
 namespace vernier {
@@ -30,27 +31,42 @@ class Executor {
 
     void beginTargets(const command::BeginRendering& command);
     void draw(const command::Draw& command, uint32_t drawIndex);
-    void refreshBindings();
+    void refreshDrawBindings();
+    void dispatch(const WorkGroupContext::Grid& grid, PassStatistics* statistics);
     PassStatistics totals() const;
 
     Device& device_;
     RenderPass pass_;
+    Dispatcher dispatcher_;
     bool inPass_ = false;
     bool lost_ = false;
     PassStatistics* passSink_ = nullptr;
-    PassStatistics finished_;  // of the passes that have ended
+    PassStatistics finished_;  // of the passes and dispatches that have ended
+
+    /// What descriptors and push constants draws, or dispatches, find.
+    struct Bindings {
+        BoundDescriptors bound;
+        std::array<std::byte, kMaxPushConstantBytes> pushConstants{};
+        bool changed = true;
+    };
+    Bindings& bindings(command::BindPoint point) {
+        return point == command::BindPoint::compute ? computeBindings_ : drawBindings_;
+    }
+    Bindings drawBindings_, computeBindings_;
 
     /// What draws point to until their pass ends.
     Arena arena_;
     const GraphicsPipeline* pipeline_ = nullptr;
     DynamicState dynamic_;
     const DynamicState* dynamicSnapshot_ = nullptr;  // in the arena; nullptr after a change
-    BoundDescriptors bound_;
-    std::array<std::byte, kMaxPushConstantBytes> pushConstants_{};
     ResourceBindings vertexResources_, fragmentResources_;
-    bool bindingsChanged_ = true;
     std::array<VertexStream, kMaxVertexBindings> vertexStreams_{};
     IndexStream indices_;
+
+    /// What the next dispatch points to.
+    Arena computeArena_;
+    const ComputePipeline* computePipeline_ = nullptr;
+    ResourceBindings computeResources_;
 
     struct ActiveQuery {
         QueryPool* pool;

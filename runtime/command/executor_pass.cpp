@@ -87,7 +87,7 @@ void Executor::run(const command::EndRendering&) {
     if (passSink_) *passSink_ = add(*passSink_, pass_.statistics());
     arena_.reset();
     dynamicSnapshot_ = nullptr;
-    bindingsChanged_ = true;
+    drawBindings_.changed = true;
 }
 
 void Executor::run(const command::Flush&) {

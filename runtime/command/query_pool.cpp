@@ -21,6 +21,8 @@ uint64_t statisticOf(VkQueryPipelineStatisticFlags bit, const PassStatistics& s)
             return s.rasterPrimitives;
         case VK_QUERY_PIPELINE_STATISTIC_FRAGMENT_SHADER_INVOCATIONS_BIT:
             return s.fragmentInvocations;
+        case VK_QUERY_PIPELINE_STATISTIC_COMPUTE_SHADER_INVOCATIONS_BIT:
+            return s.computeInvocations;
         default:
             return 0;  // stages that do not exist run no invocations
     }

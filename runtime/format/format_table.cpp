@@ -64,9 +64,12 @@ constexpr Uses kTexture{kReadable | kFiltered, 0};
 constexpr Uses kColor{kReadable | kFiltered | kTarget | kBlend, 0};
 constexpr Uses kColorVertex{kColor.image, kBuffer};
 constexpr Uses kColorStorage{kColor.image | kStorage, kBuffer | kStorageBuffer};
+constexpr Uses kColorExtended{kColor.image | kStorage,
+                              kBuffer};  // a storage image by shaderStorageImageExtendedFormats
 constexpr Uses kColorTexelBuffer{kColor.image, kBuffer | kStorageBuffer};  // A8B8G8R8: no storage images
 constexpr Uses kInteger{kReadable | kTarget, kBuffer};
 constexpr Uses kIntegerStorage{kInteger.image | kStorage, kBuffer | kStorageBuffer};
+constexpr Uses kIntegerExtended{kInteger.image | kStorage, kBuffer};
 constexpr Uses kIntegerTexelBuffer{kInteger.image, kBuffer | kStorageBuffer};
 constexpr Uses kIntegerAtomic{kIntegerStorage.image | VK_FORMAT_FEATURE_STORAGE_IMAGE_ATOMIC_BIT,
                               kIntegerStorage.buffer | VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_ATOMIC_BIT};
@@ -145,11 +148,11 @@ constexpr std::array kFormats{
     COLOR(R5G5B5A1_UNORM_PACK16, kRgb5a1, unorm, kColor),
     COLOR(B5G5R5A1_UNORM_PACK16, kBgr5a1, unorm, kColor),
     COLOR(A1R5G5B5_UNORM_PACK16, kA1rgb5, unorm, kColor),
-    NORM(R8, kR8, , kColorVertex, kColorVertex),
-    INT(R8, kR8, , kInteger),
+    NORM(R8, kR8, , kColorExtended, kColorExtended),
+    INT(R8, kR8, , kIntegerExtended),
     COLOR(R8_SRGB, kR8, srgb, kColor),
-    NORM(R8G8, kRg8, , kColorVertex, kColorVertex),
-    INT(R8G8, kRg8, , kInteger),
+    NORM(R8G8, kRg8, , kColorExtended, kColorExtended),
+    INT(R8G8, kRg8, , kIntegerExtended),
     COLOR(R8G8_SRGB, kRg8, srgb, kColor),
     NORM(R8G8B8, kRgb8, , kVertexOnly, kVertexOnly),
     INT(R8G8B8, kRgb8, , kVertexOnly),
@@ -164,18 +167,18 @@ constexpr std::array kFormats{
     COLOR(A8B8G8R8_SRGB_PACK32, kAbgr8Pack32, srgb, kColor),
     NORM(A2R10G10B10, kA2rgb10, _PACK32, kColorVertex, kVertexOnly),
     INT(A2R10G10B10, kA2rgb10, _PACK32, kInteger),
-    NORM(A2B10G10R10, kA2bgr10, _PACK32, kColorVertex, kVertexOnly),
-    INT(A2B10G10R10, kA2bgr10, _PACK32, kInteger),
-    NORM(R16, kR16, , kColorVertex, kColorVertex),
-    INT(R16, kR16, , kInteger),
-    COLOR(R16_SFLOAT, kR16, sfloat, kColorVertex),
-    NORM(R16G16, kRg16, , kColorVertex, kColorVertex),
-    INT(R16G16, kRg16, , kInteger),
-    COLOR(R16G16_SFLOAT, kRg16, sfloat, kColorVertex),
+    NORM(A2B10G10R10, kA2bgr10, _PACK32, kColorExtended, kVertexOnly),
+    INT(A2B10G10R10, kA2bgr10, _PACK32, kIntegerExtended),
+    NORM(R16, kR16, , kColorExtended, kColorExtended),
+    INT(R16, kR16, , kIntegerExtended),
+    COLOR(R16_SFLOAT, kR16, sfloat, kColorExtended),
+    NORM(R16G16, kRg16, , kColorExtended, kColorExtended),
+    INT(R16G16, kRg16, , kIntegerExtended),
+    COLOR(R16G16_SFLOAT, kRg16, sfloat, kColorExtended),
     NORM(R16G16B16, kRgb16, , kVertexOnly, kVertexOnly),
     INT(R16G16B16, kRgb16, , kVertexOnly),
     COLOR(R16G16B16_SFLOAT, kRgb16, sfloat, kVertexOnly),
-    NORM(R16G16B16A16, kRgba16, , kColorVertex, kColorVertex),
+    NORM(R16G16B16A16, kRgba16, , kColorExtended, kColorExtended),
     INT(R16G16B16A16, kRgba16, , kIntegerStorage),
     COLOR(R16G16B16A16_SFLOAT, kRgba16, sfloat, kColorStorage),
     INT(R32, kR32, , kIntegerAtomic),
@@ -186,7 +189,7 @@ constexpr std::array kFormats{
     COLOR(R32G32B32_SFLOAT, kRgb32, sfloat, kVertexOnly),
     INT(R32G32B32A32, kRgba32, , kIntegerStorage),
     COLOR(R32G32B32A32_SFLOAT, kRgba32, sfloat, kColorStorage),
-    COLOR(B10G11R11_UFLOAT_PACK32, kB10gr11, ufloat, kColorVertex),
+    COLOR(B10G11R11_UFLOAT_PACK32, kB10gr11, ufloat, kColorExtended),
     COLOR(E5B9G9R9_UFLOAT_PACK32, kE5bgr9, ufloat, kTexture),
     DEPTH_STENCIL(D16_UNORM, 2, part(16, 0, unorm), kNoPart, false),
     DEPTH_STENCIL(X8_D24_UNORM_PACK32, 4, part(24, 0, unorm), kNoPart, true),

@@ -22,19 +22,6 @@ std::string count(size_t n, const std::string& thing) {
     return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
 }
 
-const char* tierName(MathTier tier) {
-    switch (tier) {
-        case MathTier::fast:
-            return "fast";
-        case MathTier::standard:
-            return "standard";
-        case MathTier::fine:
-            return "fine";
-        default:
-            return "reference";
-    }
-}
-
 void geometryFacts(const GraphicsState& state, const Plan& plan, const Accuracy& accuracy, FactWriter& facts) {
     facts.runs("vertex program, once per vertex and chunk",
                count(plan.attributes.size(), "attribute") + " fetched; " + tierName(accuracy.math) + " maths");
@@ -119,6 +106,19 @@ void colorFacts(const GraphicsState& state, const Plan& plan, FactWriter& facts)
 }
 
 }  // namespace
+
+const char* tierName(MathTier tier) {
+    switch (tier) {
+        case MathTier::fast:
+            return "fast";
+        case MathTier::standard:
+            return "standard";
+        case MathTier::fine:
+            return "fine";
+        default:
+            return "reference";
+    }
+}
 
 void collectFacts(const GraphicsState& state, const ShaderProgram& program, Plan& plan) {
     FactWriter facts(plan);

@@ -5,6 +5,8 @@
 
 namespace vernier {
 
+const char* tierName(MathTier tier);
+
 /// Fills plan.facts from the decisions in `plan`.
 void collectFacts(const GraphicsState& state, const ShaderProgram& program, Plan& plan);
 

@@ -49,6 +49,7 @@ struct PassStatistics {
     uint64_t rasterPrimitives = 0;     // primitives that reached the rasteriser
     uint64_t fragmentInvocations = 0;  // helper lanes not counted
     uint64_t helperInvocations = 0;
+    uint64_t computeInvocations = 0;  // of dispatches: 0 in a pass
     uint64_t batches = 0;             // fragment batches run
     uint64_t samplesPassed = 0;       // samples that passed all tests
     uint64_t perspectiveDivides = 0;  // pixels for which 1/w was divided

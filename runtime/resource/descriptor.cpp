@@ -99,6 +99,10 @@ Status DescriptorSet::writeImage(uint32_t slot, const TextureView* view, const S
     return {};
 }
 
+void DescriptorSet::writeTexelBuffer(uint32_t slot, const TextureView* view, Isa isa) {
+    slots_[slot].texture = makeTexelBufferUnit(view, isa);
+}
+
 ResourceBindings resolveBindings(const ir::Program& program, const BoundDescriptors& bound, Arena& arena) {
     const size_t resources = program.resources.size();
     const std::span<uint32_t> base = arena.array<uint32_t>(resources);
@@ -108,8 +112,9 @@ ResourceBindings resolveBindings(const ir::Program& program, const BoundDescript
         const ir::Resource& resource = program.resources[r];
         uint32_t& size = sizes[static_cast<size_t>(tableOf(resource.kind))];
         base[r] = size;
-        count[r] = resource.kind == ir::ResourceKind::pushConstants
-                       ? 1
+        count[r] = resource.kind == ir::ResourceKind::pushConstants ? 1
+                   : resource.kind == ir::ResourceKind::workgroupMemory
+                       ? 0  // the work-group's context owns it
                        : static_cast<uint32_t>(find(resource, bound).slots.size());
         size += count[r];
     }
@@ -124,6 +129,7 @@ ResourceBindings resolveBindings(const ir::Program& program, const BoundDescript
                                 static_cast<uint32_t>(bound.pushConstants.size())};
             continue;
         }
+        if (count[r] == 0) continue;
         const Found found = find(resource, bound);
         for (uint32_t i = 0; i < count[r]; ++i) {
             switch (tableOf(resource.kind)) {

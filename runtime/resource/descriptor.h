@@ -55,6 +55,8 @@ class DescriptorSet {
     /// Either may be nullptr (separate images and samplers; null descriptors). Both must outlive the descriptor.
     /// Resolves image and sampler to their routines; fails, leaving an empty binding, if the pair cannot be sampled.
     Status writeImage(uint32_t slot, const TextureView* view, const SamplerState* sampler, Isa isa);
+    /// `view`: of a BufferView, which must outlive the descriptor; nullptr: an empty binding.
+    void writeTexelBuffer(uint32_t slot, const TextureView* view, Isa isa);
 
   private:
     const DescriptorSetLayout* layout_;

@@ -268,6 +268,12 @@ Result<TextureUnit> makeTextureUnit(const TextureView* view, const SamplerState*
     return unit;
 }
 
+TextureUnit makeTexelBufferUnit(const TextureView* view, Isa isa) {
+    TextureUnit unit{.view = view, .isa = isa};
+    if (view) unit.fetch = selectFetch(*view, isa);
+    return unit;
+}
+
 ImageBinding bindingOf(const TextureUnit& unit) {
     return {&unit, unit.sampler, callUnit};
 }

@@ -20,6 +20,9 @@ struct TextureUnit {
 /// Either pointer may be nullptr. Fails if the view, or the pair, is one that runtime/texture cannot handle.
 Result<TextureUnit> makeTextureUnit(const TextureView* view, const SamplerState* sampler, Isa isa);
 
+/// Of BufferView::texture(); nullptr: nothing bound. Texels are fetched, read and written, never sampled.
+TextureUnit makeTexelBufferUnit(const TextureView* view, Isa isa);
+
 /// The binding through which a program reaches `unit`, which must outlive it.
 ImageBinding bindingOf(const TextureUnit& unit);
 

@@ -127,6 +127,35 @@ TEST(FormatTable, MandatoryFeatures) {
     }
 }
 
+// The formats that the feature shaderStorageImageExtendedFormats names.
+TEST(FormatTable, ExtendedStorageFormats) {
+    for (const VkFormat format : {VK_FORMAT_R16G16_SFLOAT,
+                                  VK_FORMAT_B10G11R11_UFLOAT_PACK32,
+                                  VK_FORMAT_R16_SFLOAT,
+                                  VK_FORMAT_R16G16B16A16_UNORM,
+                                  VK_FORMAT_A2B10G10R10_UNORM_PACK32,
+                                  VK_FORMAT_R16G16_UNORM,
+                                  VK_FORMAT_R8G8_UNORM,
+                                  VK_FORMAT_R16_UNORM,
+                                  VK_FORMAT_R8_UNORM,
+                                  VK_FORMAT_R16G16B16A16_SNORM,
+                                  VK_FORMAT_R16G16_SNORM,
+                                  VK_FORMAT_R8G8_SNORM,
+                                  VK_FORMAT_R16_SNORM,
+                                  VK_FORMAT_R8_SNORM,
+                                  VK_FORMAT_R16G16_SINT,
+                                  VK_FORMAT_R8G8_SINT,
+                                  VK_FORMAT_R16_SINT,
+                                  VK_FORMAT_R8_SINT,
+                                  VK_FORMAT_A2B10G10R10_UINT_PACK32,
+                                  VK_FORMAT_R16G16_UINT,
+                                  VK_FORMAT_R8G8_UINT,
+                                  VK_FORMAT_R16_UINT,
+                                  VK_FORMAT_R8_UINT}) {
+        EXPECT_TRUE(findFormat(format)->optimalTilingFeatures & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT) << format;
+    }
+}
+
 // Integer formats can be neither filtered nor blended, whatever else the table grows.
 TEST(FormatTable, IntegersAreNotFilteredOrBlended) {
     for (const FormatInfo& info : allFormats()) {

@@ -63,6 +63,52 @@ TEST_F(PassTest, multisampleResolves) {
     EXPECT_EQ(pixelAt(readImage(resolved, VK_IMAGE_ASPECT_COLOR_BIT, 4), resolved, 10, 10), kGreen);
 }
 
+TEST_F(PassTest, withoutAttachmentsSamplesAreThoseOfThePipeline) {
+    auto subpass = VkSubpassDescription{};
+    auto passInfo = make<VkRenderPassCreateInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO);
+    passInfo.subpassCount = 1;
+    passInfo.pSubpasses = &subpass;
+    Pass pass;
+    pass.extent = kExtent;
+    ASSERT_EQ(vkCreateRenderPass(device, &passInfo, nullptr, &pass.pass), VK_SUCCESS);
+    auto framebuffer = make<VkFramebufferCreateInfo>(VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO);
+    framebuffer.renderPass = pass.pass;
+    framebuffer.width = kExtent.width;
+    framebuffer.height = kExtent.height;
+    framebuffer.layers = 1;
+    ASSERT_EQ(vkCreateFramebuffer(device, &framebuffer, nullptr, &pass.framebuffer), VK_SUCCESS);
+    auto queryInfo = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
+    queryInfo.queryType = VK_QUERY_TYPE_OCCLUSION;
+    queryInfo.queryCount = 1;
+    VkQueryPool queries = VK_NULL_HANDLE;
+    ASSERT_EQ(vkCreateQueryPool(device, &queryInfo, nullptr, &queries), VK_SUCCESS);
+    defer([this, pass, queries] {
+        vkDestroyQueryPool(device, queries, nullptr);
+        vkDestroyFramebuffer(device, pass.framebuffer, nullptr);
+        vkDestroyRenderPass(device, pass.pass, nullptr);
+    });
+    PipelineDesc desc;
+    desc.extent = kExtent;
+    desc.vertex = fullScreen();
+    desc.fragment = constantColor("1, 0, 0, 1");
+    desc.colorCount = 0;
+    desc.samples = VK_SAMPLE_COUNT_4_BIT;
+    const VkPipeline pipeline = makePipeline(pass.pass, desc);
+    const VkCommandBuffer commands = begin();
+    vkCmdResetQueryPool(commands, queries, 0, 1);
+    beginPass(commands, pass);
+    vkCmdBeginQuery(commands, queries, 0, VK_QUERY_CONTROL_PRECISE_BIT);
+    draw(commands, pipeline);
+    vkCmdEndQuery(commands, queries, 0);
+    vkCmdEndRenderPass(commands);
+    submit(commands);
+    uint64_t samples = 0;
+    ASSERT_EQ(
+        vkGetQueryPoolResults(device, queries, 0, 1, sizeof samples, &samples, sizeof samples, VK_QUERY_RESULT_64_BIT),
+        VK_SUCCESS);
+    EXPECT_EQ(samples, 4u * kExtent.width * kExtent.height);
+}
+
 TEST_F(PassTest, renderAreaLimitsTheClear) {
     const TestImage color = makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
     Pass pass = makePass(color);

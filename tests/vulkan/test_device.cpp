@@ -46,10 +46,11 @@ void VulkanTest::SetUp() {
     auto application = make<VkApplicationInfo>(VK_STRUCTURE_TYPE_APPLICATION_INFO);
     application.apiVersion = VK_API_VERSION_1_0;
     const char* extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
-                                VK_KHR_GET_PHYSICAL_DEVICE_PROPERTIES_2_EXTENSION_NAME};
+                                VK_KHR_GET_PHYSICAL_DEVICE_PROPERTIES_2_EXTENSION_NAME,
+                                VK_KHR_DEVICE_GROUP_CREATION_EXTENSION_NAME};
     auto info = make<VkInstanceCreateInfo>(VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO);
     info.pApplicationInfo = &application;
-    info.enabledExtensionCount = 2;
+    info.enabledExtensionCount = 3;
     info.ppEnabledExtensionNames = extensions;
     ASSERT_EQ(vkCreateInstance(&info, nullptr, &instance), VK_SUCCESS);
 
@@ -75,7 +76,8 @@ void VulkanTest::SetUp() {
     auto queueInfo = make<VkDeviceQueueCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO);
     queueInfo.queueCount = 1;
     queueInfo.pQueuePriorities = &priority;
-    const char* deviceExtensions[] = {VK_KHR_MAINTENANCE_1_EXTENSION_NAME, VK_KHR_TIMELINE_SEMAPHORE_EXTENSION_NAME};
+    const char* deviceExtensions[] = {VK_KHR_MAINTENANCE_1_EXTENSION_NAME, VK_KHR_TIMELINE_SEMAPHORE_EXTENSION_NAME,
+                                      VK_KHR_DEVICE_GROUP_EXTENSION_NAME};
     auto timeline =
         make<VkPhysicalDeviceTimelineSemaphoreFeatures>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES);
     timeline.timelineSemaphore = VK_TRUE;
@@ -83,7 +85,7 @@ void VulkanTest::SetUp() {
     deviceInfo.pNext = &timeline;
     deviceInfo.queueCreateInfoCount = 1;
     deviceInfo.pQueueCreateInfos = &queueInfo;
-    deviceInfo.enabledExtensionCount = 2;
+    deviceInfo.enabledExtensionCount = 3;
     deviceInfo.ppEnabledExtensionNames = deviceExtensions;
     deviceInfo.pEnabledFeatures = &features;
     ASSERT_EQ(vkCreateDevice(physicalDevice, &deviceInfo, nullptr, &device), VK_SUCCESS);

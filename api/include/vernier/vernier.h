@@ -13,7 +13,8 @@
  *  - *State objects* (vertex layout, raster, depth-stencil, blend, program) are immutable and cheap to bind. Each
  *    combination that is drawn with is planned once and cached. Viewports, scissors, topology, blend constants and the
  *    stencil reference are set directly.
- *  - Resources are bound by (set, binding) as the shaders declare them and may be changed between any two draws.
+ *  - Resources are bound by (set, binding) as the shaders declare them and may be changed between any two draws or
+ *    dispatches.
  *  - Every descriptor struct may be zero-initialised: zero means the default, told at each field. `_start` and `_end`
  *    must be 0: they catch structs that were never initialised (VN_ERROR_INVALID_ARGUMENT).
  *  - Conventions are Vulkan's: clip space with y down and depth 0..1, framebuffer origin at the top left, SPIR-V shaders,
@@ -225,7 +226,7 @@ typedef struct VnSpecialization {
 
 typedef struct VnShaderDesc {
     uint32_t _start;
-    VkShaderStageFlagBits stage; /* VK_SHADER_STAGE_VERTEX_BIT or VK_SHADER_STAGE_FRAGMENT_BIT */
+    VkShaderStageFlagBits stage; /* VK_SHADER_STAGE_VERTEX_BIT, _FRAGMENT_BIT or _COMPUTE_BIT */
     const uint32_t* words;       /* a SPIR-V module; copied */
     size_t wordCount;
     const char* entryPoint;                  /* NULL: "main" */
@@ -242,6 +243,7 @@ typedef struct VnProgramDesc {
     uint32_t _start;
     VnShader vertex;
     VnShader fragment; /* {0}: no fragment stage: only depth and stencil are written */
+    VnShader compute;  /* stands alone: a program for dispatches */
     VnProfile profile; /* 0: the device's */
     uint32_t _end;
 } VnProgramDesc;
@@ -392,6 +394,7 @@ VN_API VnResult vnClearDepthStencil(VnContext context, VkImageAspectFlags aspect
 
 /* ---- Binding and setting; in or out of a pass; stays until changed ---- */
 
+/* A compute program is bound beside the one for draws; {0} unbinds both. */
 VN_API VnResult vnBindProgram(VnContext context, VnProgram program);
 /* {0} binds the default state. */
 VN_API VnResult vnBindVertexLayout(VnContext context, VnVertexLayout layout);
@@ -407,7 +410,7 @@ VN_API VnResult vnBindIndexBuffer(VnContext context, VnBuffer buffer, uint64_t o
  * multiple of 4 bytes; `size` 0: to the end. {0} unbinds. Accesses outside read 0 and drop writes. */
 VN_API VnResult vnBindBuffer(VnContext context, uint32_t set, uint32_t binding, uint32_t element, VnBuffer buffer,
                              uint64_t offset, uint64_t size);
-/* A combined image and sampler. For a separate texture or sampler the other handle is {0}. */
+/* A combined image and sampler. For a separate texture or sampler, or a storage image, the other handle is {0}. */
 VN_API VnResult vnBindTexture(VnContext context, uint32_t set, uint32_t binding, uint32_t element, VnView view,
                               VnSampler sampler);
 /* Bytes `offset` .. `offset + size` of the push-constant block; multiples of 4, at most 256 in all. */
@@ -433,6 +436,16 @@ VN_API VnResult vnDrawIndirect(VnContext context, VnBuffer buffer, uint64_t offs
                                uint32_t stride);
 VN_API VnResult vnDrawIndexedIndirect(VnContext context, VnBuffer buffer, uint64_t offset, uint32_t drawCount,
                                       uint32_t stride);
+
+/* ---- Computing; outside a pass ---- */
+
+/* Runs x * y * z work-groups, each at most 65535, of the compute program that is bound. Commands take effect in order:
+ * a dispatch sees what was written before it, and what it writes is seen by what comes after. 0 groups do nothing. A
+ * work-group has at most 1024 x 1024 x 64 and in all 1024 invocations, and shares at most 32768 bytes. */
+VN_API VnResult vnDispatch(VnContext context, uint32_t groupsX, uint32_t groupsY, uint32_t groupsZ);
+/* The counts are a VkDispatchIndirectCommand at `offset` (a multiple of 4) in `buffer`, read when the command runs;
+ * counts above 65535 run nothing. */
+VN_API VnResult vnDispatchIndirect(VnContext context, VnBuffer buffer, uint64_t offset);
 
 /* ---- Moving data; outside a pass ---- */
 
@@ -486,15 +499,17 @@ typedef struct VnStatistics {
     uint64_t destinationReads;   /* pixels whose colour was read back */
     uint64_t depthReads;         /* samples whose depth or stencil was read */
     uint64_t plans;              /* combinations of state that had to be planned */
+    uint64_t dispatches;
+    uint64_t computeInvocations;
 } VnStatistics;
 
 /* Waits for the context's work. */
 VN_API VnResult vnGetStatistics(VnContext context, VnStatistics* statistics);
 VN_API VnResult vnResetStatistics(VnContext context);
 
-/* What the next draw with the bound state would run, at what rate and accuracy, what is left out and why: lines of
- * text, zero-terminated, cut to `capacity` bytes. `length` (may be NULL) receives the full length without the zero.
- * Inside a pass. */
+/* What the next draw with the bound state would run (outside a pass: the next dispatch), at what rate and accuracy,
+ * what is left out and why: lines of text, zero-terminated, cut to `capacity` bytes. `length` (may be NULL) receives
+ * the full length without the zero. */
 VN_API VnResult vnExplain(VnContext context, char* text, size_t capacity, size_t* length);
 
 #ifdef __cplusplus

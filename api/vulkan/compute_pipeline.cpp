@@ -1,0 +1,37 @@
+// Compute pipelines.
+#include "api/vulkan/allocation.h"
+#include "api/vulkan/device.h"
+#include "api/vulkan/entry_points.h"
+#include "api/vulkan/pipeline.h"
+
+namespace vernier::vulkan {
+namespace {
+
+VkResult createOne(const Device& device, const VkComputePipelineCreateInfo& info,
+                   const VkAllocationCallbacks* callbacks, VkPipeline* out) {
+    const auto fail = [&](const Error& error) { return device.report("vkCreateComputePipelines", error); };
+    if (info.stage.stage != VK_SHADER_STAGE_COMPUTE_BIT)
+        return fail(invalidArgument("stage.stage is " + std::to_string(info.stage.stage) + ", not COMPUTE"));
+    const Result<ir::Program> program = loadStage(info.stage, ir::Stage::compute);
+    if (!program) return fail(program.error());
+    auto pipeline = ComputePipeline::create({&*program, device.physicalDevice.accuracy, device.runtime->isa()});
+    if (!pipeline) return fail(pipeline.error());
+    return createHandle(callbacks, out, std::move(pipeline).value());
+}
+
+}  // namespace
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateComputePipelines(VkDevice device, VkPipelineCache, uint32_t createInfoCount,
+                                                      const VkComputePipelineCreateInfo* pCreateInfos,
+                                                      const VkAllocationCallbacks* pAllocator, VkPipeline* pPipelines) {
+    VkResult result = VK_SUCCESS;
+    for (uint32_t i = 0; i < createInfoCount; ++i) {
+        pPipelines[i] = VK_NULL_HANDLE;
+        const VkResult one =
+            guarded([&] { return createOne(*object(device), pCreateInfos[i], pAllocator, &pPipelines[i]); });
+        if (one != VK_SUCCESS) result = one;
+    }
+    return result;
+}
+
+}  // namespace vernier::vulkan

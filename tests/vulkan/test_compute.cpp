@@ -1,0 +1,129 @@
+#include "tests/vulkan/test_compute.h"
+
+namespace vernier::test {
+
+VkDescriptorSet ComputeTest::makeSet(const std::vector<TestDescriptor>& descriptors, VkDescriptorSetLayout* layout) {
+    std::vector<VkDescriptorSetLayoutBinding> bindings;
+    std::vector<VkDescriptorPoolSize> sizes;
+    for (const TestDescriptor& descriptor : descriptors) {
+        bindings.push_back({static_cast<uint32_t>(bindings.size()), descriptor.type, 1, VK_SHADER_STAGE_ALL, nullptr});
+        sizes.push_back({descriptor.type, 1});
+    }
+    auto info = make<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
+    info.bindingCount = static_cast<uint32_t>(bindings.size());
+    info.pBindings = bindings.data();
+    EXPECT_EQ(vkCreateDescriptorSetLayout(device, &info, nullptr, layout), VK_SUCCESS);
+    defer([this, made = *layout] { vkDestroyDescriptorSetLayout(device, made, nullptr); });
+
+    auto poolInfo = make<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
+    poolInfo.maxSets = 1;
+    poolInfo.poolSizeCount = static_cast<uint32_t>(sizes.size());
+    poolInfo.pPoolSizes = sizes.data();
+    VkDescriptorPool descriptorPool = VK_NULL_HANDLE;
+    EXPECT_EQ(vkCreateDescriptorPool(device, &poolInfo, nullptr, &descriptorPool), VK_SUCCESS);
+    defer([this, descriptorPool] { vkDestroyDescriptorPool(device, descriptorPool, nullptr); });
+    auto allocate = make<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
+    allocate.descriptorPool = descriptorPool;
+    allocate.descriptorSetCount = 1;
+    allocate.pSetLayouts = layout;
+    VkDescriptorSet set = VK_NULL_HANDLE;
+    EXPECT_EQ(vkAllocateDescriptorSets(device, &allocate, &set), VK_SUCCESS);
+
+    for (uint32_t i = 0; i < descriptors.size(); ++i) {
+        const TestDescriptor& descriptor = descriptors[i];
+        const VkDescriptorBufferInfo buffer{descriptor.buffer, 0, VK_WHOLE_SIZE};
+        const VkDescriptorImageInfo image{VK_NULL_HANDLE, descriptor.image, VK_IMAGE_LAYOUT_GENERAL};
+        auto write = make<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
+        write.dstSet = set;
+        write.dstBinding = i;
+        write.descriptorCount = 1;
+        write.descriptorType = descriptor.type;
+        write.pBufferInfo = &buffer;
+        write.pImageInfo = &image;
+        write.pTexelBufferView = &descriptor.texels;
+        vkUpdateDescriptorSets(device, 1, &write, 0, nullptr);
+    }
+    return set;
+}
+
+ComputeTest::Compute ComputeTest::makeCompute(const std::string& glsl, const std::vector<TestDescriptor>& descriptors,
+                                              uint32_t pushBytes, const VkSpecializationInfo* specialization,
+                                              VkResult expected, VkPipelineCreateFlags flags) {
+    Compute compute;
+    VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
+    compute.set = makeSet(descriptors, &setLayout);
+    const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, pushBytes};
+    auto layoutInfo = make<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
+    layoutInfo.setLayoutCount = 1;
+    layoutInfo.pSetLayouts = &setLayout;
+    layoutInfo.pushConstantRangeCount = pushBytes != 0 ? 1 : 0;
+    layoutInfo.pPushConstantRanges = &range;
+    EXPECT_EQ(vkCreatePipelineLayout(device, &layoutInfo, nullptr, &compute.layout), VK_SUCCESS);
+    defer([this, layout = compute.layout] { vkDestroyPipelineLayout(device, layout, nullptr); });
+
+    auto info = make<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
+    info.flags = flags;
+    info.stage = make<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
+    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+    info.stage.module = makeShader(VK_SHADER_STAGE_COMPUTE_BIT, glsl);
+    info.stage.pName = "main";
+    info.stage.pSpecializationInfo = specialization;
+    info.layout = compute.layout;
+    EXPECT_EQ(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &compute.pipeline), expected);
+    defer([this, pipeline = compute.pipeline] { vkDestroyPipeline(device, pipeline, nullptr); });
+    return compute;
+}
+
+VkBufferView ComputeTest::makeTexels(const TestBuffer& buffer, VkFormat format, VkDeviceSize offset,
+                                     VkDeviceSize range) {
+    auto info = make<VkBufferViewCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO);
+    info.buffer = buffer.buffer;
+    info.format = format;
+    info.offset = offset;
+    info.range = range;
+    VkBufferView view = VK_NULL_HANDLE;
+    EXPECT_EQ(vkCreateBufferView(device, &info, nullptr, &view), VK_SUCCESS);
+    defer([this, view] { vkDestroyBufferView(device, view, nullptr); });
+    return view;
+}
+
+void ComputeTest::bind(VkCommandBuffer commands, const Compute& compute) {
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, compute.pipeline);
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, compute.layout, 0, 1, &compute.set, 0, nullptr);
+}
+
+void ComputeTest::dispatch(VkCommandBuffer commands, const Compute& compute, uint32_t x, uint32_t y, uint32_t z) {
+    bind(commands, compute);
+    vkCmdDispatch(commands, x, y, z);
+    makeVisible(commands);
+}
+
+void ComputeTest::makeVisible(VkCommandBuffer commands) {
+    auto barrier = make<VkMemoryBarrier>(VK_STRUCTURE_TYPE_MEMORY_BARRIER);
+    barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
+    barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
+    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
+                         VK_PIPELINE_STAGE_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &barrier, 0, nullptr, 0,
+                         nullptr);
+}
+
+void ComputeTest::toGeneral(VkCommandBuffer commands, const TestImage& image, VkImageLayout from) {
+    auto barrier = make<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
+    barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
+    barrier.dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
+    barrier.oldLayout = from;
+    barrier.newLayout = VK_IMAGE_LAYOUT_GENERAL;
+    barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.image = image.image;
+    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 0,
+                         nullptr, 0, nullptr, 1, &barrier);
+}
+
+void ComputeTest::run(const Compute& compute, uint32_t x, uint32_t y, uint32_t z) {
+    const VkCommandBuffer commands = begin();
+    dispatch(commands, compute, x, y, z);
+    submit(commands);
+}
+
+}  // namespace vernier::test
