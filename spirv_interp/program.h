@@ -52,11 +52,11 @@ class ValidatedModule {
 
 struct ShaderSource {
     std::span<const uint32_t> words;
-    const ValidatedModule* module = nullptr;  // instead of `words`: not validated again
     std::string entryPoint = "main";
     ir::Stage stage = ir::Stage::vertex;
     Specialization specialization;
-    bool contract = false;  // fuse a * b + c where NoContraction does not forbid it
+    bool contract = false;                    // fuse a * b + c where NoContraction does not forbid it
+    const ValidatedModule* module = nullptr;  // instead of `words`: not validated again
 };
 
 /// Validates the module unless it comes validated, specialises it, lowers the entry point to the IR, removes dead
