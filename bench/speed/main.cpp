@@ -68,7 +68,8 @@ int run(const DriverPaths& paths, const RunOptions& options, const std::vector<s
     std::printf("%u usable CPUs, %s, %u rounds, medians\n", usableCpuCount(), std::string(isaName(bestIsa())).c_str(),
                 options.rounds);
     std::printf(
-        "start-up: creating pipelines and the first run, less a steady run; modules: creating shader modules\n");
+        "start-up: creating pipelines and the first run%s, less a steady run; modules: creating shader modules\n",
+        compute ? " (of one work-group)" : "");
     Table table(drivers, reference);
     table.printHeader(compute ? "kernel" : "scene");
     nlohmann::json report;

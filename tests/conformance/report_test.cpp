@@ -49,9 +49,9 @@ struct TestReport {
         shader.glsl = "if (a < b) discard;";
         scene.scene.shaders = {shader};
         scene.renderings["icd"].images = {image(oursRed)};
-        scene.renderings["icd"].timing = {1, 2, 3, 4, 5};
+        scene.renderings["icd"].timing = {.startUp = 1, .pipelines = 2, .firstImage = 3, .frame = 4, .frames = 5};
         scene.renderings["lavapipe"].images = {image(otherRed)};
-        scene.renderings["lavapipe"].timing = {1, 2, 3, 8, 5};
+        scene.renderings["lavapipe"].timing = {.startUp = 1, .pipelines = 2, .firstImage = 3, .frame = 8, .frames = 5};
         scene.oracleAbsence = "none in this test";
         scene.judged = true;
         report.scenes.push_back(std::move(scene));
