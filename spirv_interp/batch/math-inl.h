@@ -57,10 +57,11 @@ template <>
 struct Lane<float> {
     using Bits = uint32_t;
     static constexpr int kMantissa = 23, kBias = 127;
-    static constexpr float kPi[3] = {0x1.921fb6p+1f, -0x1.777a5cp-24f, 0};  // 48 bits suffice for kNearAngle
+    static constexpr float kPi[3] = {0x1.921fb6p+1f, -0x1.777a5cp-24f, -0x1.ee59dap-49f};
     static constexpr float kLn2[2] = {0x1.62e43p-1f, -0x1.05c61p-29f};
     static constexpr float kExp2Low = -160, kExp2High = 160, kExpLow = -111, kExpHigh = 111;
     static constexpr float kLargest = 0x1p126f;
+    static constexpr float kLogOnly = 0x1p14f;  // above, asinh and acosh are log(2 x) to the last bit
 };
 template <>
 struct Lane<double> {
@@ -70,6 +71,7 @@ struct Lane<double> {
     static constexpr double kLn2[2] = {0x1.62e42ffp-1, -0x1.718432a1b0e26p-35};
     static constexpr double kExp2Low = -1000, kExp2High = 1000, kExpLow = -690, kExpHigh = 690;
     static constexpr double kLargest = 0x1p1022;
+    static constexpr double kLogOnly = 0x1p28;
 };
 /// Up to here the multiples of pi and pi / 2 have so few bits.
 inline constexpr float kNearAngle = 0x1p19f;
@@ -282,7 +284,7 @@ struct Functions {
     static HWY_INLINE V lessMultiple(V x, V n, T scale) {
         V rest = mulAdd(n, set(-L::kPi[0] * scale), x);
         rest = mulAdd(n, set(-L::kPi[1] * scale), rest);
-        return kSingle ? rest : mulAdd(n, set(-L::kPi[2] * scale), rest);
+        return mulAdd(n, set(-L::kPi[2] * scale), rest);
     }
     static HWY_INLINE V oddSign(V rounded) { return number(hn::ShiftLeft<sizeof(T) * 8 - 1>(bits(rounded))); }
     /// Puts lanes beyond kNearAngle right, which are rare, with `reduceFar(float)`; infinite ones become NaN.
@@ -432,14 +434,14 @@ struct Functions {
         const V root = hn::Sqrt(hn::Add(set(1), square));
         const V near = log1p(hn::Add(a, hn::Div(square, hn::Add(set(1), root))));
         const V far = hn::Add(log(a), set(static_cast<T>(0x1.62e42fefa39efp-1)));
-        return hn::Or(hn::Abs(choose(hn::Gt(a, set(T{16384})), far, near)), signOf(x));
+        return hn::Or(hn::Abs(choose(hn::Gt(a, set(L::kLogOnly)), far, near)), signOf(x));
     }
     /// log(x + sqrt(x^2 - 1)) with t = x - 1; NaN below 1.
     static HWY_INLINE V acosh(V x) {
         const V t = hn::Sub(x, set(1));
         const V near = log1p(hn::Add(t, hn::Sqrt(hn::Mul(t, hn::Add(t, set(2))))));
         const V far = hn::Add(log(x), set(static_cast<T>(0x1.62e42fefa39efp-1)));
-        return choose(hn::Gt(x, set(T{16384})), far, near);
+        return choose(hn::Gt(x, set(L::kLogOnly)), far, near);
     }
     /// log((1 + x) / (1 - x)) / 2; NaN outside [-1, 1].
     static HWY_INLINE V atanh(V x) {
