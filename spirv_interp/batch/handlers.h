@@ -10,6 +10,7 @@ using AddHandlers = void (*)(HandlerTable&);
 
 void addArithmetic(Isa isa, HandlerTable& table);           // arithmetic.cpp: VECTOR operations, dot products
 void addLaneOps(Isa isa, HandlerTable& table);              // lane_ops.cpp: LANES operations
+void addSubgroups(HandlerTable& table);                     // subgroup.cpp: ballots, shuffles, reductions
 void addWide(Isa isa, HandlerTable& table);                 // wide.cpp: 64-bit values
 void addMath(Isa isa, MathTier tier, HandlerTable& table);  // math.cpp: transcendental functions
 void addBarriers(HandlerTable& table);                      // barrier.cpp: control and memory barriers

@@ -173,6 +173,12 @@ void Lowerer::lowerInst(const ir::Inst& inst) {
         case ir::Op::demote:
             emit(Op::discard, {});
             return;
+        case ir::Op::subgroupInvocation:
+        case ir::Op::subgroupBallot:
+        case ir::Op::subgroupShuffle:
+        case ir::Op::quadShuffle:
+        case ir::Op::subgroupReduce:
+            return lowerSubgroup(inst);
         case ir::Op::controlBarrier:
             emit(Op::controlBarrier, {});
             return;

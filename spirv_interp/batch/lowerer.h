@@ -100,6 +100,7 @@ class Lowerer {
     void lowerOutput(const ir::Inst& inst);
     void lowerInputIndexed(const ir::Inst& inst);
     void lowerInterpolation(const ir::Inst& inst);
+    void lowerSubgroup(const ir::Inst& inst);  // lower_subgroup.cpp
 
     // Control flow.
     void planBlocks();

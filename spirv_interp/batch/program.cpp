@@ -23,16 +23,15 @@ uint32_t workGroupSize(const ir::Program& program) {
     return program.localSize[0] * program.localSize[1] * program.localSize[2];
 }
 
-/// No wider than a work-group needs that has its batches for itself.
-uint32_t narrowed(uint32_t lanes, uint32_t needed) {
-    while (lanes > kLaneGroup && lanes / 2 >= needed) lanes /= 2;
-    return lanes;
+/// A batch holds whole subgroups.
+uint32_t leastLanes(const ir::Program& program) {
+    return program.usesSubgroups ? ir::kSubgroupSize : kLaneGroup;
 }
 
 /// Whether work-groups may share a batch: nothing in them looks at other invocations. And there must be room for two.
 bool packs(const ir::Program& program, uint32_t lanes) {
     constexpr uint32_t kUsual = 64;
-    if (program.stage != ir::Stage::compute || program.hasBarriers) return false;
+    if (program.stage != ir::Stage::compute || program.hasBarriers || program.usesSubgroups) return false;
     const bool shares = std::any_of(program.resources.begin(), program.resources.end(),
                                     [](const ir::Resource& r) { return r.kind == ir::ResourceKind::workgroupMemory; });
     return !shares && workGroupSize(program) * 2 <= (lanes != 0 ? lanes : kUsual);
@@ -44,6 +43,7 @@ HandlerTable handlerTable(Isa isa, MathTier tier) {
     HandlerTable table{};
     addArithmetic(isa, table);
     addBarriers(table);
+    addSubgroups(table);
     addFlow(isa, table);
     addLaneOps(isa, table);
     addWide(isa, table);
@@ -61,9 +61,13 @@ CompiledProgram::CompiledProgram(const ir::Program& source, LoweredProgram lower
     const Allocation batchRows = allocate(lowered.batch);
     uint32_t lanes = options.lanes;
     if (lanes == 0) {
-        lanes = chooseLanes(batchRows.rows);
-        if (source.stage == ir::Stage::compute && !packed) lanes = narrowed(lanes, workGroupSize(source));
-        while (packed && lanes < workGroupSize(source)) lanes *= 2;
+        const uint32_t size = workGroupSize(source);
+        lanes = std::max(chooseLanes(batchRows.rows), leastLanes(source));
+        if (source.stage == ir::Stage::compute && !packed) {
+            // No wider than a work-group needs that has its batches for itself.
+            while (lanes > leastLanes(source) && lanes / 2 >= size) lanes /= 2;
+        }
+        while (packed && lanes < size) lanes *= 2;
     }
     const auto encodeStraight = [&](MachineCode& code) {
         return encode(code, allocate(code), lowered.scalars, handlers, kLaneGroup);
@@ -100,6 +104,10 @@ Result<std::shared_ptr<const BatchProgram>> BatchProgram::compile(const ir::Prog
     if (std::find(std::begin(kLanes), std::end(kLanes), options.lanes) == std::end(kLanes)) {
         return invalidArgument("BatchOptions::lanes is " + std::to_string(options.lanes) +
                                "; it must be 0, 16, 32, 64 or 128");
+    }
+    if (options.lanes != 0 && options.lanes < batch::leastLanes(program)) {
+        return invalidArgument("BatchOptions::lanes is " + std::to_string(options.lanes) + "; '" + program.name +
+                               "' uses subgroups, which have " + std::to_string(ir::kSubgroupSize) + " invocations");
     }
     if (options.isa > bestIsa()) {
         return unsupported("BatchOptions::isa is " + std::string(isaName(options.isa)) +

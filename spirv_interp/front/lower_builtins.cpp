@@ -7,17 +7,25 @@
 namespace vernier {
 namespace {
 
+constexpr uint32_t kVertex = 1u << static_cast<uint32_t>(ir::Stage::vertex);
+constexpr uint32_t kFragment = 1u << static_cast<uint32_t>(ir::Stage::fragment);
+constexpr uint32_t kCompute = 1u << static_cast<uint32_t>(ir::Stage::compute);
+constexpr uint32_t kAllStages = kVertex | kFragment | kCompute;
+
 struct ComputedBuiltin {
     spv::BuiltIn builtin;
-    ir::Stage stage;
+    uint32_t stages;
 };
 
 constexpr ComputedBuiltin kComputed[] = {
-    {spv::BuiltIn::HelperInvocation, ir::Stage::fragment},    {spv::BuiltIn::NumWorkgroups, ir::Stage::compute},
-    {spv::BuiltIn::WorkgroupId, ir::Stage::compute},          {spv::BuiltIn::LocalInvocationId, ir::Stage::compute},
-    {spv::BuiltIn::LocalInvocationIndex, ir::Stage::compute}, {spv::BuiltIn::GlobalInvocationId, ir::Stage::compute},
-    {spv::BuiltIn::DeviceIndex, ir::Stage::vertex},           {spv::BuiltIn::DeviceIndex, ir::Stage::fragment},
-    {spv::BuiltIn::DeviceIndex, ir::Stage::compute},
+    {spv::BuiltIn::HelperInvocation, kFragment},    {spv::BuiltIn::NumWorkgroups, kCompute},
+    {spv::BuiltIn::WorkgroupId, kCompute},          {spv::BuiltIn::LocalInvocationId, kCompute},
+    {spv::BuiltIn::LocalInvocationIndex, kCompute}, {spv::BuiltIn::GlobalInvocationId, kCompute},
+    {spv::BuiltIn::NumSubgroups, kCompute},         {spv::BuiltIn::SubgroupId, kCompute},
+    {spv::BuiltIn::SubgroupSize, kAllStages},       {spv::BuiltIn::SubgroupLocalInvocationId, kAllStages},
+    {spv::BuiltIn::SubgroupEqMask, kAllStages},     {spv::BuiltIn::SubgroupGeMask, kAllStages},
+    {spv::BuiltIn::SubgroupGtMask, kAllStages},     {spv::BuiltIn::SubgroupLeMask, kAllStages},
+    {spv::BuiltIn::SubgroupLtMask, kAllStages},     {spv::BuiltIn::DeviceIndex, kAllStages},
 };
 
 /// Memory semantics that ask for nothing: no bit of an order and none of a storage class.
@@ -33,7 +41,8 @@ bool Lowering::isComputedBuiltin(uint32_t variable) const {
     const Decoration* decoration = module_.findDecoration(variable, spv::Decoration::BuiltIn);
     if (decoration == nullptr) return false;
     return std::any_of(std::begin(kComputed), std::end(kComputed), [&](const ComputedBuiltin& entry) {
-        return static_cast<uint32_t>(entry.builtin) == decoration->value && entry.stage == program_.stage;
+        return static_cast<uint32_t>(entry.builtin) == decoration->value &&
+               (entry.stages >> static_cast<uint32_t>(program_.stage) & 1) != 0;
     });
 }
 
@@ -62,6 +71,28 @@ ir::ValueId Lowering::localInvocationId(uint8_t component) {
                 : inputSlot(ir::Builtin::localInvocationId, component, ir::Type::i32);
 }
 
+ir::ValueId Lowering::localInvocationIndex() {
+    const auto& size = program_.localSize;
+    return size[0] * size[1] * size[2] == 1 ? emitter_.constantI32(0)
+                                            : inputSlot(ir::Builtin::localInvocationIndex, 0, ir::Type::i32);
+}
+
+/// The lanes of a subgroup that stand in some relation to a lane: a word, and three that are 0.
+ir::ValueId Lowering::subgroupMask(spv::BuiltIn builtin) {
+    switch (builtin) {
+        case spv::BuiltIn::SubgroupLtMask:
+            return lanesBefore(false);
+        case spv::BuiltIn::SubgroupLeMask:
+            return lanesBefore(true);
+        case spv::BuiltIn::SubgroupGeMask:
+            return unary(ir::Op::inot, lanesBefore(false));
+        case spv::BuiltIn::SubgroupGtMask:
+            return unary(ir::Op::inot, lanesBefore(true));
+        default:
+            return binary(ir::Op::shl, emitter_.constantI32(1), subgroupInvocation());
+    }
+}
+
 Lowering::Leaves Lowering::builtinLeaves(spv::BuiltIn builtin) {
     const auto each = [this](uint8_t count, auto&& component) -> Leaves {
         const std::span<ir::ValueId> leaves = newLeaves(count);
@@ -78,12 +109,7 @@ Lowering::Leaves Lowering::builtinLeaves(spv::BuiltIn builtin) {
         case spv::BuiltIn::LocalInvocationId:
             return each(3, [this](uint8_t c) { return localInvocationId(c); });
         case spv::BuiltIn::LocalInvocationIndex:
-            return each(1, [this](uint8_t) {
-                const auto& size = program_.localSize;
-                return size[0] * size[1] * size[2] == 1
-                           ? emitter_.constantI32(0)
-                           : inputSlot(ir::Builtin::localInvocationIndex, 0, ir::Type::i32);
-            });
+            return each(1, [this](uint8_t) { return localInvocationIndex(); });
         case spv::BuiltIn::GlobalInvocationId:
             // WorkgroupId * WorkgroupSize + LocalInvocationId ("Built-In Variables" in the Vulkan specification).
             return each(3, [this](uint8_t c) {
@@ -91,6 +117,26 @@ Lowering::Leaves Lowering::builtinLeaves(spv::BuiltIn builtin) {
                                                  emitter_.constantI32(program_.localSize[c]));
                 return binary(ir::Op::iadd, first, localInvocationId(c));
             });
+        case spv::BuiltIn::NumSubgroups:
+            return each(1, [this](uint8_t) {
+                const auto& size = program_.localSize;
+                return emitter_.constantI32((size[0] * size[1] * size[2] + ir::kSubgroupSize - 1) / ir::kSubgroupSize);
+            });
+        case spv::BuiltIn::SubgroupId:
+            return each(1, [this](uint8_t) {
+                return binary(ir::Op::udiv, localInvocationIndex(), emitter_.constantI32(ir::kSubgroupSize));
+            });
+        case spv::BuiltIn::SubgroupSize:
+            return each(1, [this](uint8_t) { return emitter_.constantI32(ir::kSubgroupSize); });
+        case spv::BuiltIn::SubgroupLocalInvocationId:
+            return each(1, [this](uint8_t) { return subgroupInvocation(); });
+        case spv::BuiltIn::SubgroupEqMask:
+        case spv::BuiltIn::SubgroupGeMask:
+        case spv::BuiltIn::SubgroupGtMask:
+        case spv::BuiltIn::SubgroupLeMask:
+        case spv::BuiltIn::SubgroupLtMask:
+            return each(
+                4, [this, builtin](uint8_t c) { return c == 0 ? subgroupMask(builtin) : emitter_.constantI32(0); });
         default:
             return each(1, [this](uint8_t) { return emitter_.emit(ir::Op::isHelper, ir::Type::b1, {}); });
     }

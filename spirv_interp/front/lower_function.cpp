@@ -170,7 +170,7 @@ void Lowering::lowerInstruction(const Instruction& inst) {
     if (inst.op == spv::Op::OpExtInst) {
         lowerExtended(inst);
     } else if (!lowerMemory(inst) && !lowerComposite(inst) && !lowerArithmetic(inst) && !lowerImage(inst) &&
-               !lowerBarrier(inst)) {
+               !lowerBarrier(inst) && !lowerSubgroup(inst)) {
         refuse(inst, "the instruction is not supported");
     }
     emitter_.setFlags(false, false);

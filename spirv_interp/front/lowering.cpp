@@ -78,6 +78,16 @@ constexpr Capability kCapabilities[] = {
     Capability::VulkanMemoryModelDeviceScope,
     Capability::DemoteToHelperInvocationEXT,
     Capability::WorkgroupMemoryExplicitLayoutKHR,
+    Capability::GroupNonUniform,
+    Capability::GroupNonUniformVote,
+    Capability::GroupNonUniformArithmetic,
+    Capability::GroupNonUniformBallot,
+    Capability::GroupNonUniformShuffle,
+    Capability::GroupNonUniformShuffleRelative,
+    Capability::GroupNonUniformClustered,
+    Capability::GroupNonUniformQuad,
+    Capability::SubgroupBallotKHR,
+    Capability::SubgroupVoteKHR,
 };
 
 /// The name by way of the disassembler, which knows the grammar.
@@ -188,6 +198,7 @@ void Lowering::lowerExecutionModes(const EntryPoint& entry) {
             case spv::ExecutionMode::DepthUnchanged:
             case spv::ExecutionMode::StencilRefReplacingEXT:
             // What they ask for is what every program gets.
+            case spv::ExecutionMode::SubgroupUniformControlFlowKHR:
             case spv::ExecutionMode::DenormPreserve:
             case spv::ExecutionMode::SignedZeroInfNanPreserve:
             case spv::ExecutionMode::RoundingModeRTE:

@@ -164,9 +164,26 @@ class Lowering {
     Leaves builtinLeaves(spv::BuiltIn builtin);
     ir::ValueId inputSlot(ir::Builtin builtin, uint8_t component, ir::Type type);
     ir::ValueId localInvocationId(uint8_t component);
+    ir::ValueId localInvocationIndex();
+    ir::ValueId subgroupMask(spv::BuiltIn builtin);
     void setLocalSize(const Instruction& mode);
     void checkLocalSize(const EntryPoint& entry);
     bool lowerBarrier(const Instruction& inst);
+
+    // lower_subgroup.cpp
+    bool lowerSubgroup(const Instruction& inst);
+    bool lowerBallot(const Instruction& inst);
+    bool lowerVote(const Instruction& inst);
+    bool lowerShuffle(const Instruction& inst);
+    void lowerReduction(const Instruction& inst, ir::ReduceOp op);
+    ir::ValueId subgroupInvocation();
+    ir::ValueId firstInvocation();
+    ir::ValueId ballot(ir::ValueId condition);
+    ir::ValueId lanesBefore(bool itself);
+    ir::ValueId shuffle(ir::Op op, ir::ValueId value, ir::ValueId place);
+    void shuffleEach(const Instruction& inst, ir::Op op, uint32_t valueId, ir::ValueId place);
+    void setBallot(const Instruction& inst, ir::ValueId word);
+    ir::ValueId allEqual(Leaves values);
 
     // lower_resources.cpp
     uint32_t resourceOf(uint32_t variable);

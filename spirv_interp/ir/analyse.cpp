@@ -56,7 +56,8 @@ void markWritten(const Program& program, uint32_t resource, std::vector<bool>& w
 
 void analyse(Program& program) {
     dropUnusedSlots(program);
-    program.usesQuads = program.canDiscard = program.hasSideEffects = program.hasBarriers = false;
+    program.usesQuads = program.canDiscard = program.hasSideEffects = false;
+    program.hasBarriers = program.usesSubgroups = false;
     std::vector<bool> written(program.resources.size());
     for (const Block& block : program.blocks) {
         for (const Inst& inst : block.insts) {
@@ -70,6 +71,15 @@ void analyse(Program& program) {
                 case Op::kill:
                 case Op::demote:
                     program.canDiscard = true;
+                    break;
+                case Op::quadShuffle:
+                    program.usesQuads = program.usesSubgroups = true;
+                    break;
+                case Op::subgroupInvocation:
+                case Op::subgroupBallot:
+                case Op::subgroupShuffle:
+                case Op::subgroupReduce:
+                    program.usesSubgroups = true;
                     break;
                 case Op::controlBarrier:
                     program.hasBarriers = true;

@@ -44,6 +44,10 @@ using BlockId = uint32_t;
 inline constexpr ValueId kNoValue = ~0u;
 inline constexpr uint32_t kNoIndex = ~0u;
 
+/// Invocations of a subgroup: consecutive lanes of a batch, whatever the instruction set. In compute they are
+/// consecutive by LocalInvocationIndex.
+inline constexpr uint32_t kSubgroupSize = 32;
+
 // Limits of compute programs ("Required Limits" in the Vulkan specification asks for 16384, 128 and 128).
 inline constexpr uint32_t kMaxWorkgroupMemory = 32768;      // bytes
 inline constexpr uint32_t kMaxWorkgroupInvocations = 1024;  // also along each dimension
@@ -180,6 +184,11 @@ enum class AtomicOp : uint8_t {
     fmax,
 };
 
+/// How the values of a subgroup are brought together.
+enum class ReduceOp : uint8_t { iadd, fadd, imul, fmul, smin, umin, fmin, smax, umax, fmax, iand, ior, ixor };
+/// All values of a cluster; those up to a lane's own; those before its own, where the first gets the identity.
+enum class ReduceMode : uint8_t { reduce, inclusive, exclusive };
+
 /// The static part of an image instruction. Its operands, in this order, those that are there:
 /// descriptor index of the image (i32), descriptor index of the sampler (i32, when samplerResource is another
 /// resource), `coords` coordinates (f32, or i32 for fetch/read/store; array layer last), dref (f32), lod or bias (f32;
@@ -215,6 +224,7 @@ struct Program {
     bool hasSideEffects = false;  // stores or atomics to memory
     bool perSample = false;       // reads SampleId/SamplePosition or a sample-qualified input
     bool hasBarriers = false;     // control barriers
+    bool usesSubgroups = false;   // operations between the lanes of a subgroup, or their places in it
     std::array<uint32_t, 3> localSize{1, 1, 1};
 
     std::span<const ValueId> operandsOf(const Inst& inst) const {

@@ -100,6 +100,7 @@ ImmKind immKind(Op op) {
         case Op::loadAddress:
         case Op::storeAddress:
         case Op::atomicAddress:
+        case Op::subgroupReduce:
             return ImmKind::pair;
         default:
             return ImmKind::none;
@@ -162,6 +163,11 @@ uint32_t operandTypes(const Program& program, const Inst& inst, uint32_t index) 
         case Op::unpackHalfHigh:
         case Op::interpolateAtSample:
             return bit(Type::i32);
+        case Op::subgroupBallot:
+            return bit(Type::b1);
+        case Op::subgroupShuffle:
+        case Op::quadShuffle:
+            return index == 1 ? bit(Type::i32) : bit(inst.type);
         case Op::storeBuffer:
             return index < 2 ? bit(Type::i32) : immHigh(inst) != 0 ? bit(Type::i32) : kWords;
         case Op::loadAddress:
@@ -222,6 +228,8 @@ uint32_t resultTypes(Op op) {
         case Op::packHalf:
         case Op::bufferSize:
         case Op::itrunc:
+        case Op::subgroupInvocation:
+        case Op::subgroupBallot:
             return bit(Type::i32);
         case Op::ftos:
         case Op::ftou:
@@ -254,6 +262,8 @@ uint32_t resultTypes(Op op) {
         case Op::atomicBuffer:
         case Op::atomicAddress:
             return kInts | kFloats;
+        case Op::subgroupReduce:
+            return kAll;
         default:
             return kWords;
     }

@@ -58,6 +58,20 @@ constexpr bool isFloatAtomic(AtomicOp op) {
     return op == AtomicOp::fadd || op == AtomicOp::fmin || op == AtomicOp::fmax;
 }
 
+/// The immediate of subgroupReduce.
+struct Reduction {
+    ReduceOp op = ReduceOp::iadd;
+    ReduceMode mode = ReduceMode::reduce;
+    uint32_t cluster = kSubgroupSize;  // lanes, a power of two
+};
+inline Reduction reductionOf(const Inst& inst) {
+    return {static_cast<ReduceOp>(inst.imm & 0xFF), static_cast<ReduceMode>(inst.imm >> 32 & 0xFF),
+            static_cast<uint32_t>(inst.imm >> 40)};
+}
+inline uint64_t immOf(const Reduction& reduction) {
+    return immPair(static_cast<uint32_t>(reduction.op), static_cast<uint32_t>(reduction.mode) | reduction.cluster << 8);
+}
+
 /// The bits of a b1 constant that is true, as in a lane.
 inline constexpr uint64_t kTrueBits = 0xFFFFFFFFu;
 

@@ -220,7 +220,8 @@ class Parser {
                                                             {"writesSampleMask", &program_.writesSampleMask},
                                                             {"hasSideEffects", &program_.hasSideEffects},
                                                             {"perSample", &program_.perSample},
-                                                            {"hasBarriers", &program_.hasBarriers}};
+                                                            {"hasBarriers", &program_.hasBarriers},
+                                                            {"usesSubgroups", &program_.usesSubgroups}};
         const std::string_view word = in.word();
         for (const auto& [name, flag] : facts) {
             if (name != word) continue;

@@ -60,7 +60,8 @@ void printFlags(std::string& out, const Program& program) {
                                                   {"writesSampleMask", program.writesSampleMask},
                                                   {"hasSideEffects", program.hasSideEffects},
                                                   {"perSample", program.perSample},
-                                                  {"hasBarriers", program.hasBarriers}};
+                                                  {"hasBarriers", program.hasBarriers},
+                                                  {"usesSubgroups", program.usesSubgroups}};
     std::string line;
     for (const auto& [name, set] : flags) {
         if (set) line += std::string(" ") + name;

@@ -33,6 +33,7 @@ std::vector<Rate> computeRates(const Program& program) {
                     rate = rateOf(program.inputs[inst.imm].builtin);
                     break;
                 case Op::inputIndexed:
+                case Op::subgroupInvocation:
                 case Op::interpolateAtCentroid:
                 case Op::interpolateAtSample:
                 case Op::interpolateAtOffset:

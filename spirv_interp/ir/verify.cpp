@@ -187,9 +187,7 @@ class Verifier {
 
     void instruction(BlockId b, size_t i) {
         const Inst& inst = program_.blocks[b].insts[i];
-        if (inst.op == Op::controlBarrier && program_.stage != Stage::compute) {
-            return failInst(b, i, "in a stage without work-groups");
-        }
+        if (const char* reason = badFact(inst)) return failInst(b, i, reason);
         if (const char* reason = badImmediate(inst)) return failInst(b, i, reason);
         const uint32_t count = inst.op == Op::phi ? static_cast<uint32_t>(program_.blocks[b].predecessors.size())
                                                   : operandCountOf(program_, inst);
@@ -223,6 +221,17 @@ class Verifier {
             }
             ++index;
         }
+    }
+
+    /// How a program is run follows from these facts.
+    const char* badFact(const Inst& inst) const {
+        if (inst.op == Op::controlBarrier) {
+            if (program_.stage != Stage::compute) return "in a stage without work-groups";
+            if (!program_.hasBarriers) return "the program does not tell that it has barriers";
+        }
+        const bool subgroup = inst.op >= Op::subgroupInvocation && inst.op <= Op::subgroupReduce;
+        if (subgroup && !program_.usesSubgroups) return "the program does not tell that it uses subgroups";
+        return nullptr;
     }
 
     const char* badImmediate(const Inst& inst) const {
@@ -294,11 +303,30 @@ class Verifier {
         return resource.readOnly ? "a store to a buffer marked as only read" : nullptr;
     }
 
+    static const char* badReduction(const Inst& inst) {
+        const Reduction reduction = reductionOf(inst);
+        if (inst.imm != immOf(reduction) || reduction.op > ReduceOp::ixor || reduction.mode > ReduceMode::exclusive) {
+            return "an unknown reduction";
+        }
+        const uint32_t cluster = reduction.cluster;
+        if (cluster == 0 || cluster > kSubgroupSize || (cluster & (cluster - 1)) != 0) {
+            return "clusters that are no power of two in a subgroup";
+        }
+        const bool logic =
+            reduction.op == ReduceOp::iand || reduction.op == ReduceOp::ior || reduction.op == ReduceOp::ixor;
+        const bool floating = reduction.op == ReduceOp::fadd || reduction.op == ReduceOp::fmul ||
+                              reduction.op == ReduceOp::fmin || reduction.op == ReduceOp::fmax;
+        const bool fits = inst.type == Type::b1 ? logic : isFloat(inst.type) == floating;
+        return fits ? nullptr : "a reduction that is not defined for the type";
+    }
+
     const char* badPair(const Inst& inst) const {
         const uint64_t end = static_cast<uint64_t>(immLow(inst)) + immHigh(inst);
         switch (inst.op) {
             case Op::inputIndexed:
                 return immHigh(inst) == 0 || end > program_.inputs.size() ? "inputs that do not exist" : nullptr;
+            case Op::subgroupReduce:
+                return badReduction(inst);
             case Op::loadLocal:
             case Op::storeLocal:
                 return immHigh(inst) == 0 || end > program_.localWords ? "outside the local memory" : nullptr;

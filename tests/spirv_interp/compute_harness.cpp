@@ -36,13 +36,18 @@ std::string refusalOf(std::string_view glsl) {
     return program.ok() ? "" : program.error().message;
 }
 
-DispatchResult dispatch(const ir::Program& program, const WorkGroupContext::Grid& grid, BufferContents buffers,
-                        const DispatchSetup& setup, const std::vector<uint32_t>& pushConstants) {
-    const auto compiled = BatchProgram::compile(program, {setup.isa, MathTier::standard, setup.lanes});
+std::shared_ptr<const BatchProgram> compileCompute(const ir::Program& program, Isa isa, uint32_t lanes) {
+    auto compiled = BatchProgram::compile(program, {isa, MathTier::standard, lanes});
     if (!compiled) {
         ADD_FAILURE() << compiled.error().message;
         std::abort();
     }
+    return std::move(compiled).value();
+}
+
+DispatchResult dispatch(const ir::Program& program, const std::shared_ptr<const BatchProgram>& compiled,
+                        const WorkGroupContext::Grid& grid, BufferContents buffers, uint32_t chunk,
+                        const std::vector<uint32_t>& pushConstants) {
     std::vector<uint32_t> constants = pushConstants;
     std::vector<BufferBinding> bindings;
     std::vector<uint32_t> base, count;
@@ -58,12 +63,12 @@ DispatchResult dispatch(const ir::Program& program, const WorkGroupContext::Grid
     resources.buffers = bindings.data();
     resources.base = base.data();
     resources.count = count.data();
-    WorkGroupContext context(*compiled);
+    WorkGroupContext context(compiled);
     context.beginDispatch(resources, grid);
     DispatchResult result;
-    const uint64_t chunk = setup.chunk != 0 ? setup.chunk : grid.size();
-    for (uint64_t first = 0; first < grid.size() && result.ok; first += chunk) {
-        result.ok = context.run(first, static_cast<uint32_t>(std::min(chunk, grid.size() - first)));
+    const uint64_t share = chunk != 0 ? chunk : grid.size();
+    for (uint64_t first = 0; first < grid.size() && result.ok; first += share) {
+        result.ok = context.run(first, static_cast<uint32_t>(std::min(share, grid.size() - first)));
     }
     result.buffers = std::move(buffers);
     return result;
@@ -72,13 +77,15 @@ DispatchResult dispatch(const ir::Program& program, const WorkGroupContext::Grid
 BufferContents dispatchEverywhere(const ir::Program& program, const WorkGroupContext::Grid& grid,
                                   const BufferContents& buffers, const std::vector<uint32_t>& pushConstants,
                                   uint32_t leastLanes) {
-    const DispatchResult first = dispatch(program, grid, buffers, {}, pushConstants);
+    const DispatchResult first =
+        dispatch(program, compileCompute(program, Isa::sse4, 0), grid, buffers, 0, pushConstants);
     EXPECT_TRUE(first.ok);
     for (const Isa isa : isas()) {
         for (const uint32_t lanes : {0u, 16u, 32u, 64u, 128u}) {
             if (lanes != 0 && lanes < leastLanes) continue;
+            const auto compiled = compileCompute(program, isa, lanes);
             for (const uint32_t chunk : {0u, 1u, 3u}) {
-                const DispatchResult other = dispatch(program, grid, buffers, {isa, lanes, chunk}, pushConstants);
+                const DispatchResult other = dispatch(program, compiled, grid, buffers, chunk, pushConstants);
                 EXPECT_TRUE(other == first) << isaName(isa) << ", " << lanes << " lanes, chunks of " << chunk;
             }
         }

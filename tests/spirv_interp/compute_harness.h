@@ -23,20 +23,19 @@ std::string refusalOf(std::string_view glsl);
 /// By binding of set 0.
 using BufferContents = std::map<uint32_t, std::vector<uint32_t>>;
 
-struct DispatchSetup {
-    Isa isa = Isa::sse4;
-    uint32_t lanes = 0;  // BatchOptions::lanes
-    uint32_t chunk = 0;  // work-groups per run(); 0 = all at once
-};
-
 struct DispatchResult {
     BufferContents buffers;
     bool ok = true;
     bool operator==(const DispatchResult&) const = default;
 };
 
-DispatchResult dispatch(const ir::Program& program, const WorkGroupContext::Grid& grid, BufferContents buffers,
-                        const DispatchSetup& setup, const std::vector<uint32_t>& pushConstants = {});
+/// A failure ends the test. `lanes` as in BatchOptions.
+std::shared_ptr<const BatchProgram> compileCompute(const ir::Program& program, Isa isa, uint32_t lanes);
+
+/// `compiled` comes from `program`; `chunk` work-groups per run(), 0 = all at once.
+DispatchResult dispatch(const ir::Program& program, const std::shared_ptr<const BatchProgram>& compiled,
+                        const WorkGroupContext::Grid& grid, BufferContents buffers, uint32_t chunk = 0,
+                        const std::vector<uint32_t>& pushConstants = {});
 
 /// On every instruction set, with every width of batch from `leastLanes` on and work-groups in shares of different
 /// size: expects the same bits from all, and returns them.

@@ -219,7 +219,8 @@ TEST(Compute, BarriersInDivergentFlow) {
                            "if (i % 3 == 0) return; barrier(); v[i] = 7;"));
     for (const Isa isa : isas()) {
         for (const uint32_t lanes : {16u, 64u, 128u}) {
-            const auto result = dispatch(program, {{2, 1, 1}, {}}, {{0, std::vector<uint32_t>(200)}}, {isa, lanes, 0});
+            const auto result = dispatch(program, compileCompute(program, isa, lanes), {{2, 1, 1}, {}},
+                                         {{0, std::vector<uint32_t>(200)}});
             EXPECT_TRUE(result.ok);
             const auto& v = result.buffers.at(0);
             for (uint32_t i = 0; i < 200; ++i) EXPECT_EQ(v[i], i % 3 == 0 ? 0u : 7u);
