@@ -207,7 +207,7 @@ const Inst* quadShuffle(Frame& frame, const Inst* inst) {
     for (uint32_t first = 0; first < frame.lanes; first += kQuad) {
         const uint32_t active = activeLanes(frame, first) & 0xF;
         for (uint32_t lane = first; lane < first + kQuad; ++lane) {
-            to[lane] = taken(from + first, active, places[lane], kQuad);
+            to[lane] = taken(from + first, active, places[lane] % kQuad, kQuad);
         }
     }
     return inst + 1;

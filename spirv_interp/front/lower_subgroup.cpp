@@ -112,8 +112,21 @@ void Lowering::lowerReduction(const Instruction& inst, ir::ReduceOp op) {
     }
     const Leaves values = leavesOf(inst[5]);
     const std::span<ir::ValueId> leaves = newLeaves(values.size());
+    const std::vector<LeafType>& types = leafTypes(inst[1]);
+    const bool looksAtSign = op == ir::ReduceOp::smin || op == ir::ReduceOp::smax;
     for (size_t i = 0; i < leaves.size(); ++i) {
-        leaves[i] = emitter_.emit(Op::subgroupReduce, emitter_.typeOf(values[i]), {values[i]}, ir::immOf(reduction));
+        if (types[i].isHalf() && (op == ir::ReduceOp::fadd || op == ir::ReduceOp::fmul)) {
+            refuse(inst, "sums and products of 16-bit floats over a subgroup are not supported");
+        }
+        const ir::ValueId value = looksAtSign ? signExtended(values[i], types[i]) : values[i];
+        ir::ValueId result = emitter_.emit(Op::subgroupReduce, types[i], {value}, ir::immOf(reduction));
+        if (looksAtSign && types[i].isNarrowInteger()) {
+            // The identity of 32 bits becomes that of the type.
+            const uint32_t largest = types[i].mask() >> 1;
+            result = binary(Op::smin, result, emitter_.constantI32(largest));
+            result = binary(Op::smax, result, emitter_.constantI32(~largest));
+        }
+        leaves[i] = normalised(result, types[i]);
     }
     setValue(inst[2], inst[1], leaves);
 }

@@ -233,7 +233,6 @@ bool Machine<Number>::executeReduction(const Instruction& i) {
     if (!meet(Meeting::exchange, data(i.operand(2)))) return true;
     const uint32_t width = module_.scalarType(resultType(i)).width;
     uint32_t begin = 0, end = static_cast<uint32_t>(group_->size());
-    bool exclusive = false;
     switch (static_cast<spv::GroupOperation>(i.operand(1))) {
         case spv::GroupOperationReduce:
             break;
@@ -242,7 +241,6 @@ bool Machine<Number>::executeReduction(const Instruction& i) {
             break;
         case spv::GroupOperationExclusiveScan:
             end = invocation_;
-            exclusive = true;
             break;
         case spv::GroupOperationClusteredReduce: {
             const uint64_t size = bits(i.operand(3));
@@ -258,7 +256,7 @@ bool Machine<Number>::executeReduction(const Instruction& i) {
     }
     const size_t count = resultCount(i);
     Scalars<Number> result(count, identity<Number>(i.op, width));
-    bool any = exclusive;  // otherwise the first value stands for itself: 0 + -0 would lose the sign
+    bool any = false;  // the first value stands for itself: 0 + -0 would lose the sign
     for (uint32_t k = begin; k < end; ++k) {
         const Scalars<Number>& other = (*group_)[k];
         if (other.empty()) continue;
