@@ -12,6 +12,7 @@ void optimise(Program& program, const OptimiseOptions& options) {
     // Which resources are only read, for the passes that move loads.
     analyse(program);
     // A branch that goes away exposes constants and equal values, and the other way round; two rounds find nearly all.
+    // The first puts loops into the shape that unrolling knows.
     for (int round = 0; round < 2; ++round) {
         bool changed = simplifyPhis(program);
         changed |= foldConstants(program);
@@ -19,6 +20,7 @@ void optimise(Program& program, const OptimiseOptions& options) {
         changed |= removeDead(program);
         changed |= foldBranches(program);
         changed |= convertIfs(program);
+        if (round == 0) changed |= unrollLoops(program);
         if (!changed) break;
     }
     foldBranches(program);

@@ -25,6 +25,10 @@ bool foldBranches(Program& program);
 /// the lanes disagree. Branches on draw-rate conditions, which it takes as a whole, stay unless they are tiny.
 bool convertIfs(Program& program);
 
+/// Loops that are known to run a small number of times become that many copies of their blocks: what is computed from
+/// the counter becomes constant, and no lane masks are kept. Only innermost loops that their header alone leaves.
+bool unrollLoops(Program& program);
+
 /// Operations whose results nobody uses are removed, and stores of undefined values to outputs.
 bool removeDead(Program& program);
 
