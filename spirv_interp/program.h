@@ -70,7 +70,7 @@ Status checkModule(std::span<const uint32_t> words);
 struct BatchOptions {
     Isa isa = Isa::sse4;
     MathTier tier = MathTier::standard;
-    uint32_t lanes = 0;  // 0 = chosen so that the registers stay in the first-level cache: 16, 32, 64 or 128
+    uint32_t lanes = 0;  // at most so many (16, 32, 64 or 128); the instruction set may allow fewer. 0: all it allows
 };
 
 struct BatchStatistics {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "spirv_interp/batch/accumulate.h"
+
 namespace vernier::batch {
 namespace {
 
@@ -30,8 +32,8 @@ struct Interval {
 
 class Allocator {
   public:
-    explicit Allocator(MachineCode& code)
-        : code_(code), intervals_(code.registers.size()), parent_(code.registers.size()) {
+    Allocator(MachineCode& code, const HandlerTable& handlers)
+        : code_(code), handlers_(handlers), intervals_(code.registers.size()), parent_(code.registers.size()) {
         std::iota(parent_.begin(), parent_.end(), 0u);
     }
 
@@ -39,6 +41,13 @@ class Allocator {
         findIntervals();
         coverLoops();
         for (uint32_t k = 0; k < code_.insts.size(); ++k) coalesce(k);
+        useAccumulator(code_, handlers_, [this](uint32_t reg) { return find(reg); });
+        for (const MachineInst& inst : code_.insts) {
+            if (!inst.operands.empty() && inst.operands[0].kind == Operand::Kind::accumulator &&
+                inst.operands[0].written) {
+                intervals_[inst.operands[0].id] = {};
+            }
+        }
         return scan();
     }
 
@@ -189,6 +198,7 @@ class Allocator {
     };
 
     MachineCode& code_;
+    const HandlerTable& handlers_;
     std::vector<Interval> intervals_;
     std::vector<RegisterFacts> facts_;
     std::vector<uint32_t> parent_;  // union-find
@@ -196,8 +206,8 @@ class Allocator {
 
 }  // namespace
 
-Allocation allocate(MachineCode& code) {
-    return Allocator(code).run();
+Allocation allocate(MachineCode& code, const HandlerTable& handlers) {
+    return Allocator(code, handlers).run();
 }
 
 }  // namespace vernier::batch

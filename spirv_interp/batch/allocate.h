@@ -13,8 +13,8 @@ struct Allocation {
     uint32_t rows = 0;
 };
 
-/// Joins registers at both ends of moves where that makes the move needless (marking it dead), and gives
-/// every register its rows.
-Allocation allocate(MachineCode& code);
+/// Joins registers at both ends of moves where that makes the move needless (marking it dead), lets operations hand
+/// their results on in the accumulator where `handlers` allow it, and gives every register that is left its rows.
+Allocation allocate(MachineCode& code, const HandlerTable& handlers);
 
 }  // namespace vernier::batch

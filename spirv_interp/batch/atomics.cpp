@@ -189,14 +189,13 @@ const Inst* atomicAddress(Frame& frame, const Inst* inst) {
 
 }  // namespace
 
-void addAtomics(HandlerTable& table) {
-    const auto add = [&](Op op, Handler handler) { table[static_cast<size_t>(op)][0] = handler; };
-    add(Op::atomicBuffer, atomicBuffer<uint32_t>);
-    add(Op::atomicBuffer64, atomicBuffer<uint64_t>);
-    add(Op::loadAddress, loadAddress);
-    add(Op::storeAddress, storeAddress);
-    add(Op::atomicAddress, atomicAddress<uint32_t>);
-    add(Op::atomicAddress64, atomicAddress<uint64_t>);
+void addAtomics(HandlerTables& tables) {
+    addPlain<atomicBuffer<uint32_t>>(tables, Op::atomicBuffer);
+    addPlain<atomicBuffer<uint64_t>>(tables, Op::atomicBuffer64);
+    addPlain<loadAddress>(tables, Op::loadAddress);
+    addPlain<storeAddress>(tables, Op::storeAddress);
+    addPlain<atomicAddress<uint32_t>>(tables, Op::atomicAddress);
+    addPlain<atomicAddress<uint64_t>>(tables, Op::atomicAddress64);
 }
 
 }  // namespace vernier::batch::HWY_NAMESPACE
@@ -209,8 +208,8 @@ AddHandlers selectAtomics(Isa isa) {
     VERNIER_SELECT_ISA(isa, addAtomics)
 }
 }  // namespace
-void addAtomics(Isa isa, HandlerTable& table) {
-    selectAtomics(isa)(table);
+void addAtomics(Isa isa, HandlerTables& tables) {
+    selectAtomics(isa)(tables);
 }
 }  // namespace vernier::batch
 #endif

@@ -5,7 +5,6 @@
 #include "spirv_interp/batch/handlers.h"
 
 namespace vernier::batch {
-namespace {
 
 /// Between threads only storage buffers and images are shared; their stores are relaxed atomics.
 const Inst* memoryBarrier(Frame&, const Inst* inst) {
@@ -18,13 +17,6 @@ const Inst* controlBarrier(Frame& frame, const Inst* inst) {
     if (!frame.suspends) return next;
     frame.resume = next;
     return nullptr;
-}
-
-}  // namespace
-
-void addBarriers(HandlerTable& table) {
-    table[static_cast<size_t>(Op::controlBarrier)][0] = controlBarrier;
-    table[static_cast<size_t>(Op::memoryBarrier)][0] = memoryBarrier;
 }
 
 }  // namespace vernier::batch

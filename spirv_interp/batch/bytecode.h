@@ -5,6 +5,9 @@
 // word (or two) of a separate file, and instructions have forms that take them as operands, so that they cost
 // no rows. A handler works on all lanes whatever the masks say: only memory, phis and side effects look at
 // masks.
+//
+// Elementwise operations work on *strips* of a fixed number of lanes and hand their result on in vector registers (see
+// strip-inl.h). Every program is encoded for full strips and for narrow ones of a single lane group.
 #pragma once
 
 #include <array>
@@ -14,12 +17,13 @@
 #include <vector>
 
 #include "base/simd.h"
+#include "spirv_interp/batch/forms.h"
 #include "spirv_interp/program.h"
 #include "spirv_interp/resources.h"
 
 namespace vernier::batch {
 
-inline constexpr uint32_t kMaxLanes = 128;
+inline constexpr uint32_t kMaxLanes = 64;
 /// Lanes are computed in groups of this many: the widest vector. Row offsets are multiples of 64 bytes for
 /// it.
 inline constexpr uint32_t kLaneGroup = 16;
@@ -28,38 +32,26 @@ inline constexpr uint32_t kCurrentMask = 0;
 
 /// A set of lanes.
 struct LaneMask {
-    std::array<uint64_t, kMaxLanes / 64> words{};
+    uint64_t bits = 0;
 
-    static LaneMask first(uint32_t lanes) {
-        LaneMask mask;
-        for (uint32_t w = 0; w < mask.words.size(); ++w) {
-            const uint32_t begin = w * 64;
-            const uint32_t count = lanes <= begin ? 0 : lanes - begin;
-            mask.words[w] = count >= 64 ? ~uint64_t{0} : (uint64_t{1} << count) - 1;
-        }
-        return mask;
+    static constexpr LaneMask first(uint32_t lanes) {
+        return {lanes >= kMaxLanes ? ~uint64_t{0} : (uint64_t{1} << lanes) - 1};
     }
-    bool empty() const { return (words[0] | words[1]) == 0; }
-    bool test(uint32_t lane) const { return (words[lane / 64] >> (lane % 64) & 1) != 0; }
-    bool contains(const LaneMask& other) const {
-        return ((other.words[0] & ~words[0]) | (other.words[1] & ~words[1])) == 0;
-    }
-    /// The bits of lanes lane .. lane + 15 and up; `lane` is a multiple of a vector's width.
-    uint64_t from(uint32_t lane) const { return words[lane / 64] >> (lane % 64); }
-    void set(uint32_t lane, uint64_t bits) { words[lane / 64] |= bits << (lane % 64); }
+    bool empty() const { return bits == 0; }
+    bool test(uint32_t lane) const { return (bits >> lane & 1) != 0; }
+    bool contains(const LaneMask& other) const { return (other.bits & ~bits) == 0; }
+    /// The bits of lanes `lane` and up.
+    uint64_t from(uint32_t lane) const { return bits >> lane; }
+    void set(uint32_t lane, uint64_t lanes) { bits |= lanes << lane; }
 
-    LaneMask operator&(const LaneMask& b) const { return {{words[0] & b.words[0], words[1] & b.words[1]}}; }
-    LaneMask operator|(const LaneMask& b) const { return {{words[0] | b.words[0], words[1] | b.words[1]}}; }
-    LaneMask without(const LaneMask& b) const { return {{words[0] & ~b.words[0], words[1] & ~b.words[1]}}; }
+    LaneMask operator&(const LaneMask& b) const { return {bits & b.bits}; }
+    LaneMask operator|(const LaneMask& b) const { return {bits | b.bits}; }
+    LaneMask without(const LaneMask& b) const { return {bits & ~b.bits}; }
     bool operator==(const LaneMask&) const = default;
 
     template <class F>
     void forEach(F&& function) const {
-        for (uint32_t w = 0; w < words.size(); ++w) {
-            for (uint64_t left = words[w]; left != 0; left &= left - 1) {
-                function(w * 64 + static_cast<uint32_t>(std::countr_zero(left)));
-            }
-        }
+        for (uint64_t left = bits; left != 0; left &= left - 1) function(static_cast<uint32_t>(std::countr_zero(left)));
     }
 };
 
@@ -74,11 +66,49 @@ enum class Op : uint16_t {
 };
 inline constexpr size_t kOpCount = static_cast<size_t>(Op::count);
 
+/// The forms of a VECTOR operation. On x86, minimum and maximum of zeros of different sign depend on the order.
+constexpr FormSet formSet(Op op) {
+    switch (op) {
+        case Op::fadd:
+        case Op::fmul:
+        case Op::ffma:
+        case Op::multiplyAdd:
+        case Op::multiplySubtract:
+        case Op::subtractMultiply:
+        case Op::iadd:
+        case Op::imul:
+        case Op::smin:
+        case Op::smax:
+        case Op::umin:
+        case Op::umax:
+        case Op::iand:
+        case Op::ior:
+        case Op::ixor:
+        case Op::foeq:
+        case Op::fone:
+        case Op::fueq:
+        case Op::fune:
+        case Op::ieq:
+        case Op::ine:
+            return FormSet::commutative;
+        case Op::frem:
+        case Op::fmod:
+        case Op::fsmoothstep:
+            return FormSet::rare;
+        default:
+            return FormSet::general;
+    }
+}
+
 struct Frame;
 struct Inst;
 
-/// Executes one instruction and returns the next; nullptr ends the run.
-using Handler = const Inst* (*)(Frame&, const Inst*);
+/// Executes one instruction and returns the next; nullptr ends the run. The form in which operations are written that
+/// have no use for the accumulator.
+using PlainHandler = const Inst* (*)(Frame&, const Inst*);
+
+/// A handler with the arguments of the strips of some instruction set; only they can call it.
+using Handler = void (*)();
 
 /// One instruction, or the rest of one: an operation with more than four operands continues in the Insts
 /// behind it.
@@ -95,14 +125,20 @@ inline constexpr size_t instsFor(size_t operands) {
     return operands <= 4 ? 1 : (operands + 3) / 4;
 }
 
-/// Operand k + 1 (operand 0 is the destination) of a VECTOR operation is a scalar if bit k of its form is
-/// set; so are the operands of memory operations that say "row or scalar" (there bit k is operand k, counted
-/// without the destination).
-inline constexpr size_t kForms = 8;
+/// VECTOR operations have a Form. In the forms of memory operations bit k tells that operand k, counted without the
+/// destination, is a scalar.
 using HandlerTable = std::array<std::array<Handler, kForms>, kOpCount>;
 
-/// The handlers for an instruction set and a math tier.
-HandlerTable handlerTable(Isa isa, MathTier tier);
+/// Narrow strips are one lane group, full ones `fullLanes` of the instruction set.
+struct HandlerTables {
+    HandlerTable full{}, narrow{};
+    void (*executeFull)(Frame&, const Inst*) = nullptr;
+    void (*executeNarrow)(Frame&, const Inst*) = nullptr;
+    uint32_t fullLanes = 0;
+};
+
+/// The handlers for an instruction set and a math tier. Thread-safe.
+const HandlerTables& handlerTables(Isa isa, MathTier tier);
 
 /// Between masks as words, one per lane, and LaneMasks; `lanes` is a multiple of kLaneGroup.
 struct MaskFunctions {
@@ -130,7 +166,7 @@ struct ImageSite {
 struct Frame {
     std::byte* rows = nullptr;
     uint32_t* scalars = nullptr;
-    uint32_t lanes = 0;     // lanes to compute, a multiple of kLaneGroup
+    uint32_t lanes = 0;     // lanes to compute, a multiple of kLaneGroup; strips compute all they have
     uint32_t rowBytes = 0;  // from a row to the next
     LaneMask* masks = nullptr;
     LaneMask exec;  // lanes that run
@@ -147,6 +183,7 @@ struct Frame {
     uint32_t localStride = 0;
     uint32_t* imageScratch = nullptr;  // kImageScratchRows * kMaxLanes words
     BatchContext::Interpolator interpolator;
+    alignas(64) uint32_t accumulator[kMaxLanes] = {};  // between instructions, where calls are not turned into jumps
 
     template <class T>
     T* row(uint32_t offset) const {
@@ -154,9 +191,5 @@ struct Frame {
     }
 };
 inline constexpr uint32_t kImageScratchRows = 5;  // a mask, four results
-
-inline void execute(Frame& frame, const Inst* code) {
-    for (const Inst* at = code; at != nullptr;) at = at->handler(frame, at);
-}
 
 }  // namespace vernier::batch

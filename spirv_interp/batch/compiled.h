@@ -10,10 +10,11 @@
 
 namespace vernier::batch {
 
-/// One piece of code, ready to run on `lanes` lanes.
+/// One piece of code, ready to run on up to `lanes` lanes.
 struct Code {
-    std::vector<Inst> insts;
+    std::vector<Inst> full, narrow;  // for runs of more than one lane group (if `lanes` is more), and of one
     uint32_t lanes = 0;
+    uint32_t rowLanes = 0;  // from a row to the next: a full strip, or one lane group
     uint32_t rows = 0;
     uint32_t masks = 0;
     uint32_t instructions = 0;
@@ -23,9 +24,9 @@ struct Code {
     std::string listing;
 };
 
-/// Encodes machine code for a batch of `lanes` lanes.
+/// Encodes machine code for batches of up to `lanes` lanes.
 Code encode(const MachineCode& machine, const Allocation& allocation, const ScalarFile& scalars,
-            const HandlerTable& handlers, uint32_t lanes);
+            const HandlerTables& handlers, uint32_t lanes);
 
 class CompiledProgram final : public BatchProgram {
   public:
@@ -44,9 +45,17 @@ class CompiledProgram final : public BatchProgram {
     /// A batch holds several work-groups if it has room for them.
     bool packed() const { return packed_; }
     const MaskFunctions& masks() const { return masks_; }
+    /// Where a piece begins for the lanes of a frame, and how it runs from there.
+    static const Inst* beginning(const Frame& frame, const Code& code) {
+        return frame.lanes > kLaneGroup ? code.full.data() : code.narrow.data();
+    }
+    void execute(Frame& frame, const Inst* at) const {
+        (frame.lanes > kLaneGroup ? handlers_.executeFull : handlers_.executeNarrow)(frame, at);
+    }
 
   private:
     ir::Program source_;
+    const HandlerTables& handlers_;
     Code batch_, workGroup_, draw_;
     std::vector<uint32_t> scalars_, inputScalars_;
     bool packed_ = false;

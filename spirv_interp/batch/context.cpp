@@ -46,7 +46,7 @@ bool BatchContext::run(uint32_t lanes, const uint32_t* execMask, const uint32_t*
     const batch::LaneMask exec = maskWords.pack(execMask, groups) & batch::LaneMask::first(lanes);
     impl_->batch.begin(lanes, exec, maskWords.pack(storeMask, groups) & exec);
     const bool ok = impl_->batch.ended() || impl_->batch.run();
-    maskWords.spread(impl_->batch.frame.live, impl_->live.get(), compiled.batch().lanes);
+    maskWords.spread(impl_->batch.frame.live, impl_->live.get(), groups);
     return ok;
 }
 

@@ -1,4 +1,4 @@
-// Runs elementwise operations over the lanes of a batch; included once per SIMD target (see base/simd.h).
+// Operations of plain handlers over the lanes of a batch; included once per SIMD target (see base/simd.h).
 #if defined(VERNIER_BATCH_ELEMENT_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef VERNIER_BATCH_ELEMENT_INL_H
 #undef VERNIER_BATCH_ELEMENT_INL_H
@@ -14,6 +14,7 @@
 
 #include "base/simd-inl.h"
 #include "spirv_interp/batch/bytecode.h"
+#include "spirv_interp/batch/strip-inl.h"
 
 /// Declares a vector operation: `In` is the element type its operands are read as, `Out` the type of its
 /// result.
@@ -29,16 +30,6 @@ namespace vernier::batch::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using F32 = hn::ScalableTag<float>;
-using I32 = hn::ScalableTag<int32_t>;
-using U32 = hn::ScalableTag<uint32_t>;
-inline constexpr F32 kF32{};
-inline constexpr I32 kI32{};
-inline constexpr U32 kU32{};
-using VF = hn::Vec<F32>;
-using VI = hn::Vec<I32>;
-using VU = hn::Vec<U32>;
-
 /// A comparison's result as a b1 row: all ones or all zeros.
 template <class M>
 HWY_INLINE VU boolRow(M mask) {
@@ -47,12 +38,12 @@ HWY_INLINE VU boolRow(M mask) {
 
 /// An operand: a row that is read vector by vector, or a scalar that is in a register for the whole loop.
 template <class T, bool kScalar>
-class Source;
+class LaneOperand;
 
 template <class T>
-class Source<T, false> {
+class LaneOperand<T, false> {
   public:
-    HWY_INLINE Source(const Frame& frame, uint32_t offset) : row_(frame.row<T>(offset)) {}
+    HWY_INLINE LaneOperand(const Frame& frame, uint32_t offset) : row_(frame.row<T>(offset)) {}
     HWY_INLINE hn::Vec<hn::ScalableTag<T>> at(size_t lane) const { return hn::Load(hn::ScalableTag<T>(), row_ + lane); }
 
   private:
@@ -60,9 +51,9 @@ class Source<T, false> {
 };
 
 template <class T>
-class Source<T, true> {
+class LaneOperand<T, true> {
   public:
-    HWY_INLINE Source(const Frame& frame, uint32_t index)
+    HWY_INLINE LaneOperand(const Frame& frame, uint32_t index)
         : value_(hn::BitCast(hn::ScalableTag<T>(), hn::Set(kU32, frame.scalars[index]))) {}
     HWY_INLINE hn::Vec<hn::ScalableTag<T>> at(size_t) const { return value_; }
 
@@ -81,45 +72,19 @@ HWY_INLINE void fillRow(const Frame& frame, uint32_t offset, F&& function) {
     }
 }
 
-template <class E, size_t kForm>
-const Inst* runUnary(Frame& frame, const Inst* inst) {
-    const Source<typename E::InType, kForm & 1> a(frame, inst->operand[1]);
-    fillRow(frame, inst->operand[0], [&](size_t lane) HWY_ATTR { return E::apply(a.at(lane)); });
-    return inst + 1;
-}
-
-template <class E, size_t kForm>
-const Inst* runBinary(Frame& frame, const Inst* inst) {
-    const Source<typename E::InType, kForm & 1> a(frame, inst->operand[1]);
-    const Source<typename E::InType, (kForm >> 1 & 1)> b(frame, inst->operand[2]);
-    fillRow(frame, inst->operand[0], [&](size_t lane) HWY_ATTR { return E::apply(a.at(lane), b.at(lane)); });
-    return inst + 1;
-}
-
-template <class E, size_t kForm>
-const Inst* runTernary(Frame& frame, const Inst* inst) {
-    const Source<typename E::InType, kForm & 1> a(frame, inst->operand[1]);
-    const Source<typename E::InType, (kForm >> 1 & 1)> b(frame, inst->operand[2]);
-    const Source<typename E::InType, (kForm >> 2 & 1)> c(frame, inst->operand[3]);
-    fillRow(frame, inst->operand[0],
-            [&](size_t lane) HWY_ATTR { return E::apply(a.at(lane), b.at(lane), c.at(lane)); });
-    return inst + 1;
-}
-
-/// Enters the handlers of every form of a vector operation that has at least one row among its operands.
-template <class E, size_t kOperands, bool kScalars = true, size_t kForm = 0>
-void addElement(HandlerTable& table, Op op) {
-    auto& forms = table[static_cast<size_t>(op)];
+/// A function of vectors over rows, all operands rows: for functions too long to be unrolled over a strip.
+template <class E, size_t kOperands>
+const Inst* runRows(Frame& frame, const Inst* inst) {
+    using T = typename E::InType;
+    const LaneOperand<T, false> a(frame, inst->operand[1]);
     if constexpr (kOperands == 1) {
-        forms[kForm] = runUnary<E, kForm>;
-    } else if constexpr (kOperands == 2) {
-        forms[kForm] = runBinary<E, kForm>;
+        fillRow(frame, inst->operand[0], [&](size_t lane) HWY_ATTR { return E::apply(a.at(lane)); });
     } else {
-        forms[kForm] = runTernary<E, kForm>;
+        static_assert(kOperands == 2);
+        const LaneOperand<T, false> b(frame, inst->operand[2]);
+        fillRow(frame, inst->operand[0], [&](size_t lane) HWY_ATTR { return E::apply(a.at(lane), b.at(lane)); });
     }
-    if constexpr (kScalars && kForm + 2 < (size_t{1} << kOperands)) {
-        addElement<E, kOperands, kScalars, kForm + 1>(table, op);
-    }
+    return inst + 1;
 }
 
 template <class T>
@@ -168,8 +133,8 @@ struct LaneRunner<kFunction> {
 };
 
 template <auto kFunction>
-void addLanes(HandlerTable& table, Op op) {
-    table[static_cast<size_t>(op)][0] = LaneRunner<kFunction>::run;
+void addLanes(HandlerTables& tables, Op op) {
+    addPlain<LaneRunner<kFunction>::run>(tables, op);
 }
 
 }  // namespace vernier::batch::HWY_NAMESPACE

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstdio>
 
+#include "spirv_interp/batch/accumulate.h"
 #include "spirv_interp/batch/compiled.h"
 #include "spirv_interp/batch/select.h"
 
@@ -12,11 +13,17 @@ namespace {
 class Encoder {
   public:
     Encoder(const MachineCode& machine, const Allocation& allocation, const ScalarFile& scalars,
-            const HandlerTable& handlers, uint32_t lanes)
-        : machine_(machine), allocation_(allocation), scalars_(scalars), handlers_(handlers), lanes_(lanes) {}
+            const HandlerTables& handlers, uint32_t lanes)
+        : machine_(machine),
+          allocation_(allocation),
+          scalars_(scalars),
+          handlers_(handlers),
+          lanes_(lanes),
+          rowLanes_(lanes > kLaneGroup ? handlers.fullLanes : kLaneGroup) {}
 
     Code run() {
         code_.lanes = lanes_;
+        code_.rowLanes = rowLanes_;
         code_.rows = allocation_.rows;
         code_.masks = machine_.masks;
         code_.imageSites = machine_.imageSites;
@@ -33,7 +40,7 @@ class Encoder {
   private:
     uint32_t rowOffset(uint32_t reg, uint32_t word = 0) const {
         if (reg == kNone || allocation_.row[reg] == kNone) return kNone;
-        return (allocation_.row[reg] + word) * lanes_ * static_cast<uint32_t>(sizeof(uint32_t));
+        return (allocation_.row[reg] + word) * rowLanes_ * static_cast<uint32_t>(sizeof(uint32_t));
     }
 
     /// Where every machine instruction begins; a dead one is where the next begins.
@@ -47,11 +54,17 @@ class Encoder {
     }
 
     void encodeInst(const MachineInst& inst) {
-        const auto here = static_cast<uint32_t>(code_.insts.size());
-        code_.insts.resize(here + instsFor(inst.operands.size()));
-        code_.insts[here].handler = handlers_[static_cast<size_t>(inst.op)][inst.form];
+        const auto here = static_cast<uint32_t>(code_.narrow.size());
+        const size_t count = instsFor(inst.operands.size());
+        const size_t form = stripShape(inst.op) ? formOf(inst).index() : inst.form;
+        code_.narrow.resize(here + count);
+        code_.narrow[here].handler = handlers_.narrow[static_cast<size_t>(inst.op)][form];
         for (size_t k = 0; k < inst.operands.size(); ++k) {
-            code_.insts[here + k / 4].operand[k % 4] = encodeOperand(inst.operands[k], here);
+            code_.narrow[here + k / 4].operand[k % 4] = encodeOperand(inst.operands[k], here);
+        }
+        if (rowLanes_ > kLaneGroup) {
+            code_.full.insert(code_.full.end(), code_.narrow.end() - static_cast<ptrdiff_t>(count), code_.narrow.end());
+            code_.full[here].handler = handlers_.full[static_cast<size_t>(inst.op)][form];
         }
         fillSideTable(inst);
         ++code_.instructions;
@@ -61,6 +74,7 @@ class Encoder {
     uint32_t encodeOperand(const Operand& operand, uint32_t here) const {
         switch (operand.kind) {
             case Operand::Kind::none:
+            case Operand::Kind::accumulator:
                 return kNone;
             case Operand::Kind::row:
                 return rowOffset(operand.id, operand.word);
@@ -94,6 +108,8 @@ class Encoder {
         switch (operand.kind) {
             case Operand::Kind::none:
                 return "-";
+            case Operand::Kind::accumulator:
+                return "acc";
             case Operand::Kind::row:
                 return number("r", allocation_.row[operand.id] + operand.word);
             case Operand::Kind::mask:
@@ -136,8 +152,8 @@ class Encoder {
     const MachineCode& machine_;
     const Allocation& allocation_;
     const ScalarFile& scalars_;
-    const HandlerTable& handlers_;
-    const uint32_t lanes_;
+    const HandlerTables& handlers_;
+    const uint32_t lanes_, rowLanes_;
     std::vector<uint32_t> places_;
     Code code_;
 };
@@ -145,7 +161,7 @@ class Encoder {
 }  // namespace
 
 Code encode(const MachineCode& machine, const Allocation& allocation, const ScalarFile& scalars,
-            const HandlerTable& handlers, uint32_t lanes) {
+            const HandlerTables& handlers, uint32_t lanes) {
     return Encoder(machine, allocation, scalars, handlers, lanes).run();
 }
 

@@ -15,24 +15,6 @@ HWY_BEFORE_NAMESPACE();
 namespace vernier::batch::HWY_NAMESPACE {
 namespace {
 
-/// Adds the lanes of a vector mask, whose first is `lane`.
-template <class M>
-HWY_INLINE void addLanes(LaneMask& mask, size_t lane, M lanes) {
-    uint8_t bytes[8] = {};
-    hn::StoreMaskBits(kU32, hn::RebindMask(kU32, lanes), bytes);
-    mask.set(static_cast<uint32_t>(lane), bytes[0] | uint64_t{bytes[1]} << 8);
-}
-
-/// The lanes whose word is ~0: of a b1 row.
-HWY_INLINE LaneMask lanesOf(const Frame& frame, uint32_t offset) {
-    LaneMask mask;
-    const auto* row = frame.row<uint32_t>(offset);
-    for (size_t lane = 0; lane < frame.lanes; lane += hn::Lanes(kU32)) {
-        addLanes(mask, lane, hn::MaskFromVec(hn::Load(kU32, row + lane)));
-    }
-    return mask;
-}
-
 /// The vector mask of the lanes from `lane` on.
 HWY_INLINE hn::Mask<U32> vectorMask(const LaneMask& mask, size_t lane) {
     const uint64_t bits = mask.from(static_cast<uint32_t>(lane));
@@ -43,24 +25,6 @@ HWY_INLINE hn::Mask<U32> vectorMask(const LaneMask& mask, size_t lane) {
 
 inline const Inst* jump(const Inst* inst, uint32_t distance) {
     return inst + static_cast<int32_t>(distance);
-}
-
-template <bool kScalar>
-const Inst* copy(Frame& frame, const Inst* inst) {
-    const Source<uint32_t, kScalar> a(frame, inst->operand[1]);
-    fillRow(frame, inst->operand[0], [&](size_t lane) HWY_ATTR { return a.at(lane); });
-    return inst + 1;
-}
-
-template <bool kScalar>
-const Inst* copyMasked(Frame& frame, const Inst* inst) {
-    const LaneMask mask = frame.masks[inst->operand[2]];
-    if (mask.contains(frame.exec)) return copy<kScalar>(frame, inst);
-    const Source<uint32_t, kScalar> a(frame, inst->operand[1]);
-    const Source<uint32_t, false> old(frame, inst->operand[0]);
-    fillRow(frame, inst->operand[0],
-            [&](size_t lane) HWY_ATTR { return hn::IfThenElse(vectorMask(mask, lane), a.at(lane), old.at(lane)); });
-    return inst + 1;
 }
 
 const Inst* keepScalar(Frame& frame, const Inst* inst) {
@@ -75,7 +39,7 @@ const Inst* helperLanes(Frame& frame, const Inst* inst) {
     return inst + 1;
 }
 
-const Inst* enter(Frame& frame, const Inst* inst) {
+HWY_INLINE const Inst* enter(Frame& frame, const Inst* inst) {
     LaneMask& mask = frame.masks[inst->operand[0]];
     if (mask.empty()) return jump(inst, inst->operand[1]);
     frame.masks[kCurrentMask] = mask;
@@ -92,42 +56,19 @@ const Inst* repeat(Frame& frame, const Inst* inst) {
     return jump(inst, inst->operand[1]);
 }
 
-const Inst* leave(Frame& frame, const Inst* inst) {
+HWY_INLINE const Inst* leave(Frame& frame, const Inst* inst) {
     LaneMask& mask = frame.masks[inst->operand[0]];
     mask = mask | frame.masks[kCurrentMask];
     return inst + 1;
 }
 
-const Inst* split(Frame& frame, const Inst* inst) {
-    const LaneMask current = frame.masks[kCurrentMask];
-    const LaneMask yes = current & lanesOf(frame, inst->operand[0]);
-    frame.masks[inst->operand[1]] = frame.masks[inst->operand[1]] | yes;
-    frame.masks[inst->operand[2]] = frame.masks[inst->operand[2]] | current.without(yes);
-    return inst + 1;
-}
-
-const Inst* splitScalar(Frame& frame, const Inst* inst) {
+HWY_INLINE const Inst* splitScalar(Frame& frame, const Inst* inst) {
     LaneMask& mask = frame.masks[inst->operand[frame.scalars[inst->operand[0]] != 0 ? 1 : 2]];
     mask = mask | frame.masks[kCurrentMask];
     return inst + 1;
 }
 
-template <bool kScalar>
-const Inst* choose(Frame& frame, const Inst* inst) {
-    const Source<uint32_t, kScalar> selector(frame, inst->operand[0]);
-    const Source<uint32_t, true> wanted(frame, inst->operand[1]);
-    LaneMask equal;
-    for (size_t lane = 0; lane < frame.lanes; lane += hn::Lanes(kU32)) {
-        addLanes(equal, lane, hn::Eq(selector.at(lane), wanted.at(lane)));
-    }
-    LaneMask& current = frame.masks[kCurrentMask];
-    LaneMask& mask = frame.masks[inst->operand[2]];
-    mask = mask | (current & equal);
-    current = current.without(equal);
-    return inst + 1;
-}
-
-const Inst* follow(Frame& frame, const Inst* inst) {
+HWY_INLINE const Inst* follow(Frame& frame, const Inst* inst) {
     LaneMask& to = frame.masks[inst->operand[0]];
     LaneMask& from = frame.masks[inst->operand[1]];
     to = to | from;
@@ -135,11 +76,11 @@ const Inst* follow(Frame& frame, const Inst* inst) {
     return inst + 1;
 }
 
-const Inst* skipEmpty(Frame& frame, const Inst* inst) {
+HWY_INLINE const Inst* skipEmpty(Frame& frame, const Inst* inst) {
     return frame.masks[inst->operand[0]].empty() ? jump(inst, inst->operand[1]) : inst + 1;
 }
 
-const Inst* discard(Frame& frame, const Inst* inst) {
+HWY_INLINE const Inst* discard(Frame& frame, const Inst* inst) {
     frame.live = frame.live.without(frame.masks[kCurrentMask]);
     return inst + 1;
 }
@@ -161,11 +102,94 @@ VERNIER_ELEMENT(ddxCoarse, float, float, (V a), return hn::Sub(hn::Broadcast<1>(
 VERNIER_ELEMENT(ddyCoarse, float, float, (V a), return hn::Sub(hn::Broadcast<2>(a), hn::Broadcast<0>(a));)
 
 }  // namespace derivative
+
+/// Moves and branches, which work on whole strips.
+template <class S>
+struct Moves;
+
+template <size_t... K>
+struct Moves<Strip<std::index_sequence<K...>>> {
+    using S = Strip<std::index_sequence<K...>>;
+    template <size_t>
+    using Vector = VU;
+    template <Source kSource>
+    using At = StripOperand<uint32_t, kSource>;
+
+    template <Source kSource, bool kStored>
+    static const Inst* copy(Frame& frame, const Inst* inst, std::byte* rows, uint32_t* scalars, Vector<K>... acc) {
+        return S::template finish<kStored>(frame, inst, inst + 1, rows, scalars,
+                                           At<kSource>::template at<K>(rows, scalars, inst->operand[1], acc)...);
+    }
+
+    template <Source kSource>
+    static const Inst* copyMasked(Frame& frame, const Inst* inst, std::byte* rows, uint32_t* scalars,
+                                  Vector<K>... acc) {
+        const LaneMask mask = frame.masks[inst->operand[2]];
+        auto* row = reinterpret_cast<uint32_t*>(rows + inst->operand[0]);
+        if (mask.contains(frame.exec)) {
+            (hn::Store(At<kSource>::template at<K>(rows, scalars, inst->operand[1], acc), kU32, row + K * kVectorLanes),
+             ...);
+        } else {
+            (store(mask, K * kVectorLanes, At<kSource>::template at<K>(rows, scalars, inst->operand[1], acc), row),
+             ...);
+        }
+        return S::proceed(frame, inst + 1, rows, scalars, acc...);
+    }
+
+    template <Source kSource>
+    static const Inst* split(Frame& frame, const Inst* inst, std::byte* rows, uint32_t* scalars, Vector<K>... acc) {
+        const LaneMask current = frame.masks[kCurrentMask];
+        const LaneMask yes = current & LaneMask{S::template lanesOf<kSource>(rows, scalars, inst->operand[0], acc...)};
+        frame.masks[inst->operand[1]] = frame.masks[inst->operand[1]] | yes;
+        frame.masks[inst->operand[2]] = frame.masks[inst->operand[2]] | current.without(yes);
+        return S::proceed(frame, inst + 1, rows, scalars, acc...);
+    }
+
+    template <Source kSource>
+    static const Inst* choose(Frame& frame, const Inst* inst, std::byte* rows, uint32_t* scalars, Vector<K>... acc) {
+        const VU wanted = hn::Set(kU32, scalars[inst->operand[1]]);
+        const LaneMask equal{
+            ((bitsOf(boolRow(hn::Eq(At<kSource>::template at<K>(rows, scalars, inst->operand[0], acc), wanted)))
+              << (K * kVectorLanes)) |
+             ...)};
+        LaneMask& current = frame.masks[kCurrentMask];
+        LaneMask& mask = frame.masks[inst->operand[2]];
+        mask = mask | (current & equal);
+        current = current.without(equal);
+        return S::proceed(frame, inst + 1, rows, scalars, acc...);
+    }
+
+    static void add(HandlerTable& table) {
+        const auto enter = [&](Op op, Form form, typename S::StripHandler handler) {
+            table[static_cast<size_t>(op)][form.index()] = S::erase(handler);
+        };
+        constexpr Form kRow{}, kScalar{{Source::scalar}}, kAccumulator{{Source::accumulator}};
+        constexpr Form kUnstored{{}, false}, kScalarUnstored{{Source::scalar}, false};
+        enter(Op::copy, kRow, copy<Source::row, true>);
+        enter(Op::copy, kUnstored, copy<Source::row, false>);
+        enter(Op::copy, kAccumulator, copy<Source::accumulator, true>);
+        enter(Op::broadcast, kScalar, copy<Source::scalar, true>);
+        enter(Op::broadcast, kScalarUnstored, copy<Source::scalar, false>);
+        enter(Op::copyMasked, kRow, copyMasked<Source::row>);
+        enter(Op::copyMasked, kAccumulator, copyMasked<Source::accumulator>);
+        enter(Op::broadcastMasked, kScalar, copyMasked<Source::scalar>);
+        enter(Op::split, kRow, split<Source::row>);
+        enter(Op::split, kAccumulator, split<Source::accumulator>);
+        enter(Op::choose, kRow, choose<Source::row>);
+        enter(Op::choose, kScalar, choose<Source::scalar>);
+        enter(Op::choose, kAccumulator, choose<Source::accumulator>);
+    }
+
+  private:
+    static HWY_INLINE void store(const LaneMask& mask, size_t lane, VU from, uint32_t* row) {
+        const VU old = hn::Load(kU32, row + lane);
+        hn::Store(hn::IfThenElse(vectorMask(mask, lane), from, old), kU32, row + lane);
+    }
+};
+
 LaneMask packWords(const uint32_t* words, uint32_t lanes) {
     LaneMask mask;
-    for (size_t lane = 0; lane < lanes; lane += hn::Lanes(kU32)) {
-        addLanes(mask, lane, hn::MaskFromVec(hn::BroadcastSignBit(hn::BitCast(kI32, hn::LoadU(kU32, words + lane)))));
-    }
+    for (uint32_t lane = 0; lane < lanes; lane += kVectorLanes) mask.set(lane, bitsOf(hn::LoadU(kU32, words + lane)));
     return mask;
 }
 
@@ -181,29 +205,38 @@ MaskFunctions maskFunctions() {
     return {packWords, spreadWords};
 }
 
-void addFlow(HandlerTable& table) {
-    const auto add = [&](Op op, Handler handler, size_t form = 0) { table[static_cast<size_t>(op)][form] = handler; };
-    add(Op::broadcast, copy<true>);
-    add(Op::copy, copy<false>);
-    add(Op::copyMasked, copyMasked<false>);
-    add(Op::broadcastMasked, copyMasked<true>);
-    add(Op::keepScalar, keepScalar);
-    add(Op::helperLanes, helperLanes);
-    add(Op::enter, enter);
-    add(Op::repeat, repeat);
-    add(Op::leave, leave);
-    add(Op::split, split);
-    add(Op::splitScalar, splitScalar);
-    add(Op::choose, choose<false>, 0);
-    add(Op::choose, choose<true>, 1);
-    add(Op::follow, follow);
-    add(Op::skipEmpty, skipEmpty);
-    add(Op::discard, discard);
-    add(Op::end, end);
-    addElement<derivative::ddxFine, 1>(table, Op::ddxFine);
-    addElement<derivative::ddyFine, 1>(table, Op::ddyFine);
-    addElement<derivative::ddxCoarse, 1>(table, Op::ddxCoarse);
-    addElement<derivative::ddyCoarse, 1>(table, Op::ddyCoarse);
+void addFlow(HandlerTables& tables) {
+    Moves<FullStrip>::add(tables.full);
+    Moves<NarrowStrip>::add(tables.narrow);
+    tables.executeFull = FullStrip::execute;
+    tables.executeNarrow = NarrowStrip::execute;
+    tables.fullLanes = kStripVectors * kVectorLanes;
+    addPlain<keepScalar>(tables, Op::keepScalar);
+    addPlain<helperLanes>(tables, Op::helperLanes);
+    addForward<enter>(tables, Op::enter);
+    addPlain<repeat>(tables, Op::repeat);
+    addForward<leave>(tables, Op::leave);
+    addForward<splitScalar>(tables, Op::splitScalar);
+    addForward<follow>(tables, Op::follow);
+    addForward<skipEmpty>(tables, Op::skipEmpty);
+    addForward<discard>(tables, Op::discard);
+    addPlain<end>(tables, Op::end);
+    addPlain<controlBarrier>(tables, Op::controlBarrier);
+    addPlain<memoryBarrier>(tables, Op::memoryBarrier);
+    addPlain<runImage>(tables, Op::image);
+    addPlain<runInterpolation>(tables, Op::interpolate);
+    addPlain<subgroupInvocation>(tables, Op::subgroupInvocation);
+    addPlain<subgroupBallot>(tables, Op::subgroupBallot);
+    addPlain<subgroupActive>(tables, Op::subgroupActive);
+    addPlain<subgroupShuffle>(tables, Op::subgroupShuffle);
+    addPlain<subgroupBroadcast>(tables, Op::subgroupBroadcast);
+    addPlain<quadShuffle>(tables, Op::quadShuffle);
+    addPlain<subgroupReduce>(tables, Op::subgroupReduce);
+    addPlain<subgroupReduce64>(tables, Op::subgroupReduce64);
+    addElement<derivative::ddxFine, 1, FormSet::general>(tables, Op::ddxFine);
+    addElement<derivative::ddyFine, 1, FormSet::general>(tables, Op::ddyFine);
+    addElement<derivative::ddxCoarse, 1, FormSet::general>(tables, Op::ddxCoarse);
+    addElement<derivative::ddyCoarse, 1, FormSet::general>(tables, Op::ddyCoarse);
 }
 
 }  // namespace vernier::batch::HWY_NAMESPACE
@@ -217,8 +250,8 @@ GetMaskFunctions selectMaskFunctions(Isa isa){VERNIER_SELECT_ISA(isa, maskFuncti
     VERNIER_SELECT_ISA(isa, addFlow)
 }
 }  // namespace
-void addFlow(Isa isa, HandlerTable& table) {
-    selectFlow(isa)(table);
+void addFlow(Isa isa, HandlerTables& tables) {
+    selectFlow(isa)(tables);
 }
 MaskFunctions maskFunctions(Isa isa) {
     return selectMaskFunctions(isa)();

@@ -6,17 +6,29 @@
 
 namespace vernier::batch {
 
-using AddHandlers = void (*)(HandlerTable&);
+using AddHandlers = void (*)(HandlerTables&);
 
-void addArithmetic(Isa isa, HandlerTable& table);           // arithmetic.cpp: VECTOR operations, dot products
-void addLaneOps(Isa isa, HandlerTable& table);              // lane_ops.cpp: LANES operations
-void addSubgroups(HandlerTable& table);                     // subgroup.cpp: ballots, shuffles, reductions
-void addWide(Isa isa, HandlerTable& table);                 // wide.cpp: 64-bit values
-void addMath(Isa isa, MathTier tier, HandlerTable& table);  // math.cpp: transcendental functions
-void addBarriers(HandlerTable& table);                      // barrier.cpp: control and memory barriers
-void addFlow(Isa isa, HandlerTable& table);                 // flow.cpp: masks, jumps, moves, derivatives
-void addMemory(Isa isa, HandlerTable& table);               // memory.cpp: buffers, local memory, indexed inputs
-void addAtomics(Isa isa, HandlerTable& table);              // atomics.cpp: atomics, memory by address
-void addImages(HandlerTable& table);                        // images.cpp: image instructions, interpolation
+void addFloatOps(Isa isa, HandlerTables& tables);             // float_ops.cpp: FLOAT operations, dot products
+void addIntegerOps(Isa isa, HandlerTables& tables);           // integer_ops.cpp: INTEGER operations
+void addLaneOps(Isa isa, HandlerTables& tables);              // lane_ops.cpp: LANES operations
+void addWide(Isa isa, HandlerTables& tables);                 // wide.cpp: 64-bit values
+void addMath(Isa isa, MathTier tier, HandlerTables& tables);  // math.cpp: transcendental functions
+void addFlow(Isa isa, HandlerTables& tables);                 // flow.cpp: masks, jumps, moves, derivatives; images
+void addMemory(Isa isa, HandlerTables& tables);               // memory.cpp: buffers, local memory, indexed inputs
+void addAtomics(Isa isa, HandlerTables& tables);              // atomics.cpp: atomics, memory by address
+
+// Plain handlers that are the same for every instruction set.
+const Inst* controlBarrier(Frame& frame, const Inst* inst);  // barrier.cpp
+const Inst* memoryBarrier(Frame& frame, const Inst* inst);
+const Inst* runImage(Frame& frame, const Inst* inst);  // images.cpp
+const Inst* runInterpolation(Frame& frame, const Inst* inst);
+const Inst* subgroupInvocation(Frame& frame, const Inst* inst);  // subgroup.cpp
+const Inst* subgroupBallot(Frame& frame, const Inst* inst);
+const Inst* subgroupActive(Frame& frame, const Inst* inst);
+const Inst* subgroupShuffle(Frame& frame, const Inst* inst);
+const Inst* subgroupBroadcast(Frame& frame, const Inst* inst);
+const Inst* quadShuffle(Frame& frame, const Inst* inst);
+const Inst* subgroupReduce(Frame& frame, const Inst* inst);
+const Inst* subgroupReduce64(Frame& frame, const Inst* inst);
 
 }  // namespace vernier::batch

@@ -59,8 +59,7 @@ class ImageRunner {
         for (size_t k = 0; k < kCount; ++k) pointers[k] = rowAt(offsets[k]);
     }
     static uint32_t laneOf(const LaneMask& mask) {
-        const uint32_t word = mask.words[0] != 0 ? 0 : 1;
-        return mask.empty() ? 0 : word * 64 + static_cast<uint32_t>(std::countr_zero(mask.words[word]));
+        return mask.empty() ? 0 : static_cast<uint32_t>(std::countr_zero(mask.bits));
     }
     uint32_t indexAt(uint32_t offset, uint32_t lane) const {
         return offset == ImageSite::kNone ? 0 : frame_.row<uint32_t>(offset)[lane];
@@ -109,12 +108,14 @@ class ImageRunner {
     ImageCall call_;
 };
 
-const Inst* image(Frame& frame, const Inst* inst) {
+}  // namespace
+
+const Inst* runImage(Frame& frame, const Inst* inst) {
     ImageRunner(frame, frame.imageSites[inst->operand[0]]).run();
     return inst + 1;
 }
 
-const Inst* interpolate(Frame& frame, const Inst* inst) {
+const Inst* runInterpolation(Frame& frame, const Inst* inst) {
     const auto rowAt = [&](uint32_t offset) -> const float* {
         return offset == ImageSite::kNone ? nullptr : frame.row<float>(offset);
     };
@@ -126,13 +127,6 @@ const Inst* interpolate(Frame& frame, const Inst* inst) {
         frame.interpolator.at(frame.interpolator.self, in[3], in[4], frame.lanes, rowAt(in[1]), rowAt(in[2]), result);
     }
     return inst + instsFor(5);
-}
-
-}  // namespace
-
-void addImages(HandlerTable& table) {
-    table[static_cast<size_t>(Op::image)][0] = image;
-    table[static_cast<size_t>(Op::interpolate)][0] = interpolate;
 }
 
 }  // namespace vernier::batch

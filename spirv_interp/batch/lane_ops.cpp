@@ -57,8 +57,8 @@ float quantizeF16(float x) {
 }  // namespace lane
 }  // namespace
 
-void addLaneOps(HandlerTable& table) {
-#define VERNIER_BATCH_LANES(name, operands) addLanes<lane::name>(table, Op::name);
+void addLaneOps(HandlerTables& tables) {
+#define VERNIER_BATCH_LANES(name, operands) addLanes<lane::name>(tables, Op::name);
 #include "spirv_interp/batch/ops.def"
 }
 
@@ -72,8 +72,8 @@ AddHandlers selectLaneOps(Isa isa) {
     VERNIER_SELECT_ISA(isa, addLaneOps)
 }
 }  // namespace
-void addLaneOps(Isa isa, HandlerTable& table) {
-    selectLaneOps(isa)(table);
+void addLaneOps(Isa isa, HandlerTables& tables) {
+    selectLaneOps(isa)(tables);
 }
 }  // namespace vernier::batch
 #endif

@@ -80,15 +80,17 @@ MachineInst& Lowerer::emit(Op op, std::vector<Operand> operands) {
 
 void Lowerer::emitVector(Op op, const Operand& to, std::vector<Operand> from) {
     const auto isScalarOperand = [](const Operand& o) { return o.isScalar(); };
-    if (std::all_of(from.begin(), from.end(), isScalarOperand)) {
+    const bool commutative = formSet(op) == FormSet::commutative;
+    // There are no forms for two scalar factors, nor for scalars alone.
+    const size_t scalarsBarred = commutative ? std::min<size_t>(from.size(), 2) : from.size();
+    if (std::all_of(from.begin(), from.begin() + static_cast<ptrdiff_t>(scalarsBarred), isScalarOperand)) {
         const uint32_t temporary = newRegister(false);
         emit(Op::broadcast, {Operand::write(temporary), from[0]});
         from[0] = Operand::read(temporary);
     }
-    uint8_t form = 0;
-    for (size_t k = 0; k < from.size(); ++k) form |= static_cast<uint8_t>(from[k].isScalar() ? 1 << k : 0);
+    if (commutative && from[0].isScalar()) std::swap(from[0], from[1]);
     from.insert(from.begin(), to);
-    emit(op, std::move(from)).form = form;
+    emit(op, std::move(from));
 }
 
 void Lowerer::lowerStraight() {

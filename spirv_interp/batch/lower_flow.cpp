@@ -145,8 +145,7 @@ void Lowerer::lowerTerminator(ir::BlockId b) {
             for (size_t k = 0; k < block.cases.size(); ++k) {
                 masks[k + 1] = edgeMask(b, k + 1);
                 const uint32_t wanted = scalars_.constant(static_cast<uint32_t>(block.cases[k]), false);
-                emit(Op::choose, {selector, Operand::scalar(wanted), Operand::mask(masks[k + 1])}).form =
-                    selector.isScalar();
+                emit(Op::choose, {selector, Operand::scalar(wanted), Operand::mask(masks[k + 1])});
             }
             masks[0] = edgeMask(b, 0);
             emit(Op::leave, {Operand::mask(masks[0])});

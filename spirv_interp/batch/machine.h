@@ -13,11 +13,11 @@ namespace vernier::batch {
 inline constexpr uint32_t kNone = ~0u;
 
 struct Operand {
-    enum class Kind : uint8_t { none, row, scalar, mask, label, number };
+    enum class Kind : uint8_t { none, row, scalar, accumulator, mask, label, number };
     Kind kind = Kind::none;
     uint8_t word = 0;      // of a wide register: 1 = high
     bool written = false;  // a row that the operation writes
-    uint32_t id = 0;       // virtual register, scalar, mask slot, label or number
+    uint32_t id = 0;  // virtual register (of an accumulator: the one it stands for), scalar, mask slot, label or number
 
     static Operand read(uint32_t reg, uint8_t word = 0) { return {Kind::row, word, false, reg}; }
     static Operand write(uint32_t reg, uint8_t word = 0) { return {Kind::row, word, true, reg}; }

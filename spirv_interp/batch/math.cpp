@@ -71,25 +71,25 @@ VERNIER_MATH(finverseSqrt, inverseSqrt)
 #undef VERNIER_MATH
 
 template <class Tier>
-void addTier(HandlerTable& table) {
+void addTier(HandlerTables& tables) {
 #define VERNIER_BATCH_MATH(name, operands) \
-    addElement<Element<Tier, function::name<Tier>>, operands, false>(table, Op::name);
+    addPlain<runRows<Element<Tier, function::name<Tier>>, operands>>(tables, Op::name);
 #include "spirv_interp/batch/ops.def"
 }
 
 }  // namespace
 
-void addFastMath(HandlerTable& table) {
-    addTier<math::Fast>(table);
+void addFastMath(HandlerTables& tables) {
+    addTier<math::Fast>(tables);
 }
-void addStandardMath(HandlerTable& table) {
-    addTier<math::Standard>(table);
+void addStandardMath(HandlerTables& tables) {
+    addTier<math::Standard>(tables);
 }
-void addFineMath(HandlerTable& table) {
-    addTier<math::Fine>(table);
+void addFineMath(HandlerTables& tables) {
+    addTier<math::Fine>(tables);
 }
-void addReferenceMath(HandlerTable& table) {
-    addTier<math::Reference>(table);
+void addReferenceMath(HandlerTables& tables) {
+    addTier<math::Reference>(tables);
 }
 
 }  // namespace vernier::batch::HWY_NAMESPACE
@@ -105,16 +105,16 @@ AddHandlers selectFast(Isa isa){VERNIER_SELECT_ISA(isa, addFastMath)} AddHandler
 }
 }  // namespace
 
-void addMath(Isa isa, MathTier tier, HandlerTable& table) {
+void addMath(Isa isa, MathTier tier, HandlerTables& tables) {
     switch (tier) {
         case MathTier::fast:
-            return selectFast(isa)(table);
+            return selectFast(isa)(tables);
         case MathTier::standard:
-            return selectStandard(isa)(table);
+            return selectStandard(isa)(tables);
         case MathTier::fine:
-            return selectFine(isa)(table);
+            return selectFine(isa)(tables);
         case MathTier::reference:
-            return selectReference(isa)(table);
+            return selectReference(isa)(tables);
     }
 }
 }  // namespace vernier::batch

@@ -137,30 +137,26 @@ const Inst* inputIndexed(Frame& frame, const Inst* inst) {
 
 /// The forms of operations whose descriptor (bit 0) and offset (bit 1) are rows or scalars.
 template <size_t... kForm>
-void addForms(HandlerTable& table, std::index_sequence<kForm...>) {
-    const auto forms = [&](Op op) -> auto& {
-        return table[static_cast<size_t>(op)];
-    };
-    ((forms(Op::loadBuffer)[kForm] = loadBuffer<kForm>), ...);
-    ((forms(Op::loadByte)[kForm] = loadNarrow<uint8_t, kForm>), ...);
-    ((forms(Op::loadHalfword)[kForm] = loadNarrow<uint16_t, kForm>), ...);
-    ((forms(Op::storeBuffer)[kForm] = storeBuffer<uint32_t, kForm>), ...);
-    ((forms(Op::storeByte)[kForm] = storeBuffer<uint8_t, kForm>), ...);
-    ((forms(Op::storeHalfword)[kForm] = storeBuffer<uint16_t, kForm>), ...);
+void addForms(HandlerTables& tables, std::index_sequence<kForm...>) {
+    (addPlain<loadBuffer<kForm>>(tables, Op::loadBuffer, kForm), ...);
+    (addPlain<loadNarrow<uint8_t, kForm>>(tables, Op::loadByte, kForm), ...);
+    (addPlain<loadNarrow<uint16_t, kForm>>(tables, Op::loadHalfword, kForm), ...);
+    (addPlain<storeBuffer<uint32_t, kForm>>(tables, Op::storeBuffer, kForm), ...);
+    (addPlain<storeBuffer<uint8_t, kForm>>(tables, Op::storeByte, kForm), ...);
+    (addPlain<storeBuffer<uint16_t, kForm>>(tables, Op::storeHalfword, kForm), ...);
 }
 
 }  // namespace
 
-void addMemory(HandlerTable& table) {
-    const auto add = [&](Op op, Handler handler, size_t form = 0) { table[static_cast<size_t>(op)][form] = handler; };
-    addForms(table, std::make_index_sequence<4>());
-    add(Op::bufferSize, bufferSize<false>, 0);
-    add(Op::bufferSize, bufferSize<true>, 1);
-    add(Op::loadLocal, loadLocal<false>);
-    add(Op::loadLocalScalar, loadLocal<true>);
-    add(Op::storeLocal, storeLocal<false>);
-    add(Op::storeLocalScalar, storeLocal<true>);
-    add(Op::inputIndexed, inputIndexed);
+void addMemory(HandlerTables& tables) {
+    addForms(tables, std::make_index_sequence<4>());
+    addPlain<bufferSize<false>>(tables, Op::bufferSize, 0);
+    addPlain<bufferSize<true>>(tables, Op::bufferSize, 1);
+    addPlain<loadLocal<false>>(tables, Op::loadLocal);
+    addPlain<loadLocal<true>>(tables, Op::loadLocalScalar);
+    addPlain<storeLocal<false>>(tables, Op::storeLocal);
+    addPlain<storeLocal<true>>(tables, Op::storeLocalScalar);
+    addPlain<inputIndexed>(tables, Op::inputIndexed);
 }
 
 }  // namespace vernier::batch::HWY_NAMESPACE
@@ -173,8 +169,8 @@ AddHandlers selectMemory(Isa isa) {
     VERNIER_SELECT_ISA(isa, addMemory)
 }
 }  // namespace
-void addMemory(Isa isa, HandlerTable& table) {
-    selectMemory(isa)(table);
+void addMemory(Isa isa, HandlerTables& tables) {
+    selectMemory(isa)(tables);
 }
 }  // namespace vernier::batch
 #endif

@@ -4,19 +4,45 @@
 
 #include "spirv_interp/batch/compiled.h"
 #include "spirv_interp/batch/handlers.h"
+#include "spirv_interp/batch/schedule.h"
 #include "spirv_interp/ir/verify.h"
 
 namespace vernier {
 namespace batch {
 namespace {
 
-/// The registers of a batch should stay under half of the first-level cache.
-uint32_t chooseLanes(uint32_t rows) {
-    constexpr uint32_t kBytes = 16 * 1024;
-    for (const uint32_t lanes : {64u, 32u}) {
-        if (rows * lanes * sizeof(uint32_t) <= kBytes) return lanes;
+HandlerTables makeTables(Isa isa, MathTier tier) {
+    HandlerTables tables;
+    addFloatOps(isa, tables);
+    addIntegerOps(isa, tables);
+    addFlow(isa, tables);
+    addLaneOps(isa, tables);
+    addWide(isa, tables);
+    addMemory(isa, tables);
+    addAtomics(isa, tables);
+    addMath(isa, tier, tables);
+    return tables;
+}
+
+template <Isa kIsa, MathTier kTier>
+const HandlerTables& tablesFor() {
+    static const HandlerTables tables = makeTables(kIsa, kTier);
+    return tables;
+}
+
+template <Isa kIsa>
+const HandlerTables& tablesFor(MathTier tier) {
+    switch (tier) {
+        case MathTier::fast:
+            return tablesFor<kIsa, MathTier::fast>();
+        case MathTier::standard:
+            return tablesFor<kIsa, MathTier::standard>();
+        case MathTier::fine:
+            return tablesFor<kIsa, MathTier::fine>();
+        case MathTier::reference:
+            break;
     }
-    return kLaneGroup;
+    return tablesFor<kIsa, MathTier::reference>();
 }
 
 uint32_t workGroupSize(const ir::Program& program) {
@@ -30,51 +56,50 @@ uint32_t leastLanes(const ir::Program& program) {
 
 /// Whether work-groups may share a batch: nothing in them looks at other invocations. And there must be room for two.
 bool packs(const ir::Program& program, uint32_t lanes) {
-    constexpr uint32_t kUsual = 64;
     if (program.stage != ir::Stage::compute || program.hasBarriers || program.usesSubgroups) return false;
     const bool shares = std::any_of(program.resources.begin(), program.resources.end(),
                                     [](const ir::Resource& r) { return r.kind == ir::ResourceKind::workgroupMemory; });
-    return !shares && workGroupSize(program) * 2 <= (lanes != 0 ? lanes : kUsual);
+    return !shares && workGroupSize(program) * 2 <= lanes;
+}
+
+/// The lanes of a batch: as many as were asked for and the instruction set has.
+uint32_t lanesFor(const BatchOptions& options) {
+    const uint32_t full = handlerTables(options.isa, options.tier).fullLanes;
+    return options.lanes == 0 ? full : std::min(options.lanes, full);
 }
 
 }  // namespace
 
-HandlerTable handlerTable(Isa isa, MathTier tier) {
-    HandlerTable table{};
-    addArithmetic(isa, table);
-    addBarriers(table);
-    addSubgroups(table);
-    addFlow(isa, table);
-    addLaneOps(isa, table);
-    addWide(isa, table);
-    addMemory(isa, table);
-    addAtomics(isa, table);
-    addImages(table);
-    addMath(isa, tier, table);
-    return table;
+const HandlerTables& handlerTables(Isa isa, MathTier tier) {
+    switch (isa) {
+        case Isa::avx512:
+            return tablesFor<Isa::avx512>(tier);
+        case Isa::avx2:
+            return tablesFor<Isa::avx2>(tier);
+        case Isa::sse4:
+            break;
+    }
+    return tablesFor<Isa::sse4>(tier);
 }
 
 CompiledProgram::CompiledProgram(const ir::Program& source, LoweredProgram lowered, const BatchOptions& options,
                                  bool packed)
-    : source_(source), packed_(packed), masks_(maskFunctions(options.isa)) {
-    const HandlerTable handlers = handlerTable(options.isa, options.tier);
-    const Allocation batchRows = allocate(lowered.batch);
-    uint32_t lanes = options.lanes;
-    if (lanes == 0) {
-        const uint32_t size = workGroupSize(source);
-        lanes = std::max(chooseLanes(batchRows.rows), leastLanes(source));
-        if (source.stage == ir::Stage::compute && !packed) {
-            // No wider than a work-group needs that has its batches for itself.
-            while (lanes > leastLanes(source) && lanes / 2 >= size) lanes /= 2;
-        }
-        while (packed && lanes < size) lanes *= 2;
+    : source_(source),
+      handlers_(handlerTables(options.isa, options.tier)),
+      packed_(packed),
+      masks_(maskFunctions(options.isa)) {
+    uint32_t lanes = lanesFor(options);
+    if (options.lanes == 0 && source.stage == ir::Stage::compute && !packed) {
+        // No wider than a work-group needs that has its batches for itself.
+        while (lanes > leastLanes(source) && lanes / 2 >= workGroupSize(source)) lanes /= 2;
     }
-    const auto encodeStraight = [&](MachineCode& code) {
-        return encode(code, allocate(code), lowered.scalars, handlers, kLaneGroup);
+    const auto encodePiece = [&](MachineCode& code, uint32_t most) {
+        schedule(code);
+        return encode(code, allocate(code, handlers_.narrow), lowered.scalars, handlers_, most);
     };
-    batch_ = encode(lowered.batch, batchRows, lowered.scalars, handlers, lanes);
-    workGroup_ = encodeStraight(lowered.workGroup);
-    draw_ = encodeStraight(lowered.draw);
+    batch_ = encodePiece(lowered.batch, lanes);
+    workGroup_ = encodePiece(lowered.workGroup, kLaneGroup);
+    draw_ = encodePiece(lowered.draw, kLaneGroup);
     scalars_ = lowered.scalars.initial();
     inputScalars_ = std::move(lowered.inputScalars);
     statistics_ = {batch_.instructions, draw_.instructions - 1, batch_.rows, lanes, workGroup_.instructions - 1};
@@ -86,7 +111,7 @@ std::string CompiledProgram::disassemble() const {
         for (size_t k = 0; k < rows.size(); ++k) {
             if (rows[k] == kNone) continue;
             text +=
-                name + std::to_string(k) + " r" + std::to_string(rows[k] / (batch_.lanes * sizeof(uint32_t))) + "\n";
+                name + std::to_string(k) + " r" + std::to_string(rows[k] / (batch_.rowLanes * sizeof(uint32_t))) + "\n";
         }
     };
     list("input ", batch_.inputs);
@@ -114,7 +139,7 @@ Result<std::shared_ptr<const BatchProgram>> BatchProgram::compile(const ir::Prog
                            ", which this CPU does not have");
     }
     if (Status status = ir::verify(program); !status.ok()) return status.error();
-    const bool packed = batch::packs(program, options.lanes);
+    const bool packed = batch::packs(program, batch::lanesFor(options));
     auto lowered = batch::lower(program, packed);
     if (!lowered) return lowered.error();
     return std::shared_ptr<const BatchProgram>(

@@ -26,14 +26,15 @@ SharedState::SharedState(std::shared_ptr<const BatchProgram> p)
       imageScratch(size_t{kImageScratchRows} * kMaxLanes) {}
 
 RunState::RunState(SharedState& shared, const Code& code)
-    : code_(&code),
-      rows_(size_t{code.rows} * code.lanes),
+    : compiled_(&shared.compiled),
+      code_(&code),
+      rows_(size_t{code.rows} * code.rowLanes),
       local_(size_t{shared.compiled.source().localWords} * code.lanes),
       localWords_(size_t{shared.compiled.source().localWords} * code.lanes),
       masks_(code.masks) {
     frame.rows = reinterpret_cast<std::byte*>(rows_.get());
     frame.scalars = shared.scalars.data();
-    frame.rowBytes = code.lanes * static_cast<uint32_t>(sizeof(uint32_t));
+    frame.rowBytes = code.rowLanes * static_cast<uint32_t>(sizeof(uint32_t));
     frame.masks = masks_.data();
     frame.bindings = &shared.bindings;
     frame.program = &shared.compiled.source();
@@ -51,14 +52,14 @@ void RunState::begin(uint32_t lanes, const LaneMask& exec, const LaneMask& live)
     frame.exec = exec;
     frame.live = live;
     frame.masks[kCurrentMask] = exec;
-    frame.resume = exec.empty() ? nullptr : code_->insts.data();
+    frame.resume = exec.empty() ? nullptr : CompiledProgram::beginning(frame, *code_);
     if (localWords_ != 0) std::fill_n(frame.local, localWords_, 0u);
 }
 
 bool RunState::run() {
     const Inst* at = frame.resume;
     frame.resume = nullptr;
-    execute(frame, at);
+    compiled_->execute(frame, at);
     if (frame.lost) abandon();
     return !frame.lost;
 }
@@ -74,7 +75,7 @@ void RunState::runStraight() {
     const LaneMask all = LaneMask::first(kLaneGroup);
     frame.lanes = kLaneGroup;
     frame.exec = frame.live = frame.masks[kCurrentMask] = all;
-    execute(frame, code_->insts.data());
+    compiled_->execute(frame, CompiledProgram::beginning(frame, *code_));
 }
 
 }  // namespace vernier::batch

@@ -58,6 +58,7 @@ class RunState {
     Frame frame;
 
   private:
+    const CompiledProgram* compiled_;
     const Code* code_;
     Words rows_, local_;
     size_t localWords_;

@@ -53,6 +53,57 @@ bool isWideOp(Op op) {
     return factsOf(op).family == Family::wide;
 }
 
+bool isMovableOp(Op op) {
+    if (factsOf(op).family != Family::other) return true;
+    switch (op) {
+        case Op::bufferSize:
+        case Op::inputIndexed:
+        case Op::loadBuffer:
+        case Op::loadLocal:
+        case Op::loadLocalScalar:
+            return true;
+        default: {
+            const std::optional<StripShape> shape = stripShape(op);
+            return shape && shape->result;
+        }
+    }
+}
+
+std::optional<StripShape> stripShape(Op op) {
+    if (isVectorOp(op)) return StripShape{1, static_cast<uint8_t>(operandCount(op) - 1), true};
+    switch (op) {
+        case Op::dot2:
+        case Op::dot3:
+        case Op::dot4:
+        case Op::dot2Scalar:
+        case Op::dot3Scalar:
+        case Op::dot4Scalar:
+            return StripShape{1, 0, true};
+        case Op::ddxFine:
+        case Op::ddyFine:
+        case Op::ddxCoarse:
+        case Op::ddyCoarse:
+        case Op::copy:
+        case Op::broadcast:
+            return StripShape{1, 1, true};
+        case Op::copyMasked:
+        case Op::broadcastMasked:
+            return StripShape{1, 1, false};
+        case Op::split:
+        case Op::choose:
+            return StripShape{0, 1, false};
+        case Op::enter:
+        case Op::leave:
+        case Op::splitScalar:
+        case Op::follow:
+        case Op::skipEmpty:
+        case Op::discard:
+            return StripShape{0, 0, false};
+        default:
+            return std::nullopt;
+    }
+}
+
 std::optional<Op> elementOp(const ir::Program& program, const ir::Inst& inst) {
     const auto operands = program.operandsOf(inst);
     const auto operandType = operands.empty() ? ir::Type::none : program.valueTypes[operands[0]];

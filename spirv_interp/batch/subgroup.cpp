@@ -223,16 +223,4 @@ const Inst* subgroupReduce64(Frame& frame, const Inst* inst) {
     return inst + 1;
 }
 
-void addSubgroups(HandlerTable& table) {
-    const auto add = [&](Op op, Handler handler) { table[static_cast<size_t>(op)][0] = handler; };
-    add(Op::subgroupInvocation, subgroupInvocation);
-    add(Op::subgroupActive, subgroupActive);
-    add(Op::subgroupBallot, subgroupBallot);
-    add(Op::subgroupShuffle, subgroupShuffle);
-    add(Op::subgroupBroadcast, subgroupBroadcast);
-    add(Op::quadShuffle, quadShuffle);
-    add(Op::subgroupReduce, subgroupReduce);
-    add(Op::subgroupReduce64, subgroupReduce64);
-}
-
 }  // namespace vernier::batch

@@ -290,8 +290,8 @@ U boolTo64(uint32_t a) {
 }  // namespace wide
 }  // namespace
 
-void addWide(HandlerTable& table) {
-#define VERNIER_BATCH_WIDE(name, operands) addLanes<wide::name>(table, Op::name);
+void addWide(HandlerTables& tables) {
+#define VERNIER_BATCH_WIDE(name, operands) addLanes<wide::name>(tables, Op::name);
 #include "spirv_interp/batch/ops.def"
 }
 
@@ -305,8 +305,8 @@ AddHandlers selectWide(Isa isa) {
     VERNIER_SELECT_ISA(isa, addWide)
 }
 }  // namespace
-void addWide(Isa isa, HandlerTable& table) {
-    selectWide(isa)(table);
+void addWide(Isa isa, HandlerTables& tables) {
+    selectWide(isa)(tables);
 }
 }  // namespace vernier::batch
 #endif

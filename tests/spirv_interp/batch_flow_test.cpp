@@ -60,7 +60,7 @@ TEST(BatchFlow, RandomStructuredPrograms) {
         for (const ir::Block& block : program.blocks) loops += block.loopHeader ? 1 : 0;
         std::mt19937 random(static_cast<uint32_t>(seed));
         test::RunSetup setup;
-        setup.capacity = 16u << random() % 4;
+        setup.capacity = 16u << random() % 3;
         setup.lanes = 4 * (1 + random() % (setup.capacity / 4));
         std::vector<std::vector<uint32_t>> inputs(program.inputs.size(), std::vector<uint32_t>(setup.lanes));
         for (auto& words : inputs) {

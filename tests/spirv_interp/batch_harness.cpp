@@ -68,14 +68,15 @@ std::vector<float> evaluate(ir::Op op, const std::vector<std::vector<float>>& op
     const auto compiled = compileOrDie(program, {isa, tier, 64});
     BatchContext context(compiled);
     context.beginDraw({});
-    const std::vector<uint32_t> mask(64, ~0u);
+    const uint32_t lanes = compiled->lanes();
+    const std::vector<uint32_t> mask(lanes, ~0u);
     std::vector<float> result;
-    for (size_t first = 0; first < operands[0].size(); first += 64) {
-        const size_t count = std::min<size_t>(64, operands[0].size() - first);
+    for (size_t first = 0; first < operands[0].size(); first += lanes) {
+        const size_t count = std::min<size_t>(lanes, operands[0].size() - first);
         for (uint32_t k = 0; k < operands.size(); ++k) {
             std::copy_n(operands[k].begin() + static_cast<ptrdiff_t>(first), count, context.input(k));
         }
-        EXPECT_TRUE(context.run(64, mask.data(), mask.data()));
+        EXPECT_TRUE(context.run(lanes, mask.data(), mask.data()));
         result.insert(result.end(), context.output(0), context.output(0) + count);
     }
     return result;
@@ -87,22 +88,30 @@ RunResult runBatch(const ir::Program& program, const std::vector<std::vector<uin
     BatchContext context(compiled);
     context.setInterpolator(setup.interpolator);
     context.beginDraw(setup.bindings);
-    for (uint32_t slot = 0; slot < program.inputs.size(); ++slot) {
-        float* row = context.input(slot);
-        if (row != nullptr) std::memcpy(row, inputs[slot].data(), setup.lanes * sizeof(uint32_t));
-    }
-    const std::vector<uint32_t> all(compiled->lanes(), ~0u);
-    std::vector<uint32_t> exec = setup.exec.empty() ? all : setup.exec, store = setup.store.empty() ? all : setup.store;
-    exec.resize(compiled->lanes());
-    store.resize(compiled->lanes());
     RunResult result;
-    result.ok = context.run(setup.lanes, exec.data(), store.data());
-    for (uint32_t slot = 0; slot < program.outputs.size(); ++slot) {
-        const auto* row = reinterpret_cast<const uint32_t*>(context.output(slot));
-        result.outputs.emplace_back(setup.lanes);
-        if (row != nullptr) std::memcpy(result.outputs.back().data(), row, setup.lanes * sizeof(uint32_t));
+    result.outputs.assign(program.outputs.size(), std::vector<uint32_t>(setup.lanes));
+    const auto part = [](const std::vector<uint32_t>& mask, uint32_t first, uint32_t lanes) {
+        std::vector<uint32_t> words(lanes, mask.empty() ? ~0u : 0u);
+        if (first < mask.size())
+            std::copy_n(mask.begin() + first, std::min<size_t>(lanes, mask.size() - first), words.begin());
+        return words;
+    };
+    // A batch has as many lanes as the instruction set allows: what is more goes through the next.
+    for (uint32_t first = 0; first < setup.lanes; first += compiled->lanes()) {
+        const uint32_t lanes = std::min(compiled->lanes(), setup.lanes - first);
+        for (uint32_t slot = 0; slot < program.inputs.size(); ++slot) {
+            float* row = context.input(slot);
+            if (row != nullptr) std::memcpy(row, inputs[slot].data() + first, lanes * sizeof(uint32_t));
+        }
+        const auto exec = part(setup.exec, first, compiled->lanes()),
+                   store = part(setup.store, first, compiled->lanes());
+        result.ok = context.run(lanes, exec.data(), store.data()) && result.ok;
+        for (uint32_t slot = 0; slot < program.outputs.size(); ++slot) {
+            const auto* row = reinterpret_cast<const uint32_t*>(context.output(slot));
+            if (row != nullptr) std::memcpy(result.outputs[slot].data() + first, row, lanes * sizeof(uint32_t));
+        }
+        result.live.insert(result.live.end(), context.liveMask(), context.liveMask() + lanes);
     }
-    result.live.assign(context.liveMask(), context.liveMask() + setup.lanes);
     return result;
 }
 

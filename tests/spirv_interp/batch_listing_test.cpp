@@ -46,8 +46,8 @@ draw:
     4  keepScalar 1, r0
     5  end
 batch:
-    0  dot2Scalar r0, r0, s0, r1, s1
-    2  fclamp r0, r0, 0x00000000, 0x3f800000
+    0  dot2Scalar acc, r0, s0, r1, s1
+    2  fclamp r0, acc, 0x00000000, 0x3f800000
     3  end
 )");
 }
@@ -80,7 +80,7 @@ b5 <- b3:
   storeOutput #0 %8
   ret
 )"),
-              R"(registers 4
+              R"(registers 3
 input 0 r0
 output 0 r2
 draw:
@@ -96,8 +96,8 @@ batch:
     4  broadcastMasked r1, 0x00000000, m0
     5  leave m4
     6  enter m4, @16
-    7  slt r3, r1, r0
-    8  split r3, m5, m7
+    7  slt acc, r1, r0
+    8  split acc, m5, m7
     9  skipEmpty m7, @12
    10  copyMasked r2, r1, m7
    11  follow m6, m7
@@ -131,7 +131,79 @@ b3 <- b1:
   storeOutput #0 %5
   ret
 )");
-    EXPECT_NE(text.find("copy r3, r0\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("copy acc, r0\n"), std::string::npos) << text;
+}
+
+TEST(BatchListing, ResultsGoThroughTheAccumulator) {
+    // A chain needs no rows; what has another reader later is stored too; a commutative operation takes the accumulator
+    // first.
+    EXPECT_EQ(listing(R"(program fragment "main"
+input 0 f32 user 0.0 smooth center
+input 1 f32 user 0.1 smooth center
+output 0 f32 user 0.0
+output 1 f32 user 0.1
+b0:
+  %0 f32 = input #0
+  %1 f32 = input #1
+  %2 f32 = fdiv %0 %1
+  %3 f32 = fsqrt %0
+  %4 f32 = fsub %3 %2
+  %5 f32 = fmul %1 %4
+  %6 f32 = fmul %5 %5
+  %7 f32 = fmax %6 %4
+  storeOutput #0 %7
+  storeOutput #1 %4
+  ret
+)"),
+              R"(registers 3
+input 0 r0
+input 1 r1
+output 0 r1
+output 1 r0
+batch:
+    0  fsqrt r2, r0
+    1  fdiv acc, r0, r1
+    2  fsub r0, r2, acc
+    3  fmul acc, acc, r1
+    4  fmul acc, acc, acc
+    5  fmax r1, acc, r0
+    6  end
+)");
+}
+
+TEST(BatchListing, IndependentChainsAreComputedOneAfterTheOther) {
+    EXPECT_EQ(listing(R"(program fragment "main"
+input 0 f32 user 0.0 smooth center
+input 1 f32 user 0.1 smooth center
+output 0 f32 user 0.0
+output 1 f32 user 0.1
+b0:
+  %0 f32 = input #0
+  %1 f32 = input #1
+  %2 f32 = fsqrt %0
+  %3 f32 = fsqrt %1
+  %4 f32 = ffloor %2
+  %5 f32 = ffloor %3
+  %6 f32 = fneg %4
+  %7 f32 = fneg %5
+  storeOutput #0 %6
+  storeOutput #1 %7
+  ret
+)"),
+              R"(registers 2
+input 0 r0
+input 1 r1
+output 0 r0
+output 1 r1
+batch:
+    0  fsqrt acc, r0
+    1  ffloor acc, acc
+    2  fneg r0, acc
+    3  fsqrt acc, r1
+    4  ffloor acc, acc
+    5  fneg r1, acc
+    6  end
+)");
 }
 
 }  // namespace

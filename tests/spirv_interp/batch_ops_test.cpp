@@ -63,9 +63,18 @@ struct OpCase {
     std::vector<Type> operands;
 };
 
+/// Where the operation stands: alone between rows, or in a chain of operations, where operands and results go through
+/// the accumulator.
+struct Chain {
+    static constexpr uint32_t kNoOperand = ~0u;
+    uint32_t operand = kNoOperand;  // computed right before the operation
+    bool same = false;              // operands of its type are the same value
+    bool result = false;            // used by another operation right behind
+};
+
 class OpRun {
   public:
-    OpRun(const OpCase& c, uint32_t constants, std::mt19937_64& random) : case_(c) {
+    OpRun(const OpCase& c, uint32_t constants, const Chain& chain, std::mt19937_64& random) : case_(c) {
         ir::Builder builder(program_);
         program_.stage = ir::Stage::fragment;
         builder.setBlock(builder.newBlock());
@@ -75,8 +84,19 @@ class OpRun {
             std::vector<uint64_t> bits(kLanes);
             for (uint64_t& b : bits) b = interesting(type, random);
             if (constants >> k & 1) bits.assign(kLanes, bits[0]);
-            operands.push_back(constants >> k & 1 ? builder.constant(type, bits[0]) : input(builder, type, bits));
+            const bool chained = k == chain.operand && (constants >> k & 1) == 0 && !ir::isWide(type);
+            operands.push_back(constants >> k & 1 ? builder.constant(type, bits[0])
+                                                  : input(builder, chained ? inverted(type) : type, bits, chained));
             values_.push_back(std::move(bits));
+        }
+        if (const uint32_t k = chain.operand; k < operands.size() && (constants >> k & 1) == 0) {
+            const Type type = c.operands[k];
+            if (!ir::isWide(type)) operands[k] = invert(builder, operands[k], inverted(type), type);
+            for (size_t j = 0; j < operands.size(); ++j) {
+                if (!chain.same || c.operands[j] != type || (constants >> j & 1) != 0) continue;
+                operands[j] = operands[k];
+                values_[j] = values_[k];
+            }
         }
         uint64_t imm = 0;
         if (ir::immKind(c.op) == ir::ImmKind::type) imm = static_cast<uint64_t>(c.operands[0]);
@@ -84,6 +104,9 @@ class OpRun {
         if (ir::isWide(c.result)) {
             output(builder, builder.append(Op::lowWord, Type::i32, {result}), Type::i32);
             output(builder, builder.append(Op::highWord, Type::i32, {result}), Type::i32);
+        } else if (chain.result) {
+            invertedResult_ = true;
+            output(builder, invert(builder, result, c.result, inverted(c.result)), inverted(c.result));
         } else {
             output(builder, result, c.result);
         }
@@ -105,6 +128,7 @@ class OpRun {
             const uint64_t expected = test::evaluateOp(case_.op, case_.result, case_.operands[typed], bits, 0);
             uint64_t actual = run.outputs[0][lane];
             if (ir::isWide(case_.result)) actual |= uint64_t{run.outputs[1][lane]} << 32;
+            if (invertedResult_) actual = ~actual & 0xFFFFFFFFu;
             if (isNan(case_.result, expected) && isNan(case_.result, actual)) continue;
             ASSERT_EQ(actual, expected) << ir::print(program_) << isaName(isa) << " lane " << lane << " operands "
                                         << std::hex << bits[0] << " " << (bits.size() > 1 ? bits[1] : 0) << " "
@@ -121,8 +145,17 @@ class OpRun {
         inputs_.push_back(std::move(words));
         return builder.append(Op::input, type, {}, program_.inputs.size() - 1);
     }
-    ir::ValueId input(ir::Builder& builder, Type type, const std::vector<uint64_t>& bits) {
+    /// A value and its complement, by an operation that keeps the accumulator.
+    static Type inverted(Type type) { return type == Type::b1 ? Type::b1 : Type::i32; }
+    static ir::ValueId invert(ir::Builder& builder, ir::ValueId value, Type from, Type to) {
+        if (from == Type::b1) return builder.append(Op::bnot, to, {value});
+        if (from == Type::f32) value = builder.append(Op::bitcast, Type::i32, {value});
+        value = builder.append(Op::inot, Type::i32, {value});
+        return to == Type::f32 ? builder.append(Op::bitcast, to, {value}) : value;
+    }
+    ir::ValueId input(ir::Builder& builder, Type type, const std::vector<uint64_t>& bits, bool complement) {
         std::vector<uint32_t> low(bits.begin(), bits.end()), high;
+        for (uint32_t& word : low) word = complement ? ~word : word;
         if (!ir::isWide(type)) return row(builder, type, low);
         for (const uint64_t b : bits) high.push_back(static_cast<uint32_t>(b >> 32));
         const ir::ValueId words[] = {row(builder, Type::i32, low), row(builder, Type::i32, high)};
@@ -140,6 +173,7 @@ class OpRun {
     ir::Program program_;
     std::vector<std::vector<uint32_t>> inputs_;
     std::vector<std::vector<uint64_t>> values_;
+    bool invertedResult_ = false;
 };
 
 /// Typings of an operation; the verifier tells which of them there are.
@@ -186,13 +220,17 @@ TEST_P(EveryOp, MatchesTheEvaluator) {
     uint32_t valid = 0;
     for (const OpCase& c : cases) {
         for (uint32_t constants = 0; constants < 1u << c.operands.size(); ++constants) {
-            for (int repeat = 0; repeat < 4; ++repeat) {
-                const OpRun run(c, constants, random);
+            for (int repeat = 0; repeat < 8; ++repeat) {
+                Chain chain;
+                if (repeat % 4 != 3) chain.operand = static_cast<uint32_t>(repeat) % 4;
+                chain.same = repeat == 4;
+                chain.result = repeat >= 3;
+                const OpRun run(c, constants, chain, random);
                 if (!run.isValid()) continue;
                 ++valid;
                 for (const Isa isa : test::isas()) {
                     run.check(isa, 64, 64);
-                    run.check(isa, repeat % 2 == 0 ? 128 : 16, 4 + 4 * static_cast<uint32_t>(repeat));
+                    run.check(isa, repeat % 2 == 0 ? 32 : 16, 4 + 4 * static_cast<uint32_t>(repeat));
                     if (HasFatalFailure()) return;
                 }
             }

@@ -81,7 +81,7 @@ BufferContents dispatchEverywhere(const ir::Program& program, const WorkGroupCon
         dispatch(program, compileCompute(program, Isa::sse4, 0), grid, buffers, 0, pushConstants);
     EXPECT_TRUE(first.ok);
     for (const Isa isa : isas()) {
-        for (const uint32_t lanes : {0u, 16u, 32u, 64u, 128u}) {
+        for (const uint32_t lanes : {0u, 16u, 32u, 64u}) {
             if (lanes != 0 && lanes < leastLanes) continue;
             const auto compiled = compileCompute(program, isa, lanes);
             for (const uint32_t chunk : {0u, 1u, 3u}) {

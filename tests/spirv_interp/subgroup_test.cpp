@@ -461,7 +461,7 @@ void main() {
     std::vector<uint32_t> v(64);
     for (uint32_t i = 0; i < 64; ++i) v[i] = i * i + 1;
     for (const Isa isa : isas()) {
-        for (const uint32_t capacity : {32u, 64u, 128u}) {
+        for (const uint32_t capacity : {32u, 64u}) {
             RunSetup setup;
             setup.isa = isa;
             setup.capacity = capacity;

@@ -1,12 +1,11 @@
-// Elementwise float, integer, comparison and conversion operations on 32-bit lanes.
+// Elementwise integer operations, comparisons and conversions on 32-bit lanes.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "spirv_interp/batch/arithmetic.cpp"
+#define HWY_TARGET_INCLUDE "spirv_interp/batch/integer_ops.cpp"
 #include "base/simd_targets.h"
 
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "base/simd-inl.h"
 #include "spirv_interp/batch/element-inl.h"
 #include "spirv_interp/batch/handlers.h"
 
@@ -21,50 +20,6 @@ HWY_INLINE VF number(float value) {
 HWY_INLINE VI number(int32_t value) {
     return hn::Set(kI32, value);
 }
-
-/// The smaller operand; a NaN gives way to the other operand (NMin). x86 MINPS returns its second operand
-/// when either is NaN or both are zero, on every instruction set.
-HWY_INLINE VF smaller(VF a, VF b) {
-    return hn::IfThenElse(hn::IsNaN(b), a, hn::Min(a, b));
-}
-HWY_INLINE VF larger(VF a, VF b) {
-    return hn::IfThenElse(hn::IsNaN(b), a, hn::Max(a, b));
-}
-HWY_INLINE VF clamped(VF x, VF low, VF high) {
-    return smaller(larger(x, low), high);
-}
-
-VERNIER_ELEMENT(fadd, float, float, (V a, V b), return hn::Add(a, b);)
-VERNIER_ELEMENT(fsub, float, float, (V a, V b), return hn::Sub(a, b);)
-VERNIER_ELEMENT(fmul, float, float, (V a, V b), return hn::Mul(a, b);)
-VERNIER_ELEMENT(fdiv, float, float, (V a, V b), return hn::Div(a, b);)
-VERNIER_ELEMENT(frem, float, float, (V a, V b), return hn::Sub(a, hn::Mul(b, hn::Trunc(hn::Div(a, b))));)
-VERNIER_ELEMENT(fmod, float, float, (V a, V b), return hn::Sub(a, hn::Mul(b, hn::Floor(hn::Div(a, b))));)
-VERNIER_ELEMENT(fneg, float, float, (V a), return hn::Xor(a, number(-0.0f));)
-VERNIER_ELEMENT(ffma, float, float, (V a, V b, V c), return ::vernier::HWY_NAMESPACE::fusedMulAdd(kF32, a, b, c);)
-VERNIER_ELEMENT(fabs, float, float, (V a), return hn::Abs(a);)
-VERNIER_ELEMENT(fsign, float, float, (V a), const V below = hn::IfThenElseZero(hn::Lt(a, number(0.0f)), number(-1.0f));
-                return hn::IfThenElse(hn::Gt(a, number(0.0f)), number(1.0f), below);)
-VERNIER_ELEMENT(ffloor, float, float, (V a), return hn::Floor(a);)
-VERNIER_ELEMENT(fceil, float, float, (V a), return hn::Ceil(a);)
-VERNIER_ELEMENT(ftrunc, float, float, (V a), return hn::Trunc(a);)
-VERNIER_ELEMENT(froundEven, float, float, (V a), return hn::Round(a);)
-// x - floor(x) rounds up to 1 just below an integer; the largest float below 1 keeps the result in [0, 1).
-VERNIER_ELEMENT(ffract, float, float, (V a), return hn::Min(number(0x1.fffffep-1f), hn::Sub(a, hn::Floor(a)));)
-VERNIER_ELEMENT(fmin, float, float, (V a, V b), return smaller(a, b);)
-VERNIER_ELEMENT(fmax, float, float, (V a, V b), return larger(a, b);)
-VERNIER_ELEMENT(fclamp, float, float, (V x, V low, V high), return clamped(x, low, high);)
-VERNIER_ELEMENT(fmix, float, float, (V x, V y, V a),
-                return hn::Add(hn::Mul(x, hn::Sub(number(1.0f), a)), hn::Mul(y, a));)
-VERNIER_ELEMENT(fstep, float, float, (V edge, V x), return hn::IfThenZeroElse(hn::Lt(x, edge), number(1.0f));)
-VERNIER_ELEMENT(fsmoothstep, float, float, (V edge0, V edge1, V x),
-                const V t = clamped(hn::Div(hn::Sub(x, edge0), hn::Sub(edge1, edge0)), number(0.0f), number(1.0f));
-                return hn::Mul(hn::Mul(t, t), hn::Sub(number(3.0f), hn::Mul(number(2.0f), t)));)
-VERNIER_ELEMENT(fsqrt, float, float, (V a), return hn::Sqrt(a);)
-
-VERNIER_ELEMENT(multiplyAdd, float, float, (V a, V b, V c), return hn::Add(hn::Mul(a, b), c);)
-VERNIER_ELEMENT(multiplySubtract, float, float, (V a, V b, V c), return hn::Sub(hn::Mul(a, b), c);)
-VERNIER_ELEMENT(subtractMultiply, float, float, (V a, V b, V c), return hn::Sub(c, hn::Mul(a, b));)
 
 VERNIER_ELEMENT(iadd, int32_t, int32_t, (V a, V b), return hn::Add(a, b);)
 VERNIER_ELEMENT(isub, int32_t, int32_t, (V a, V b), return hn::Sub(a, b);)
@@ -159,34 +114,11 @@ VERNIER_ELEMENT(ftohZero, float, float, (V a), const HalfParts parts(a);
 VERNIER_ELEMENT(boolToInt, uint32_t, uint32_t, (V a), return hn::ShiftRight<31>(a);)
 
 }  // namespace element
-
-/// Sums of products; the second factors are rows or scalars.
-template <size_t kTerms, bool kScalar>
-const Inst* runDot(Frame& frame, const Inst* inst) {
-    const auto row = [&](size_t k) HWY_ATTR { return Source<float, false>(frame, (*inst)[1 + 2 * k]); };
-    const auto factor = [&](size_t k) HWY_ATTR { return Source<float, kScalar>(frame, (*inst)[2 + 2 * k]); };
-    const auto a0 = row(0), a1 = row(1), a2 = row(kTerms > 2 ? 2 : 0), a3 = row(kTerms > 3 ? 3 : 0);
-    const auto b0 = factor(0), b1 = factor(1), b2 = factor(kTerms > 2 ? 2 : 0), b3 = factor(kTerms > 3 ? 3 : 0);
-    fillRow(frame, inst->operand[0], [&](size_t lane) HWY_ATTR {
-        VF sum = hn::Add(hn::Mul(a0.at(lane), b0.at(lane)), hn::Mul(a1.at(lane), b1.at(lane)));
-        if constexpr (kTerms > 2) sum = hn::Add(sum, hn::Mul(a2.at(lane), b2.at(lane)));
-        if constexpr (kTerms > 3) sum = hn::Add(sum, hn::Mul(a3.at(lane), b3.at(lane)));
-        return sum;
-    });
-    return inst + instsFor(1 + 2 * kTerms);
-}
-
 }  // namespace
 
-void addArithmetic(HandlerTable& table) {
-#define VERNIER_BATCH_VECTOR(name, operands) addElement<element::name, operands>(table, Op::name);
+void addIntegerOps(HandlerTables& tables) {
+#define VERNIER_BATCH_INTEGER(name, operands) addElement<element::name, operands, formSet(Op::name)>(tables, Op::name);
 #include "spirv_interp/batch/ops.def"
-    table[static_cast<size_t>(Op::dot2)][0] = runDot<2, false>;
-    table[static_cast<size_t>(Op::dot3)][0] = runDot<3, false>;
-    table[static_cast<size_t>(Op::dot4)][0] = runDot<4, false>;
-    table[static_cast<size_t>(Op::dot2Scalar)][0] = runDot<2, true>;
-    table[static_cast<size_t>(Op::dot3Scalar)][0] = runDot<3, true>;
-    table[static_cast<size_t>(Op::dot4Scalar)][0] = runDot<4, true>;
 }
 
 }  // namespace vernier::batch::HWY_NAMESPACE
@@ -195,12 +127,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace vernier::batch {
 namespace {
-AddHandlers selectArithmetic(Isa isa) {
-    VERNIER_SELECT_ISA(isa, addArithmetic)
+AddHandlers selectIntegerOps(Isa isa) {
+    VERNIER_SELECT_ISA(isa, addIntegerOps)
 }
 }  // namespace
-void addArithmetic(Isa isa, HandlerTable& table) {
-    selectArithmetic(isa)(table);
+void addIntegerOps(Isa isa, HandlerTables& tables) {
+    selectIntegerOps(isa)(tables);
 }
 }  // namespace vernier::batch
 #endif
