@@ -23,7 +23,7 @@ class Marker {
             if (isTarget[k]) held_.reset();
             MachineInst& inst = code_.insts[k];
             if (inst.dead) continue;
-            const std::optional<StripShape> shape = stripShape(inst.op);
+            const std::optional<StripShape> shape = stripShape(inst);
             if (held_ && shape) readHeld(inst, *shape);
             if (!shape) {
                 held_.reset();
@@ -95,7 +95,7 @@ class Marker {
     }
 
     void dropStore(MachineInst& inst) {
-        const std::optional<StripShape> shape = stripShape(inst.op);
+        const std::optional<StripShape> shape = stripShape(inst);
         if (inst.dead || !shape || !shape->result) return;
         const RegisterFacts& facts = facts_[inst.operands[0].id];
         if (facts.shared || facts.writes != 1 || facts.marked != facts.reads) return;
@@ -114,7 +114,7 @@ class Marker {
 
 Form formOf(const MachineInst& inst) {
     Form form;
-    const std::optional<StripShape> shape = stripShape(inst.op);
+    const std::optional<StripShape> shape = stripShape(inst);
     if (!shape) return form;
     form.stored = !shape->result || inst.operands[0].kind != Kind::accumulator;
     for (size_t k = 0; k < shape->sources; ++k) {

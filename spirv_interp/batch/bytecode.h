@@ -94,6 +94,8 @@ constexpr FormSet formSet(Op op) {
         case Op::frem:
         case Op::fmod:
         case Op::fsmoothstep:
+        case Op::ftoh:
+        case Op::ftohZero:
             return FormSet::rare;
         default:
             return FormSet::general;

@@ -122,8 +122,18 @@ struct LaneRunner<kFunction> {
         call(frame, inst, std::index_sequence_for<A...>());
         return inst + instsFor(sizeof...(A) + 1);
     }
+    /// With scalars for operands and result; 4-byte types only.
+    static const Inst* runScalar(Frame& frame, const Inst* inst) {
+        callScalar(frame.scalars, inst, std::index_sequence_for<A...>());
+        return inst + instsFor(sizeof...(A) + 1);
+    }
+    static constexpr bool kScalar = ((sizeof(A) == 4) && ...) && (sizeof(R) == 4);
 
   private:
+    template <size_t... kIndex>
+    static HWY_INLINE void callScalar(uint32_t* scalars, const Inst* inst, std::index_sequence<kIndex...>) {
+        scalars[(*inst)[0]] = std::bit_cast<uint32_t>(kFunction(std::bit_cast<A>(scalars[(*inst)[kIndex + 1]])...));
+    }
     template <size_t... kIndex>
     static HWY_INLINE void call(Frame& frame, const Inst* inst, std::index_sequence<kIndex...>) {
         for (uint32_t lane = 0; lane < frame.lanes; ++lane) {
@@ -135,6 +145,7 @@ struct LaneRunner<kFunction> {
 template <auto kFunction>
 void addLanes(HandlerTables& tables, Op op) {
     addPlain<LaneRunner<kFunction>::run>(tables, op);
+    if constexpr (LaneRunner<kFunction>::kScalar) addPlain<LaneRunner<kFunction>::runScalar>(tables, op, 1);
 }
 
 }  // namespace vernier::batch::HWY_NAMESPACE

@@ -32,6 +32,11 @@ const Inst* keepScalar(Frame& frame, const Inst* inst) {
     return inst + 1;
 }
 
+HWY_INLINE const Inst* moveScalar(Frame& frame, const Inst* inst) {
+    frame.scalars[inst->operand[0]] = frame.scalars[inst->operand[1]];
+    return inst + 1;
+}
+
 const Inst* helperLanes(Frame& frame, const Inst* inst) {
     const LaneMask helpers = frame.exec.without(frame.live);
     fillRow(frame, inst->operand[0],
@@ -212,6 +217,7 @@ void addFlow(HandlerTables& tables) {
     tables.executeNarrow = NarrowStrip::execute;
     tables.fullLanes = kStripVectors * kVectorLanes;
     addPlain<keepScalar>(tables, Op::keepScalar);
+    addForward<moveScalar>(tables, Op::moveScalar);
     addPlain<helperLanes>(tables, Op::helperLanes);
     addForward<enter>(tables, Op::enter);
     addPlain<repeat>(tables, Op::repeat);

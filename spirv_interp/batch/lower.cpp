@@ -96,24 +96,25 @@ void Lowerer::emitVector(Op op, const Operand& to, std::vector<Operand> from) {
 void Lowerer::lowerStraight() {
     std::vector<bool> wanted(program_.valueTypes.size());
     for (ir::ValueId v = 0; v < wanted.size(); ++v) {
-        wanted[v] = scalarIndex_[v] != kNone && facts_.rates[v] == rate_ && !isScalar(v);
+        wanted[v] = scalarIndex_[v] != kNone && facts_.rates[v] == rate_ && !isGiven(v);
     }
     std::vector<bool> needed = wanted;
     for (size_t b = program_.blocks.size(); b-- > 0;) {
         const auto& insts = program_.blocks[b].insts;
         for (size_t k = insts.size(); k-- > 0;) {
             const ir::Inst& inst = insts[k];
-            if (inst.result == ir::kNoValue || !needed[inst.result] || isScalar(inst.result)) continue;
+            if (inst.result == ir::kNoValue || !needed[inst.result] || isGiven(inst.result)) continue;
             for (const ir::ValueId value : program_.operandsOf(inst)) needed[value] = true;
         }
     }
     for (const ir::Block& block : program_.blocks) {
         for (const ir::Inst& inst : block.insts) {
-            if (inst.result == ir::kNoValue || !needed[inst.result]) continue;
+            if (inst.result == ir::kNoValue || !needed[inst.result] || isGiven(inst.result)) continue;
             lowerInst(inst);
-            if (!wanted[inst.result]) continue;
+            if (takesScalars(program_, inst) || (isWide(inst.result) && !wanted[inst.result])) continue;
             for (uint8_t word = 0; word <= (isWide(inst.result) ? 1 : 0); ++word) {
-                emit(Op::keepScalar, {Operand::number(scalarIndex_[inst.result] + word), wordOf(inst.result, word)});
+                emit(Op::keepScalar,
+                     {Operand::number(scalarOf(inst.result) + word), Operand::read(registerOf(inst.result), word)});
             }
         }
     }

@@ -24,13 +24,13 @@ Result<LoweredProgram> lower(const ir::Program& program, bool packed);
 /// Moves that happen at once, put in an order in which none destroys the source of another. `fresh` makes a
 /// register for a cycle.
 struct Move {
-    Operand to;    // written row
+    Operand to;    // written row or scalar
     Operand from;  // row or scalar
 };
 template <class Emit, class Fresh>
 void sequentialise(std::vector<Move> moves, Emit&& emit, Fresh&& fresh) {
     const auto same = [](const Operand& a, const Operand& b) {
-        return a.isRow() && b.isRow() && a.id == b.id && a.word == b.word;
+        return a.kind == b.kind && a.id == b.id && a.word == b.word;
     };
     std::erase_if(moves, [&](const Move& m) { return same(m.to, m.from); });
     while (!moves.empty()) {

@@ -79,6 +79,10 @@ std::vector<Move> Lowerer::movesOf(ir::BlockId from, size_t successor) {
     for (const ir::Inst& phi : program_.blocks[to].insts) {
         if (phi.op != ir::Op::phi) break;
         const ir::ValueId source = program_.operandsOf(phi)[edge];
+        if (isScalar(phi.result)) {
+            moves.push_back({Operand::writeScalar(scalarOf(phi.result)), operandOf(source)});
+            continue;
+        }
         const uint32_t reg = registers_[phi.result];
         for (uint8_t word = 0; word <= (ir::isWide(phi.type) ? 1 : 0); ++word) {
             moves.push_back({Operand::write(reg, word), wordOf(source, word)});
@@ -91,13 +95,19 @@ void Lowerer::emitMoves(std::vector<Move> moves, uint32_t mask) {
     sequentialise(
         std::move(moves),
         [&](const Move& move) {
-            if (full_[block_] && mask == kCurrentMask) return emitMove(move.to, move.from);
+            const bool unmasked = move.to.isScalar() || (full_[block_] && mask == kCurrentMask);
+            if (unmasked) return emitMove(move.to, move.from);
             emit(move.from.isScalar() ? Op::broadcastMasked : Op::copyMasked,
                  {move.to, move.from, Operand::mask(mask)});
         },
-        [&](const Operand& row) {
+        [&](const Operand& saved) {
+            if (saved.isScalar()) {
+                const uint32_t temporary = scalars_.reserve(false);
+                emit(Op::moveScalar, {Operand::writeScalar(temporary), Operand::scalar(saved.id)});
+                return Operand::scalar(temporary);
+            }
             const uint32_t temporary = newRegister(false);
-            emit(Op::copy, {Operand::write(temporary), Operand::read(row.id, row.word)});
+            emit(Op::copy, {Operand::write(temporary), Operand::read(saved.id, saved.word)});
             return Operand::read(temporary);
         });
 }
@@ -171,6 +181,7 @@ void Lowerer::lowerBatch() {
         loop_ = program_.blocks[b].loopHeader ? facts_.cfg.loopParent[b] : loop;
         for (const ir::Inst& inst : program_.blocks[b].insts) {
             if (inst.op != ir::Op::phi) break;
+            if (isScalar(inst.result)) continue;
             const uint32_t reg = registerOf(inst.result);
             if (program_.blocks[b].loopHeader) code_.registers[reg].phiOf = b;
         }

@@ -29,6 +29,31 @@ void Lowerer::lowerElement(const ir::Inst& inst, Op op) {
     emit(op, std::move(from)).inPlace = !isWideOp(op);
 }
 
+/// From scalars to a scalar.
+void Lowerer::lowerScalar(const ir::Inst& inst) {
+    const auto operands = program_.operandsOf(inst);
+    if (inst.op == ir::Op::phi) return;
+    if (inst.op == ir::Op::copy || inst.op == ir::Op::bitcast) {
+        uint32_t& index = scalarIndex_[inst.result];
+        const uint32_t from = scalarOf(operands[0]);
+        if (index == kNone) {
+            index = from;
+        } else {
+            emit(Op::moveScalar, {Operand::writeScalar(index), Operand::scalar(from)});
+        }
+        return;
+    }
+    std::vector<Operand> all{Operand::writeScalar(scalarOf(inst.result))};
+    for (const ir::ValueId value : operands) all.push_back(operandOf(value));
+    if (inst.op == ir::Op::loadBuffer) {
+        all.push_back(Operand::number(ir::resourceOf(inst)));
+        emit(Op::loadBuffer, std::move(all)).form = 4;
+        return;
+    }
+    const Op op = inst.op == ir::Op::select ? Op::select : *elementOp(program_, inst);
+    emit(op, std::move(all)).form = isVectorOp(op) ? 0 : 1;
+}
+
 /// Operations that only move words: copies, halves of wide values, and select and b1 logic on them.
 void Lowerer::lowerWords(const ir::Inst& inst) {
     const auto operands = program_.operandsOf(inst);
@@ -81,7 +106,8 @@ void Lowerer::lowerInst(const ir::Inst& inst) {
     line_ = inst.line;
     const auto operands = program_.operandsOf(inst);
     if (inst.result != ir::kNoValue) {
-        if (isScalar(inst.result)) return;  // constants, and in batch code what the draw-rate code computes
+        if (isGiven(inst.result)) return;
+        if (isScalar(inst.result) && takesScalars(program_, inst)) return lowerScalar(inst);
         if (inst.result < fused_.size() && fused_[inst.result]) return;
     }
     if (lowerFused(inst)) return;

@@ -8,6 +8,7 @@
 
 #include "spirv_interp/batch/lower.h"
 #include "spirv_interp/batch/machine.h"
+#include "spirv_interp/batch/uniform.h"
 #include "spirv_interp/ir/cfg.h"
 #include "spirv_interp/ir/ir.h"
 #include "spirv_interp/ir/ops.h"
@@ -25,6 +26,8 @@ struct Facts {
             if (packed && rate == ir::Rate::workGroup) rate = ir::Rate::invocation;
             scalar.push_back(rate != ir::Rate::invocation);
         }
+        uniform = uniformValues(p, cfg, scalar);
+        for (size_t v = 0; v < uniform.size(); ++v) scalar[v] = scalar[v] || uniform[v];
         for (const ir::Block& block : p.blocks) {
             for (const ir::Inst& inst : block.insts) {
                 if (inst.result != ir::kNoValue) definition[inst.result] = &inst;
@@ -37,11 +40,13 @@ struct Facts {
     ir::Cfg cfg;
     std::vector<ir::Rate> rates;              // by value
     std::vector<bool> scalar;                 // the same for all lanes of a batch
+    std::vector<bool> uniform;                // those of them that the batch's own code computes
     std::vector<const ir::Inst*> definition;  // of the first result
     std::vector<uint32_t> uses;
 };
 
-/// Lowers one piece, that of the values of one rate. What changes less is a scalar there, and the rest is in rows.
+/// Lowers one piece, that of the values of one rate. What changes less is a scalar there; so is what is the same for
+/// all lanes and can be computed from scalars. The rest is in rows.
 class Lowerer {
   public:
     Lowerer(const Facts& facts, LoweredProgram& lowered, std::vector<uint32_t>& scalarIndex, ir::Rate rate,
@@ -67,12 +72,17 @@ class Lowerer {
 
   private:
     // Values.
-    bool isScalar(ir::ValueId value) const {
+    /// Known before the piece runs.
+    bool isGiven(ir::ValueId value) const {
         const ir::Inst* inst = facts_.definition[value];
         if (inst != nullptr && (inst->op == ir::Op::constant || inst->op == ir::Op::undef)) return true;
         // Inputs that do not vary between lanes are put into the scalar file before the piece runs.
         const bool given = inst != nullptr && inst->op == ir::Op::input && facts_.scalar[value];
         return facts_.rates[value] < rate_ || (given && facts_.rates[value] == rate_);
+    }
+    /// In the scalar file from its definition on: in straight-line pieces everything of 32 bits.
+    bool isScalar(ir::ValueId value) const {
+        return isGiven(value) || (rate_ == ir::Rate::invocation ? facts_.uniform[value] : !isWide(value));
     }
     bool isWide(ir::ValueId value) const { return ir::isWide(program_.valueTypes[value]); }
     uint32_t scalarOf(ir::ValueId value);
@@ -87,11 +97,12 @@ class Lowerer {
     // Instructions.
     MachineInst& emit(Op op, std::vector<Operand> operands);
     void emitMove(const Operand& to, const Operand& from) {
-        emit(from.isScalar() ? Op::broadcast : Op::copy, {to, from});
+        emit(to.isScalar() ? Op::moveScalar : from.isScalar() ? Op::broadcast : Op::copy, {to, from});
     }
     void lowerInst(const ir::Inst& inst);
     bool lowerFused(const ir::Inst& inst);
     void lowerElement(const ir::Inst& inst, Op op);
+    void lowerScalar(const ir::Inst& inst);
     void emitVector(Op op, const Operand& to, std::vector<Operand> from);
     void lowerWords(const ir::Inst& inst);
     void lowerImage(const ir::Inst& inst);

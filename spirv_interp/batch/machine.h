@@ -16,12 +16,13 @@ struct Operand {
     enum class Kind : uint8_t { none, row, scalar, accumulator, mask, label, number };
     Kind kind = Kind::none;
     uint8_t word = 0;      // of a wide register: 1 = high
-    bool written = false;  // a row that the operation writes
+    bool written = false;  // a row or scalar that the operation writes
     uint32_t id = 0;  // virtual register (of an accumulator: the one it stands for), scalar, mask slot, label or number
 
     static Operand read(uint32_t reg, uint8_t word = 0) { return {Kind::row, word, false, reg}; }
     static Operand write(uint32_t reg, uint8_t word = 0) { return {Kind::row, word, true, reg}; }
     static Operand scalar(uint32_t index) { return {Kind::scalar, 0, false, index}; }
+    static Operand writeScalar(uint32_t index) { return {Kind::scalar, 0, true, index}; }
     static Operand mask(uint32_t slot) { return {Kind::mask, 0, false, slot}; }
     static Operand label(uint32_t index) { return {Kind::label, 0, false, index}; }
     static Operand number(uint32_t value) { return {Kind::number, 0, false, value}; }

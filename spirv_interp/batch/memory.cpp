@@ -91,6 +91,14 @@ const Inst* storeBuffer(Frame& frame, const Inst* inst) {
     return inst + 1;
 }
 
+/// One word for all lanes.
+const Inst* loadBufferScalar(Frame& frame, const Inst* inst) {
+    uint32_t* scalars = frame.scalars;
+    const BufferBinding buffer = bufferOf(frame, inst->operand[3], scalars[inst->operand[1]]);
+    scalars[inst->operand[0]] = loadElement(buffer, scalars[inst->operand[2]]);
+    return inst + 1;
+}
+
 template <bool kScalar>
 const Inst* bufferSize(Frame& frame, const Inst* inst) {
     const LaneSource<kScalar> descriptors(frame, inst->operand[1]);
@@ -150,6 +158,7 @@ void addForms(HandlerTables& tables, std::index_sequence<kForm...>) {
 
 void addMemory(HandlerTables& tables) {
     addForms(tables, std::make_index_sequence<4>());
+    addPlain<loadBufferScalar>(tables, Op::loadBuffer, 4);
     addPlain<bufferSize<false>>(tables, Op::bufferSize, 0);
     addPlain<bufferSize<true>>(tables, Op::bufferSize, 1);
     addPlain<loadLocal<false>>(tables, Op::loadLocal);

@@ -26,7 +26,7 @@ SharedState::SharedState(std::shared_ptr<const BatchProgram> p)
       imageScratch(size_t{kImageScratchRows} * kMaxLanes) {}
 
 RunState::RunState(SharedState& shared, const Code& code)
-    : compiled_(&shared.compiled),
+    : shared_(&shared),
       code_(&code),
       rows_(size_t{code.rows} * code.rowLanes),
       local_(size_t{shared.compiled.source().localWords} * code.lanes),
@@ -46,6 +46,10 @@ RunState::RunState(SharedState& shared, const Code& code)
 }
 
 void RunState::begin(uint32_t lanes, const LaneMask& exec, const LaneMask& live) {
+    if (frame.suspends) {
+        scalars_ = shared_->scalars;
+        frame.scalars = scalars_.data();
+    }
     frame.lanes = (lanes + kLaneGroup - 1) / kLaneGroup * kLaneGroup;
     frame.backEdges = 0;
     frame.lost = false;
@@ -59,7 +63,7 @@ void RunState::begin(uint32_t lanes, const LaneMask& exec, const LaneMask& live)
 bool RunState::run() {
     const Inst* at = frame.resume;
     frame.resume = nullptr;
-    compiled_->execute(frame, at);
+    shared_->compiled.execute(frame, at);
     if (frame.lost) abandon();
     return !frame.lost;
 }
@@ -75,7 +79,7 @@ void RunState::runStraight() {
     const LaneMask all = LaneMask::first(kLaneGroup);
     frame.lanes = kLaneGroup;
     frame.exec = frame.live = frame.masks[kCurrentMask] = all;
-    compiled_->execute(frame, CompiledProgram::beginning(frame, *code_));
+    shared_->compiled.execute(frame, CompiledProgram::beginning(frame, *code_));
 }
 
 }  // namespace vernier::batch

@@ -58,11 +58,12 @@ class RunState {
     Frame frame;
 
   private:
-    const CompiledProgram* compiled_;
+    const SharedState* shared_;
     const Code* code_;
     Words rows_, local_;
     size_t localWords_;
     std::vector<LaneMask> masks_;
+    std::vector<uint32_t> scalars_;  // of a batch that others run beside: it changes them
 };
 
 }  // namespace vernier::batch

@@ -7,6 +7,12 @@
 namespace vernier::batch {
 namespace {
 
+/// Registers, then scalars; kNone for operands that are neither.
+uint32_t placeOf(const MachineCode& code, const Operand& operand) {
+    if (operand.isRow()) return operand.id;
+    return operand.isScalar() ? static_cast<uint32_t>(code.registers.size()) + operand.id : kNone;
+}
+
 /// One stretch of movable instructions: a depth-first walk from the results that are needed further on, in their
 /// order. Of the operands of an instruction the one that takes most rows to compute comes first (Sethi and Ullman,
 /// "The Generation of Optimal Code for Arithmetic Expressions", JACM 17(4), 1970), and one that only this instruction
@@ -40,14 +46,14 @@ class Region {
         bool placed = false;
     };
 
+    /// Calls function(place, written) for every register and scalar of an instruction.
     template <class F>
-    void forEachRow(const MachineInst& inst, F&& function) const {
-        for (const Operand& operand : inst.operands) {
-            if (operand.isRow()) function(operand);
-        }
-        for (const Operand& operand : inst.hidden) {
-            if (operand.isRow()) function(operand);
-        }
+    void forEachPlace(const MachineInst& inst, F&& function) const {
+        const auto visit = [&](const Operand& operand) {
+            if (const uint32_t place = placeOf(code_, operand); place != kNone) function(place, operand.written);
+        };
+        std::for_each(inst.operands.begin(), inst.operands.end(), visit);
+        std::for_each(inst.hidden.begin(), inst.hidden.end(), visit);
     }
 
     void constrain(uint32_t earlier, uint32_t later) {
@@ -58,25 +64,25 @@ class Region {
     }
 
     void connect() {
-        std::vector<std::pair<uint32_t, uint32_t>> readBefore;  // register, node: reads of values from outside
+        std::vector<std::pair<uint32_t, uint32_t>> readBefore;  // place, node: reads of values from outside
         for (uint32_t n = 0; n < nodes_.size(); ++n) {
             const MachineInst& inst = code_.insts[begin_ + n];
-            forEachRow(inst, [&](const Operand& operand) {
-                if (operand.written) return;
-                const uint32_t writer = lastWriter_[operand.id];
+            forEachPlace(inst, [&](uint32_t place, bool written) {
+                if (written) return;
+                const uint32_t writer = lastWriter_[place];
                 if (writer == kNone) {
-                    if (writes_[operand.id] > 1) readBefore.emplace_back(operand.id, n);
+                    if (writes_[place] > 1) readBefore.emplace_back(place, n);
                     return;
                 }
                 constrain(writer, n);
                 nodes_[writer].readers.push_back(n);
             });
-            forEachRow(inst, [&](const Operand& operand) {
-                if (!operand.written) return;
-                uint32_t& writer = lastWriter_[operand.id];
+            forEachPlace(inst, [&](uint32_t place, bool written) {
+                if (!written) return;
+                uint32_t& writer = lastWriter_[place];
                 if (writer == kNone) {
-                    for (const auto& [reg, reader] : readBefore) {
-                        if (reg == operand.id) constrain(reader, n);
+                    for (const auto& [read, reader] : readBefore) {
+                        if (read == place) constrain(reader, n);
                     }
                 } else {
                     constrain(writer, n);
@@ -86,8 +92,8 @@ class Region {
             });
         }
         for (uint32_t n = 0; n < nodes_.size(); ++n) {
-            forEachRow(code_.insts[begin_ + n], [&](const Operand& operand) {
-                if (operand.written) lastWriter_[operand.id] = kNone;
+            forEachPlace(code_.insts[begin_ + n], [&](uint32_t place, bool written) {
+                if (written) lastWriter_[place] = kNone;
             });
         }
     }
@@ -127,8 +133,8 @@ class Region {
     MachineCode& code_;
     const uint32_t begin_;
     std::vector<Node> nodes_;
-    const std::vector<uint32_t>& writes_;  // by register, in the whole code
-    std::vector<uint32_t>& lastWriter_;    // by register: a node of this region, or kNone
+    const std::vector<uint32_t>& writes_;  // by place, in the whole code
+    std::vector<uint32_t>& lastWriter_;    // by place: a node of this region, or kNone
 };
 
 }  // namespace
@@ -136,12 +142,17 @@ class Region {
 void schedule(MachineCode& code) {
     std::vector<bool> isTarget(code.insts.size() + 1);
     for (const uint32_t label : code.labels) isTarget[label] = true;
-    std::vector<uint32_t> writes(code.registers.size()), lastWriter(code.registers.size(), kNone);
+    std::vector<uint32_t> writes;
     for (const MachineInst& inst : code.insts) {
         for (const Operand& operand : inst.operands) {
-            if (operand.isRow() && operand.written) ++writes[operand.id];
+            const uint32_t place = placeOf(code, operand);
+            if (place == kNone) continue;
+            if (place >= writes.size()) writes.resize(place + 1);
+            writes[place] += operand.written ? 1 : 0;
         }
     }
+    writes.resize(std::max(writes.size(), code.registers.size()));
+    std::vector<uint32_t> lastWriter(writes.size(), kNone);
     for (uint32_t k = 0; k < code.insts.size();) {
         uint32_t end = k;
         while (end < code.insts.size() && isMovableOp(code.insts[end].op) && (end == k || !isTarget[end])) ++end;

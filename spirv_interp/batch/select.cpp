@@ -49,6 +49,9 @@ size_t operandCount(Op op) {
 bool isVectorOp(Op op) {
     return factsOf(op).family == Family::vector;
 }
+bool takesScalars(Op op) {
+    return factsOf(op).family == Family::vector || factsOf(op).family == Family::lanes;
+}
 bool isWideOp(Op op) {
     return factsOf(op).family == Family::wide;
 }
@@ -59,19 +62,33 @@ bool isMovableOp(Op op) {
         case Op::bufferSize:
         case Op::inputIndexed:
         case Op::loadBuffer:
+        case Op::loadByte:
+        case Op::loadHalfword:
         case Op::loadLocal:
         case Op::loadLocalScalar:
             return true;
-        default: {
-            const std::optional<StripShape> shape = stripShape(op);
-            return shape && shape->result;
-        }
+        case Op::broadcast:
+        case Op::copy:
+        case Op::ddxCoarse:
+        case Op::ddxFine:
+        case Op::ddyCoarse:
+        case Op::ddyFine:
+        case Op::dot2:
+        case Op::dot2Scalar:
+        case Op::dot3:
+        case Op::dot3Scalar:
+        case Op::dot4:
+        case Op::dot4Scalar:
+            return true;
+        default:
+            return false;
     }
 }
 
-std::optional<StripShape> stripShape(Op op) {
-    if (isVectorOp(op)) return StripShape{1, static_cast<uint8_t>(operandCount(op) - 1), true};
-    switch (op) {
+std::optional<StripShape> stripShape(const MachineInst& inst) {
+    const bool result = inst.operands.empty() || !inst.operands[0].isScalar();
+    if (isVectorOp(inst.op)) return StripShape{1, static_cast<uint8_t>(operandCount(inst.op) - 1), result};
+    switch (inst.op) {
         case Op::dot2:
         case Op::dot3:
         case Op::dot4:
@@ -98,6 +115,7 @@ std::optional<StripShape> stripShape(Op op) {
         case Op::follow:
         case Op::skipEmpty:
         case Op::discard:
+        case Op::moveScalar:
             return StripShape{0, 0, false};
         default:
             return std::nullopt;

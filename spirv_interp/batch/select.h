@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "spirv_interp/batch/bytecode.h"
+#include "spirv_interp/batch/machine.h"
 #include "spirv_interp/ir/ir.h"
 
 namespace vernier::batch {
@@ -14,6 +15,8 @@ std::string_view opName(Op op);
 size_t operandCount(Op op);
 /// Takes scalars as operands.
 bool isVectorOp(Op op);
+/// Has a form that computes a scalar from scalars.
+bool takesScalars(Op op);
 /// Has 64-bit operands or a 64-bit result.
 bool isWideOp(Op op);
 
@@ -27,7 +30,7 @@ struct StripShape {
     bool result = true;
 };
 /// Nothing for operations that leave arbitrary bits in the accumulator.
-std::optional<StripShape> stripShape(Op op);
+std::optional<StripShape> stripShape(const MachineInst& inst);
 
 /// The elementwise operation for an instruction; nothing for instructions that are lowered in another way.
 std::optional<Op> elementOp(const ir::Program& program, const ir::Inst& inst);

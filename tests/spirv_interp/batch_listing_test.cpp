@@ -39,12 +39,10 @@ input 0 r0
 input 1 r1
 output 0 r0
 draw:
-    0  loadBuffer r0, 0x00000000, 0x00000000, 0
-    1  keepScalar 0, r0
-    2  loadBuffer r1, 0x00000000, 0x00000004, 0
-    3  fmul r0, r0, r1
-    4  keepScalar 1, r0
-    5  end
+    0  loadBuffer s0, 0x00000000, 0x00000000, 0
+    1  loadBuffer s4, 0x00000000, 0x00000004, 0
+    2  fmul s1, s0, s4
+    3  end
 batch:
     0  dot2Scalar acc, r0, s0, r1, s1
     2  fclamp r0, acc, 0x00000000, 0x3f800000
@@ -52,7 +50,7 @@ batch:
 )");
 }
 
-TEST(BatchListing, LoopsKeepTheirCounterInPlaceAndUniformBranchesNeedNoRow) {
+TEST(BatchListing, CountersOfAllLanesAreScalarsAndUniformBranchesNeedNoRow) {
     EXPECT_EQ(listing(R"(program fragment "main"
 input 0 i32 user 0.0 flat center
 output 0 i32 user 0.0
@@ -80,33 +78,74 @@ b5 <- b3:
   storeOutput #0 %8
   ret
 )"),
-              R"(registers 3
+              R"(registers 2
 input 0 r0
-output 0 r2
+output 0 r1
 draw:
-    0  loadBuffer r0, 0x00000000, 0x00000000, 0
-    1  ieq r0, r0, 0x00000000
-    2  keepScalar 0, r0
-    3  end
+    0  loadBuffer s5, 0x00000000, 0x00000000, 0
+    1  ieq s0, s5, 0x00000000
+    2  end
 batch:
     0  splitScalar s0, m2, m3
     1  enter m2, @3
     2  discard
     3  enter m3, @6
-    4  broadcastMasked r1, 0x00000000, m0
+    4  moveScalar s1, 0x00000000
     5  leave m4
-    6  enter m4, @16
-    7  slt acc, r1, r0
+    6  enter m4, @17
+    7  slt acc, s1, r0
     8  split acc, m5, m7
     9  skipEmpty m7, @12
-   10  copyMasked r2, r1, m7
+   10  broadcastMasked r1, s1, m7
    11  follow m6, m7
-   12  enter m5, @15
-   13  iadd r1, r1, 0x00000001
-   14  leave m4
-   15  repeat m4, @6
-   16  enter m6, @17
-   17  end
+   12  enter m5, @16
+   13  iadd s3, s1, 0x00000001
+   14  moveScalar s1, s3
+   15  leave m4
+   16  repeat m4, @6
+   17  enter m6, @18
+   18  end
+)");
+}
+
+TEST(BatchListing, LoopsKeepTheCountersOfTheirLanesInPlace) {
+    EXPECT_EQ(listing(R"(program fragment "main"
+input 0 i32 user 0.0 flat center
+output 0 i32 user 0.0
+b0:
+  %0 i32 = input #0
+  %1 i32 = constant 100
+  jump b1
+b1 loop b3 <- b0 b2:
+  %2 i32 = phi %0 %4
+  %3 b1 = slt.i32 %2 %1
+  branch %3 b2 b3
+b2 <- b1:
+  %4 i32 = iadd %2 %0
+  jump b1
+b3 <- b1:
+  %5 i32 = phi %2
+  storeOutput #0 %5
+  ret
+)"),
+              R"(registers 3
+input 0 r0
+output 0 r2
+batch:
+    0  copy r1, r0
+    1  leave m2
+    2  enter m2, @12
+    3  slt acc, r1, 0x00000064
+    4  split acc, m3, m5
+    5  skipEmpty m5, @8
+    6  copyMasked r2, r1, m5
+    7  follow m4, m5
+    8  enter m3, @11
+    9  iadd r1, r1, r0
+   10  leave m2
+   11  repeat m2, @2
+   12  enter m4, @13
+   13  end
 )");
 }
 
