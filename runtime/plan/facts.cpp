@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "spirv_interp/ir/rates.h"
+
 namespace vernier {
 namespace {
 
@@ -85,6 +87,26 @@ void fragmentFacts(const ir::Program* fragment, const Plan& plan, FactWriter& fa
     if (!plan.needsBarycentrics) facts.leftOut("interpolation", "all inputs are flat or built in");
 }
 
+/// How often what is computed, in a program of `stage`.
+void rateFacts(const std::string& stage, const std::string& item, const ir::Program& program,
+               const BatchStatistics& statistics, FactWriter& facts) {
+    std::string rates;
+    const auto counts = ir::countByRate(program);
+    for (size_t rate = 0; rate < ir::kRateCount; ++rate) {
+        if (counts[rate] == 0) continue;
+        rates += (rates.empty() ? "" : ", ") + std::string(ir::rateName(static_cast<ir::Rate>(rate))) + " " +
+                 std::to_string(counts[rate]);
+    }
+    if (!rates.empty())
+        facts.runs("operations of the " + stage + " by rate: " + rates,
+                   "how often their values can change; " + count(statistics.instructions, "instruction") + " per " +
+                       std::to_string(statistics.lanes) + " lanes");
+    if (statistics.drawRateInstructions > 0)
+        facts.runs(
+            count(statistics.drawRateInstructions, "instruction") + " of the " + stage + ", once per draw and thread",
+            "their values are the same for every " + item);
+}
+
 void colorFacts(const GraphicsState& state, const Plan& plan, FactWriter& facts) {
     uint32_t next = 0;
     for (uint32_t n = 0; n < state.colorCount; ++n) {
@@ -123,11 +145,17 @@ const char* tierName(MathTier tier) {
 void collectFacts(const GraphicsState& state, const ShaderProgram& program, Plan& plan) {
     FactWriter facts(plan);
     geometryFacts(state, plan, program.accuracy(), facts);
+    rateFacts("vertex program", "vertex", program.vertexIr(), program.vertex()->statistics(), facts);
+    if (program.liftedOperations() > 0)
+        facts.runs(count(program.liftedOperations(), "operation") + " of the fragment shader, once per vertex",
+                   "they depend on flat inputs alone");
     if (program.removedVaryings() > 0)
         facts.leftOut(count(program.removedVaryings(), "vertex output"), "nobody reads them");
     if (state.rasterizerDiscard) return;
     depthFacts(state, plan, facts);
     fragmentFacts(program.fragmentIr(), plan, facts);
+    if (plan.runsFragments)
+        rateFacts("fragment program", "fragment", *program.fragmentIr(), program.fragment()->statistics(), facts);
     colorFacts(state, plan, facts);
 }
 

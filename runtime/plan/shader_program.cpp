@@ -24,10 +24,11 @@ Result<std::shared_ptr<const ShaderProgram>> ShaderProgram::create(const ShaderP
     const bool hasFragment = desc.fragment != nullptr;
     if (hasFragment) program->fragmentIr_ = *desc.fragment;
     ir::Program none = emptyFragment();
-    const size_t outputs = program->vertexIr_.outputs.size();
-    if (Status status = ir::linkStages(program->vertexIr_, hasFragment ? program->fragmentIr_ : none); !status)
+    ir::LinkFacts facts;
+    if (Status status = ir::linkStages(program->vertexIr_, hasFragment ? program->fragmentIr_ : none, &facts); !status)
         return status.error();
-    program->removedVaryings_ = static_cast<uint32_t>(outputs - program->vertexIr_.outputs.size());
+    program->removedVaryings_ = facts.removedOutputs;
+    program->liftedOperations_ = facts.liftedOperations;
 
     const BatchOptions options{desc.isa, desc.accuracy.math, 0};
     auto compiled = BatchProgram::compile(program->vertexIr_, options);

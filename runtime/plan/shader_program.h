@@ -33,6 +33,8 @@ class ShaderProgram {
     const std::shared_ptr<const BatchProgram>& fragment() const { return fragment_; }
     /// Vertex outputs that linking removed because nobody reads them, for explain().
     uint32_t removedVaryings() const { return removedVaryings_; }
+    /// Operations of the fragment shader that linking moved into the vertex program, for explain().
+    uint32_t liftedOperations() const { return liftedOperations_; }
 
   private:
     ShaderProgram() = default;
@@ -40,7 +42,7 @@ class ShaderProgram {
     Isa isa_ = Isa::sse4;
     ir::Program vertexIr_, fragmentIr_;
     std::shared_ptr<const BatchProgram> vertex_, fragment_;
-    uint32_t removedVaryings_ = 0;
+    uint32_t removedVaryings_ = 0, liftedOperations_ = 0;
 };
 
 }  // namespace vernier

@@ -23,7 +23,8 @@ struct Facts {
         for (ir::Rate& rate : rates) {
             // What folding has left of operations on constants is computed with the draw.
             rate = std::max(rate, ir::Rate::draw);
-            if (packed && rate == ir::Rate::workGroup) rate = ir::Rate::invocation;
+            // And what changes more often than batches do, in every lane.
+            if (!isUniform(rate) || (packed && rate == ir::Rate::workGroup)) rate = ir::Rate::invocation;
             scalar.push_back(rate != ir::Rate::invocation);
         }
         uniform = uniformValues(p, cfg, scalar);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "spirv_interp/ir/lift_flat.h"
 #include "spirv_interp/ir/ops.h"
 #include "spirv_interp/ir/optimise.h"
 
@@ -24,7 +25,8 @@ const InterfaceSlot* findSlot(const std::vector<InterfaceSlot>& slots, const Int
     return found == slots.end() ? nullptr : &*found;
 }
 
-void dropUnreadOutputs(Program& vertex, const Program& fragment) {
+/// Returns how many outputs nobody reads.
+uint32_t dropUnreadOutputs(Program& vertex, const Program& fragment) {
     std::vector<bool> read(vertex.outputs.size());
     for (size_t i = 0; i < vertex.outputs.size(); ++i) {
         const InterfaceSlot& slot = vertex.outputs[i];
@@ -33,6 +35,7 @@ void dropUnreadOutputs(Program& vertex, const Program& fragment) {
     for (Block& block : vertex.blocks) {
         std::erase_if(block.insts, [&](const Inst& inst) { return inst.op == Op::storeOutput && !read[inst.imm]; });
     }
+    return static_cast<uint32_t>(std::count(read.begin(), read.end(), false));
 }
 
 /// Inputs that are read one by one and that nothing writes become 0.
@@ -74,7 +77,7 @@ void writeZero(Program& vertex, const InterfaceSlot& slot) {
 
 }  // namespace
 
-Status linkStages(Program& vertex, Program& fragment) {
+Status linkStages(Program& vertex, Program& fragment, LinkFacts* facts) {
     if (vertex.stage != Stage::vertex || fragment.stage != Stage::fragment) {
         return invalidArgument("linkStages: the programs are not a vertex and a fragment program, in this order");
     }
@@ -96,7 +99,10 @@ Status linkStages(Program& vertex, Program& fragment) {
     for (const InterfaceSlot& input : fragment.inputs) {
         if (isVarying(input) && findSlot(vertex.outputs, input) == nullptr) writeZero(vertex, input);
     }
-    dropUnreadOutputs(vertex, fragment);
+    const uint32_t lifted = liftFlat(vertex, fragment);
+    if (lifted != 0) optimise(fragment);
+    const uint32_t removed = dropUnreadOutputs(vertex, fragment);
+    if (facts != nullptr) *facts = {removed, lifted};
     optimise(vertex);
     return {};
 }

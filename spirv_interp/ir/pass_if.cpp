@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "spirv_interp/ir/cfg.h"
+#include "spirv_interp/ir/cost.h"
 #include "spirv_interp/ir/ops.h"
 #include "spirv_interp/ir/passes.h"
 #include "spirv_interp/ir/rates.h"
@@ -12,40 +13,6 @@ namespace {
 constexpr uint32_t kCostLimit = 8;
 // Under a condition that is the same for all lanes only one side runs: selects must be next to free.
 constexpr uint32_t kUniformCostLimit = 1;
-constexpr uint32_t kTooDear = 1000;
-
-uint32_t costOf(const Program& program, const Inst& inst) {
-    if (!isMovable(program, inst)) return kTooDear;
-    switch (inst.op) {
-        case Op::constant:
-        case Op::undef:
-        case Op::copy:
-            return 0;
-        case Op::fdiv:
-        case Op::fsqrt:
-        case Op::finverseSqrt:
-        case Op::loadBuffer:
-        case Op::fsmoothstep:
-            return 4;
-        case Op::frem:
-        case Op::fmod:
-        case Op::ffma:
-        case Op::sdiv:
-        case Op::udiv:
-        case Op::srem:
-        case Op::smod:
-        case Op::umod:
-        case Op::fldexp:
-        case Op::inputIndexed:
-        case Op::interpolateAtCentroid:
-        case Op::interpolateAtSample:
-        case Op::interpolateAtOffset:
-            return kCostLimit;
-        default:
-            return inst.op >= Op::fsin && inst.op <= Op::fpow ? kCostLimit : 1;
-    }
-}
-
 /// A block that only computes values between `from` and one successor.
 bool isArm(const Program& program, const Cfg& cfg, BlockId from, BlockId arm) {
     const Block& block = program.blocks[arm];
@@ -100,7 +67,7 @@ class IfConverter {
         }
         if (merge == kNoIndex || merge == head) return false;
         const ValueId condition = program_.operands[program_.blocks[head].insts.back().firstOperand];
-        const bool uniform = condition < rates_.size() && rates_[condition] != Rate::invocation;
+        const bool uniform = condition < rates_.size() && isUniform(rates_[condition]);
         const uint32_t cost = (useYes ? armCost(program_, yes) : 0) + (useNo ? armCost(program_, no) : 0);
         if (cost > (uniform ? kUniformCostLimit : kCostLimit)) return false;
         apply(head, useYes ? yes : head, useNo ? no : head, merge, condition);

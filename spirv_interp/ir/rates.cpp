@@ -7,12 +7,40 @@
 namespace vernier::ir {
 namespace {
 
-Rate rateOf(Builtin builtin) {
-    switch (builtin) {
+Rate rateOfFragmentInput(const Program& program, const InterfaceSlot& slot) {
+    switch (slot.builtin) {
+        case Builtin::frontFacing:
+        case Builtin::primitiveId:
+        case Builtin::layer:
+        case Builtin::viewportIndex:
+        case Builtin::viewIndex:
+            return Rate::primitive;
+        case Builtin::sampleId:
+        case Builtin::samplePosition:
+            return Rate::sample;
+        case Builtin::fragCoord:
+        case Builtin::pointCoord:
+        case Builtin::sampleMaskIn:
+            return program.perSample ? Rate::sample : Rate::pixel;
+        default:
+            if (slot.interpolation == Interpolation::flat) return Rate::primitive;
+            return slot.sampling == Sampling::sample ? Rate::sample : Rate::pixel;
+    }
+}
+
+Rate rateOfInput(const Program& program, const InterfaceSlot& slot) {
+    if (program.stage == Stage::fragment) return rateOfFragmentInput(program, slot);
+    switch (slot.builtin) {
         case Builtin::numWorkgroups:
             return Rate::draw;
         case Builtin::workgroupId:
             return Rate::workGroup;
+        case Builtin::instanceIndex:
+        case Builtin::baseVertex:
+        case Builtin::baseInstance:
+        case Builtin::drawIndex:
+        case Builtin::viewIndex:
+            return Rate::instance;
         default:
             return Rate::invocation;
     }
@@ -30,13 +58,17 @@ std::vector<Rate> computeRates(const Program& program) {
             Rate rate = opInfo(inst.op).kind == 'R' ? Rate::draw : Rate::constant;
             switch (inst.op) {
                 case Op::input:
-                    rate = rateOf(program.inputs[inst.imm].builtin);
-                    break;
-                case Op::inputIndexed:
-                case Op::subgroupInvocation:
                 case Op::interpolateAtCentroid:
                 case Op::interpolateAtSample:
                 case Op::interpolateAtOffset:
+                    rate = rateOfInput(program, program.inputs[inst.imm]);
+                    break;
+                case Op::inputIndexed:
+                    for (uint32_t k = 0; k < immHigh(inst); ++k) {
+                        rate = std::max(rate, rateOfInput(program, program.inputs[immLow(inst) + k]));
+                    }
+                    break;
+                case Op::subgroupInvocation:
                     rate = Rate::invocation;
                     break;
                 default:
@@ -47,6 +79,25 @@ std::vector<Rate> computeRates(const Program& program) {
         }
     }
     return rates;
+}
+
+std::array<uint32_t, kRateCount> countByRate(const Program& program) {
+    const std::vector<Rate> rates = computeRates(program);
+    std::array<uint32_t, kRateCount> counts{};
+    for (const Block& block : program.blocks) {
+        for (const Inst& inst : block.insts) {
+            const bool leaf = inst.op == Op::constant || inst.op == Op::undef || inst.op == Op::input ||
+                              inst.op == Op::phi || inst.op == Op::copy;
+            if (inst.result != kNoValue && !leaf) ++counts[static_cast<size_t>(rates[inst.result])];
+        }
+    }
+    return counts;
+}
+
+std::string_view rateName(Rate rate) {
+    constexpr std::string_view kNames[kRateCount] = {"constant",  "draw",  "work-group", "instance",
+                                                     "primitive", "pixel", "sample",     "invocation"};
+    return kNames[static_cast<size_t>(rate)];
 }
 
 }  // namespace vernier::ir

@@ -176,6 +176,44 @@ void main() { if (gl_FragCoord.x < 8.0) discard; color = value; })";
     }
 }
 
+// Work is done as often as its values change: the draw's once, what follows from flat inputs at the vertices.
+TEST_F(Explain, TellsRates) {
+    const VnProgram flat = program(R"(#version 450
+layout(location = 0) flat out uint id;
+layout(location = 1) out float x;
+void main() {
+    id = gl_VertexIndex * 16 + 9;
+    x = float(gl_VertexIndex & 1);
+    gl_Position = vec4((gl_VertexIndex & 1) * 4.0 - 1.0, (gl_VertexIndex >> 1) * 4.0 - 1.0, 0.5, 1.0);
+})",
+                                   R"(#version 450
+layout(location = 0) flat in uint id;
+layout(location = 1) in float x;
+layout(push_constant) uniform Push { vec4 scale; };
+layout(location = 0) out vec4 color;
+void main() {
+    float root = sqrt(float(id));
+    bool small = id * id % 7u < 5u;
+    color = vec4(root / 3.0, small ? 1.0 : 0.5, sqrt(scale.z * scale.w) * x * 0.0, 1.0);
+})");
+    const VnImage target = image(VK_FORMAT_R8G8B8A8_UNORM, kSize, kSize);
+    const VnPassDesc pass = passOn(target);
+    ASSERT_EQ(vnBeginPass(context_, &pass), VN_SUCCESS);
+    ASSERT_EQ(vnBindProgram(context_, flat), VN_SUCCESS);
+    const float scale[] = {1, 1, 1, 1};
+    ASSERT_EQ(vnPushConstants(context_, 0, scale, sizeof scale), VN_SUCCESS);
+    const std::string text = explain();
+    ASSERT_EQ(vnDraw(context_, 3, 1, 0, 0), VN_SUCCESS) << lastError();
+    ASSERT_EQ(vnEndPass(context_), VN_SUCCESS);
+    EXPECT_THAT(text,
+                HasSubstr("operations of the fragment shader, once per vertex: they depend on flat inputs alone"));
+    EXPECT_THAT(text, HasSubstr("of the fragment program, once per draw and thread"));
+    EXPECT_THAT(text, HasSubstr("operations of the fragment program by rate: draw"));
+    EXPECT_THAT(text, HasSubstr("operations of the vertex program by rate: "));
+    // The first vertex provokes: its id is 9, root 3, and 81 % 7 < 5.
+    EXPECT_THAT(read(target, kSize, kSize), testing::Each(0xFF00FFFFu));
+}
+
 TEST_F(Explain, ACombinationIsPlannedOnce) {
     const VnProgram white = program(kFullScreenVertex, kWhiteFragment);
     EXPECT_EQ(run(white).plans, 1u);

@@ -725,10 +725,31 @@ b1 <- b0:
   ret
 )");
     const std::vector<Rate> rates = computeRates(p);
-    const std::vector<Rate> wanted = {Rate::constant,   Rate::constant,   Rate::constant, Rate::draw,
-                                      Rate::draw,       Rate::draw,       Rate::draw,     Rate::invocation,
-                                      Rate::invocation, Rate::invocation, Rate::draw,     Rate::invocation};
+    const std::vector<Rate> wanted = {Rate::constant, Rate::constant, Rate::constant, Rate::draw,
+                                      Rate::draw,     Rate::draw,     Rate::draw,     Rate::invocation,
+                                      Rate::pixel,    Rate::pixel,    Rate::draw,     Rate::invocation};
     EXPECT_EQ(rates, wanted);
+}
+
+Rate rateOfOutput(const char* head, const char* input) {
+    const Result<Program> p = parse(std::string("program ") + head + "\ninput 0 " + input +
+                                    "\nb0:\n  %0 i32 = input #0\n  %1 i32 = iadd %0 %0\n  ret\n");
+    EXPECT_TRUE(p.ok()) << p.error().message;
+    return computeRates(*p)[1];
+}
+
+TEST(Rates, FollowTheInputs) {
+    EXPECT_EQ(rateOfOutput("fragment \"main\"", "i32 user 0.0 flat center"), Rate::primitive);
+    EXPECT_EQ(rateOfOutput("fragment \"main\"", "i32 primitiveId 0.0 flat center"), Rate::primitive);
+    EXPECT_EQ(rateOfOutput("fragment \"main\"", "i32 user 0.0 smooth centroid"), Rate::pixel);
+    EXPECT_EQ(rateOfOutput("fragment \"main\"", "i32 user 0.0 smooth sample"), Rate::sample);
+    EXPECT_EQ(rateOfOutput("fragment \"main\"", "i32 sampleId 0.0 flat center"), Rate::sample);
+    EXPECT_EQ(rateOfOutput("fragment \"main\"", "i32 fragCoord 0.0 flat center"), Rate::pixel);
+    EXPECT_EQ(rateOfOutput("vertex \"main\"", "i32 instanceIndex 0.0"), Rate::instance);
+    EXPECT_EQ(rateOfOutput("vertex \"main\"", "i32 user 0.0"), Rate::invocation);
+    EXPECT_EQ(rateOfOutput("compute \"main\"", "i32 numWorkgroups 0.0"), Rate::draw);
+    EXPECT_EQ(rateOfOutput("compute \"main\"", "i32 workgroupId 0.0"), Rate::workGroup);
+    EXPECT_EQ(rateOfOutput("compute \"main\"", "i32 localInvocationIndex 0.0"), Rate::invocation);
 }
 
 }  // namespace
