@@ -142,6 +142,19 @@ bool Lowering::lowerExtendedElementwise(const Instruction& inst) {
     return false;
 }
 
+/// `value`, which has no other sign than `x` but may be +0 where `x` is negative, with the sign of `x`.
+ir::ValueId Lowering::withSignOf(ir::ValueId value, ir::ValueId x) {
+    const ir::Type type = emitter_.typeOf(x);
+    const bool wide = type == ir::Type::f64;
+    const auto upper = [&](ir::ValueId v) {
+        return wide ? emitter_.emit(Op::highWord, ir::Type::i32, {v}) : convert(Op::bitcast, ir::Type::i32, v);
+    };
+    const ir::ValueId sign = binary(Op::iand, upper(x), emitter_.constantI32(0x80000000u));
+    const ir::ValueId bits = binary(Op::ior, upper(value), sign);
+    if (!wide) return convert(Op::bitcast, type, bits);
+    return emitter_.emit(Op::makeWide, type, {emitter_.emit(Op::lowWord, ir::Type::i32, {value}), bits});
+}
+
 /// Modf and Frexp: the fraction or mantissa is the result, the other half goes to a pointer or is the struct's second
 /// member.
 void Lowering::lowerSplit(const Instruction& inst) {
@@ -156,10 +169,11 @@ void Lowering::lowerSplit(const Instruction& inst) {
             // Both parts have the operand's sign; an infinity has the fraction 0.
             const ir::ValueId whole = unary(Op::ftrunc, x);
             const ir::ValueId zero = emitter_.constantFloat(emitter_.typeOf(x), 0);
-            both[i] =
+            const ir::ValueId fraction =
                 emitter_.emit(Op::select, emitter_.typeOf(x),
                               {emitter_.emit(Op::fisinf, ir::Type::b1, {x}, static_cast<uint64_t>(emitter_.typeOf(x))),
                                zero, sub(x, whole)});
+            both[i] = withSignOf(fraction, x);
             both[count + i] = whole;
         } else {
             both[i] = unary(Op::ffrexpMantissa, x);

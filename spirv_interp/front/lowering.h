@@ -259,6 +259,7 @@ class Lowering {
     bool lowerGeometric(const Instruction& inst);
     bool lowerPacking(const Instruction& inst);
     void lowerSplit(const Instruction& inst);
+    ir::ValueId withSignOf(ir::ValueId value, ir::ValueId x);
     void lowerInterpolate(const Instruction& inst);
     void lowerNormalize(const Instruction& inst);
     void lowerRefract(const Instruction& inst);

@@ -173,14 +173,20 @@ bool Machine<Number>::executeFloatComparison(const Instruction& i) {
 /// Matrices are flattened column by column. Sums run from the first product to the last.
 template <class Number>
 bool Machine<Number>::executeMatrix(const Instruction& i) {
+    const auto step = [&](const Number& x) {
+        Scalar<Number> scalar = Scalar<Number>::ofNumber(x);
+        if (program_.options.stepwise) round(scalar, module_.scalarType(resultType(i)).width);
+        return scalar.number;
+    };
     // Row vectors of `a` (rows x inner) times columns of `b` (inner x columns).
     const auto product = [&](size_t rows, size_t inner, size_t columns) {
         const Scalars<Number>&a = data(i.operand(0), rows * inner), &b = data(i.operand(1), inner * columns);
         Scalars<Number> result;
         for (size_t c = 0; c < columns; ++c)
             for (size_t r = 0; r < rows; ++r) {
-                Number sum = a[r].number * b[c * inner].number;
-                for (size_t k = 1; k < inner; ++k) sum += a[k * rows + r].number * b[c * inner + k].number;
+                Number sum = step(a[r].number * b[c * inner].number);
+                for (size_t k = 1; k < inner; ++k)
+                    sum = step(sum + step(a[k * rows + r].number * b[c * inner + k].number));
                 result.push_back(Scalar<Number>::ofNumber(sum));
             }
         setResult(i, std::move(result));

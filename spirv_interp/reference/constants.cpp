@@ -156,7 +156,7 @@ class ConstantParser {
                                        0});
                     continue;
                 case spv::OpQuantizeToF16:
-                    scalars.push_back({halfToFloat32(float32ToHalf(static_cast<float>(x.number))), 0});
+                    scalars.push_back({quantizeToHalf(static_cast<float>(x.number)), 0});
                     continue;
                 default:
                     break;

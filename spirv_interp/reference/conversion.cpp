@@ -45,7 +45,7 @@ bool Machine<Number>::executeConversion(const Instruction& i) {
             });
         case spv::OpQuantizeToF16:
             return convert([](const S& x, const Type&, const Type&) {
-                return S::ofNumber(Number(halfToFloat32(float32ToHalf(toFloat32(x.number)))));
+                return S::ofNumber(Number(quantizeToHalf(toFloat32(x.number))));
             });
         // An address is the scalar of a pointer.
         case spv::OpConvertPtrToU:

@@ -33,4 +33,9 @@ float halfToFloat32(uint32_t half) {
     return sign * std::ldexp(1024.0f + fraction, exponent - 25);
 }
 
+float quantizeToHalf(float value) {
+    const uint32_t half = float32ToHalf(value);
+    return halfToFloat32((half & 0x7C00u) == 0 ? half & 0x8000u : half);
+}
+
 }  // namespace vernier::reference

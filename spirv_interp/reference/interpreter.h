@@ -191,8 +191,9 @@ struct Options {
     /// float.
     bool roundToFloat = false;
     /// Functions and instructions that the specification describes by an expression (Radians, Length, Normalize,
-    /// Reflect, SmoothStep, FMix, MatrixInverse, packing, OpFRem, OpFMod...) are computed as that expression, every
-    /// operation rounded to the type of the result; otherwise exactly, rounded once. The expressions:
+    /// Reflect, SmoothStep, FMix, MatrixInverse, packing, OpDot, matrix products, OpFRem, OpFMod...) are computed as
+    /// that expression, every operation rounded to the type of the result; otherwise exactly, rounded once. The
+    /// expressions:
     ///   Fract: min(x - floor(x), the largest number below 1)   Radians, Degrees: x * constant
     ///   Length: sqrt(dot(x, x)), of a scalar |x|               Distance: Length(x - y)
     ///   Normalize: x * InverseSqrt(dot(x, x)), of a scalar sign(x)

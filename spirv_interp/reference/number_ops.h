@@ -58,6 +58,8 @@ Number fromFloat64Bits(uint64_t bits) {
 /// IEEE 754 binary16 from binary32, to nearest even (Vulkan spec, "16-Bit Floating-Point Numbers").
 uint32_t float32ToHalf(float value);
 float halfToFloat32(uint32_t half);
+/// OpQuantizeToF16: what is too small for a normalised half becomes a zero of the same sign (SPIR-V specification).
+float quantizeToHalf(float value);
 /// From binary64 with one rounding: to nearest even, or towards zero.
 uint32_t doubleToHalf(double value, bool towardsZero = false);
 
