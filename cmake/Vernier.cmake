@@ -27,7 +27,12 @@ endif()
 
 set(VERNIER_SANITIZE "" CACHE STRING "Sanitizers for every target, e.g. address,undefined or thread")
 
+option(VERNIER_FUZZ "Build the fuzz targets (Clang): see scripts/fuzz" OFF)
+
 add_library(vernier_settings INTERFACE)
+if(VERNIER_FUZZ)
+    target_compile_options(vernier_settings INTERFACE -fsanitize=fuzzer-no-link)
+endif()
 target_include_directories(vernier_settings INTERFACE ${PROJECT_SOURCE_DIR})
 # One scene gives one image on every CPU: the compiler may neither fuse nor reorder floating-point operations.
 target_compile_options(vernier_settings INTERFACE

@@ -72,7 +72,7 @@ class Bindings {
         for (const ir::Resource& r : program.resources) {
             const uint32_t count = r.kind == ir::ResourceKind::workgroupMemory ? 0
                                    : r.arraySize == 0                          ? kRuntimeArray
-                                                                               : r.arraySize;
+                                                                               : std::min(r.arraySize, kMaxArray);
             base_.push_back(static_cast<uint32_t>(isBuffer(r.kind)                      ? buffers_.size()
                                                   : r.kind == ir::ResourceKind::sampler ? samplers_.size()
                                                                                         : images_.size()));
@@ -94,7 +94,7 @@ class Bindings {
     }
     const ResourceBindings& get() const { return bindings_; }
 
-    static constexpr uint32_t kRuntimeArray = 4;
+    static constexpr uint32_t kRuntimeArray = 4, kMaxArray = 64;
 
   private:
     std::vector<BufferBinding> buffers_;

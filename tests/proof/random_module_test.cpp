@@ -66,7 +66,7 @@ uint64_t fromEnvironment(const char* name, uint64_t otherwise) {
 }
 
 TEST(RandomModules, AreTheSameByBatches) {
-    prove(0, 300);
+    prove(0, 200);
 }
 
 /// VERNIER_RANDOM_SEED and VERNIER_RANDOM_COUNT choose others.

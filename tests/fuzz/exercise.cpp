@@ -1,0 +1,27 @@
+#include "tests/fuzz/exercise.h"
+
+#include "spirv_interp/reference/interpreter.h"
+#include "tests/proof/proof.h"
+
+namespace vernier::proof {
+
+void exercise(std::span<const uint32_t> words) {
+    // These two take any words, valid or not.
+    readModule(words);
+    (void)reference::Module::parse(words);
+    if (!checkModule(words)) return;
+    for (const ir::Stage stage : {ir::Stage::vertex, ir::Stage::fragment, ir::Stage::compute}) {
+        Case subject;
+        subject.words.assign(words.begin(), words.end());
+        subject.stage = stage;
+        subject.invocations = 16;
+        subject.world.contents = {Filling::Kind::special, 0, 0};
+        subject.world.inputs = {Filling::Kind::special, 0, 0};
+        const Program program = lower(subject);
+        if (!program.error.empty()) continue;
+        const Shape shape = maskShapes(subject).back();
+        (void)runBatch(subject, program.ir, shape, {bestIsa(), MathTier::standard, 16});
+    }
+}
+
+}  // namespace vernier::proof
