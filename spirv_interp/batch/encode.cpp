@@ -56,7 +56,7 @@ class Encoder {
     void encodeInst(const MachineInst& inst) {
         const auto here = static_cast<uint32_t>(code_.narrow.size());
         const size_t count = instsFor(inst.operands.size());
-        const size_t form = stripShape(inst) ? formOf(inst).index() : inst.form;
+        const size_t form = inst.op != Op::loadBuffer && stripShape(inst) ? formOf(inst).index() : inst.form;
         code_.narrow.resize(here + count);
         code_.narrow[here].handler = handlers_.narrow[static_cast<size_t>(inst.op)][form];
         for (size_t k = 0; k < inst.operands.size(); ++k) {

@@ -61,6 +61,26 @@ const Inst* repeat(Frame& frame, const Inst* inst) {
     return jump(inst, inst->operand[1]);
 }
 
+const Inst* again(Frame& frame, const Inst* inst) {
+    LaneMask& mask = frame.masks[inst->operand[0]];
+    if (!mask.empty()) {
+        mask = mask | frame.masks[kCurrentMask];
+        return inst + 1;
+    }
+    if (++frame.backEdges >= kBackEdgeBudget) {
+        frame.lost = true;
+        return nullptr;
+    }
+    return jump(inst, inst->operand[1]);
+}
+
+HWY_INLINE const Inst* leaveInto(Frame& frame, const Inst* inst) {
+    LaneMask& mask = frame.masks[inst->operand[0]];
+    if (mask.empty()) return jump(inst, inst->operand[1]);
+    mask = mask | frame.masks[kCurrentMask];
+    return inst + 1;
+}
+
 HWY_INLINE const Inst* leave(Frame& frame, const Inst* inst) {
     LaneMask& mask = frame.masks[inst->operand[0]];
     mask = mask | frame.masks[kCurrentMask];
@@ -69,6 +89,30 @@ HWY_INLINE const Inst* leave(Frame& frame, const Inst* inst) {
 
 HWY_INLINE const Inst* splitScalar(Frame& frame, const Inst* inst) {
     LaneMask& mask = frame.masks[inst->operand[frame.scalars[inst->operand[0]] != 0 ? 1 : 2]];
+    mask = mask | frame.masks[kCurrentMask];
+    return inst + 1;
+}
+
+/// Splits the current lanes into those of `yes` and the rest. `kNext`: the operand that names the mask of the next
+/// block, if any.
+template <size_t kNext>
+HWY_INLINE const Inst* splitBy(Frame& frame, const Inst* inst, LaneMask yes) {
+    const LaneMask current = frame.masks[kCurrentMask];
+    const LaneMask no = current.without(yes);
+    if constexpr (kNext != 0) {
+        const LaneMask& others = kNext == 1 ? no : yes;
+        if (others.empty() && frame.masks[inst->operand[kNext]].empty()) return jump(inst, inst->operand[3]);
+    }
+    frame.masks[inst->operand[1]] = frame.masks[inst->operand[1]] | yes;
+    frame.masks[inst->operand[2]] = frame.masks[inst->operand[2]] | no;
+    return inst + 1;
+}
+
+template <size_t kNext>
+HWY_INLINE const Inst* splitScalarInto(Frame& frame, const Inst* inst) {
+    const bool yes = frame.scalars[inst->operand[0]] != 0;
+    LaneMask& mask = frame.masks[inst->operand[yes ? 1 : 2]];
+    if (yes == (kNext == 1) && mask.empty()) return jump(inst, inst->operand[3]);
     mask = mask | frame.masks[kCurrentMask];
     return inst + 1;
 }
@@ -141,13 +185,10 @@ struct Moves<Strip<std::index_sequence<K...>>> {
         return S::proceed(frame, inst + 1, rows, scalars, acc...);
     }
 
-    template <Source kSource>
+    template <Source kSource, size_t kNext>
     static const Inst* split(Frame& frame, const Inst* inst, std::byte* rows, uint32_t* scalars, Vector<K>... acc) {
-        const LaneMask current = frame.masks[kCurrentMask];
-        const LaneMask yes = current & LaneMask{S::template lanesOf<kSource>(rows, scalars, inst->operand[0], acc...)};
-        frame.masks[inst->operand[1]] = frame.masks[inst->operand[1]] | yes;
-        frame.masks[inst->operand[2]] = frame.masks[inst->operand[2]] | current.without(yes);
-        return S::proceed(frame, inst + 1, rows, scalars, acc...);
+        const LaneMask lanes{S::template lanesOf<kSource>(rows, scalars, inst->operand[0], acc...)};
+        return S::proceed(frame, splitBy<kNext>(frame, inst, frame.masks[kCurrentMask] & lanes), rows, scalars, acc...);
     }
 
     template <Source kSource>
@@ -178,8 +219,12 @@ struct Moves<Strip<std::index_sequence<K...>>> {
         enter(Op::copyMasked, kRow, copyMasked<Source::row>);
         enter(Op::copyMasked, kAccumulator, copyMasked<Source::accumulator>);
         enter(Op::broadcastMasked, kScalar, copyMasked<Source::scalar>);
-        enter(Op::split, kRow, split<Source::row>);
-        enter(Op::split, kAccumulator, split<Source::accumulator>);
+        enter(Op::split, kRow, split<Source::row, 0>);
+        enter(Op::split, kAccumulator, split<Source::accumulator, 0>);
+        enter(Op::splitInto, kRow, split<Source::row, 1>);
+        enter(Op::splitInto, kAccumulator, split<Source::accumulator, 1>);
+        enter(Op::splitPast, kRow, split<Source::row, 2>);
+        enter(Op::splitPast, kAccumulator, split<Source::accumulator, 2>);
         enter(Op::choose, kRow, choose<Source::row>);
         enter(Op::choose, kScalar, choose<Source::scalar>);
         enter(Op::choose, kAccumulator, choose<Source::accumulator>);
@@ -222,7 +267,11 @@ void addFlow(HandlerTables& tables) {
     addForward<enter>(tables, Op::enter);
     addPlain<repeat>(tables, Op::repeat);
     addForward<leave>(tables, Op::leave);
+    addPlain<again>(tables, Op::again);
+    addForward<leaveInto>(tables, Op::leaveInto);
     addForward<splitScalar>(tables, Op::splitScalar);
+    addForward<splitScalarInto<1>>(tables, Op::splitScalarInto);
+    addForward<splitScalarInto<2>>(tables, Op::splitScalarPast);
     addForward<follow>(tables, Op::follow);
     addForward<skipEmpty>(tables, Op::skipEmpty);
     addForward<discard>(tables, Op::discard);

@@ -19,6 +19,7 @@ void Lowerer::planBlocks() {
     endLabels_.resize(count);
     loopLabels_.resize(count);
     headLabels_.resize(count);
+    bodyLabels_.resize(count);
     for (ir::BlockId b = 0; b < count; ++b) {
         const ir::Block& block = program_.blocks[b];
         fallsIn_[b] = b > 0 && !block.loopHeader && block.predecessors.size() == 1 && block.predecessors[0] == b - 1 &&
@@ -28,6 +29,7 @@ void Lowerer::planBlocks() {
         endLabels_[b] = newLabel();
         loopLabels_[b] = newLabel();
         headLabels_[b] = newLabel();
+        bodyLabels_[b] = newLabel();
     }
     code_.masks = 1 + count;
 }
@@ -137,14 +139,26 @@ void Lowerer::lowerTerminator(ir::BlockId b) {
         case ir::Op::jump: {
             emitMoves(movesOf(b, 0), kCurrentMask);
             const ir::BlockId to = block.successors[0];
-            if (!(to == b + 1 && fallsIn_[to])) emit(Op::leave, {Operand::mask(maskOf(to))});
+            if (to == b + 1 && fallsIn_[to]) return;
+            const bool goesRound = to == facts_.cfg.loop[b] && program_.blocks[to].loopEnd == b + 1;
+            if (goesRound || to == b + 1) {
+                emit(goesRound ? Op::again : Op::leaveInto,
+                     {Operand::mask(maskOf(to)), Operand::label(bodyLabels_[to])});
+            } else {
+                emit(Op::leave, {Operand::mask(maskOf(to))});
+            }
             return;
         }
         case ir::Op::branch: {
             const Operand condition = operandOf(operands[0]);
             const uint32_t yes = edgeMask(b, 0), no = edgeMask(b, 1);
-            emit(condition.isScalar() ? Op::splitScalar : Op::split,
-                 {condition, Operand::mask(yes), Operand::mask(no)});
+            const bool into = entersNext(b, 0), past = !into && entersNext(b, 1), scalar = condition.isScalar();
+            std::vector<Operand> split{condition, Operand::mask(yes), Operand::mask(no)};
+            if (into || past) split.push_back(Operand::label(bodyLabels_[b + 1]));
+            emit(into   ? (scalar ? Op::splitScalarInto : Op::splitInto)
+                 : past ? (scalar ? Op::splitScalarPast : Op::splitPast)
+                        : (scalar ? Op::splitScalar : Op::split),
+                 std::move(split));
             lowerEdge(b, 0, yes);
             lowerEdge(b, 1, no);
             return;
@@ -207,6 +221,7 @@ void Lowerer::lowerBatch() {
             while (last + 1 < count && fallsIn_[last + 1]) ++last;
             const uint32_t skip = block.loopHeader ? loopLabels_[b] : endLabels_[last];
             emit(Op::enter, {Operand::mask(maskOf(b)), Operand::label(skip)});
+            bind(bodyLabels_[b]);
         }
         for (const ir::Inst& inst : block.insts) lowerInst(inst);
         lowerTerminator(b);

@@ -118,6 +118,11 @@ class Lowerer {
     void planBlocks();
     void planOutputs();
     void lowerTerminator(ir::BlockId block);
+    /// Whether an edge goes to the block that comes next in the code and has nothing to do on the way.
+    bool entersNext(ir::BlockId from, size_t successor) const {
+        const ir::BlockId to = program_.blocks[from].successors[successor];
+        return to == from + 1 && !fallsIn_[to] && program_.blocks[to].insts.front().op != ir::Op::phi;
+    }
     uint32_t newLabel() {
         code_.labels.push_back(0);
         return static_cast<uint32_t>(code_.labels.size() - 1);
@@ -144,7 +149,7 @@ class Lowerer {
     std::vector<bool> fused_;    // values that only exist inside a superinstruction
     std::vector<bool> fallsIn_;  // blocks that run on from the block before, with its mask
     std::vector<bool> full_;     // blocks that every lane runs first
-    std::vector<uint32_t> endLabels_, loopLabels_, headLabels_;  // by block
+    std::vector<uint32_t> endLabels_, loopLabels_, headLabels_, bodyLabels_;  // by block
     struct OutputPlan {
         uint32_t stores = 0;
         bool alias = false;

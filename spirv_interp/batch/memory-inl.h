@@ -71,6 +71,23 @@ HWY_INLINE void spreadWord(const Frame& frame, uint32_t row, uint32_t value) {
     fillRow(frame, row, [&](size_t) HWY_ATTR { return word; });
 }
 
+/// The words of lanes 0, 1, ... when they lie one behind the other inside the buffer; nullptr if they do not.
+template <bool kScalar>
+HWY_INLINE uint32_t* wordsInARow(const BufferBinding& buffer, const LaneSource<kScalar>& offsets, uint32_t lanes) {
+    if constexpr (kScalar) {
+        return nullptr;
+    } else {
+        const uint32_t first = offsets.at(0), bytes = lanes * 4;
+        if (first % 4 != 0 || buffer.size < bytes || first > buffer.size - bytes) return nullptr;
+        const VU steps = hn::ShiftLeft<2>(hn::Iota(kU32, 0));
+        for (uint32_t lane = 0; lane < lanes; lane += kVectorLanes) {
+            const VU expected = hn::Add(hn::Set(kU32, first + 4 * lane), steps);
+            if (!hn::AllTrue(kU32, hn::Eq(hn::Load(kU32, offsets.words() + lane), expected))) return nullptr;
+        }
+        return reinterpret_cast<uint32_t*>(buffer.data + first);
+    }
+}
+
 /// The lanes whose effects count.
 inline LaneMask effectLanes(const Frame& frame) {
     return frame.masks[kCurrentMask] & frame.live;

@@ -24,6 +24,10 @@ void gather(const Frame& frame, uint32_t row, const BufferBinding& buffer, const
         spreadWord(frame, row, loadElement(buffer, offsets.at(0)));
         return;
     }
+    if (const uint32_t* words = wordsInARow(buffer, offsets, frame.lanes)) {
+        fillRow(frame, row, [&](size_t lane) HWY_ATTR { return hn::LoadU(kU32, words + lane); });
+        return;
+    }
     // The hardware's gather takes signed offsets.
     if (buffer.size > 0x80000000u) {
         for (uint32_t lane = 0; lane < frame.lanes; ++lane) {
@@ -77,22 +81,50 @@ const Inst* loadNarrow(Frame& frame, const Inst* inst) {
     return inst + 1;
 }
 
+template <class T, bool kScalar>
+void storeLanes(const BufferBinding& buffer, const LaneSource<kScalar>& offsets, const uint32_t* values,
+                const LaneMask& lanes) {
+    lanes.forEach([&](uint32_t lane) {
+        T* element = elementAt<T>(buffer, offsets.at(lane));
+        if (element != nullptr) {
+            std::atomic_ref(*element).store(static_cast<T>(values[lane]), std::memory_order_relaxed);
+        }
+    });
+}
+
 template <class T, size_t kForm>
 const Inst* storeBuffer(Frame& frame, const Inst* inst) {
     const LaneSource<kForm & 1> descriptors(frame, inst->operand[0]);
     const LaneSource<(kForm >> 1 & 1)> offsets(frame, inst->operand[1]);
     const auto* values = frame.row<uint32_t>(inst->operand[2]);
-    effectLanes(frame).forEach([&](uint32_t lane) {
-        T* element = elementAt<T>(bufferOf(frame, inst->operand[3], descriptors.at(lane)), offsets.at(lane));
-        if (element != nullptr) {
-            std::atomic_ref(*element).store(static_cast<T>(values[lane]), std::memory_order_relaxed);
+    const uint32_t resource = inst->operand[3];
+    const LaneMask lanes = effectLanes(frame);
+    if (!descriptors.isUniform(frame.lanes)) {
+        lanes.forEach([&](uint32_t lane) {
+            storeLanes<T>(bufferOf(frame, resource, descriptors.at(lane)), offsets, values,
+                          LaneMask{uint64_t{1} << lane});
+        });
+        return inst + 1;
+    }
+    const BufferBinding buffer = bufferOf(frame, resource, descriptors.at(0));
+    uint32_t* words = sizeof(T) == 4 ? wordsInARow(buffer, offsets, frame.lanes) : nullptr;
+    if (words == nullptr) {
+        storeLanes<T>(buffer, offsets, values, lanes);
+        return inst + 1;
+    }
+    for (uint32_t lane = 0; lane < frame.lanes; lane += kVectorLanes) {
+        const LaneMask part{LaneMask::first(kVectorLanes).bits << lane};
+        if (lanes.contains(part)) {
+            hn::StoreU(hn::Load(kU32, values + lane), kU32, words + lane);
+        } else {
+            storeLanes<T>(buffer, offsets, values, lanes & part);
         }
-    });
+    }
     return inst + 1;
 }
 
 /// One word for all lanes.
-const Inst* loadBufferScalar(Frame& frame, const Inst* inst) {
+HWY_INLINE const Inst* loadBufferScalar(Frame& frame, const Inst* inst) {
     uint32_t* scalars = frame.scalars;
     const BufferBinding buffer = bufferOf(frame, inst->operand[3], scalars[inst->operand[1]]);
     scalars[inst->operand[0]] = loadElement(buffer, scalars[inst->operand[2]]);
@@ -108,14 +140,28 @@ const Inst* bufferSize(Frame& frame, const Inst* inst) {
     return inst + 1;
 }
 
+/// Word `index` of a variable for all lanes; nullptr outside it.
+inline uint32_t* localRow(const Frame& frame, uint32_t first, uint32_t words, uint32_t index) {
+    return index < words ? frame.local + size_t{first + index} * frame.localStride : nullptr;
+}
+
 template <bool kScalar>
 const Inst* loadLocal(Frame& frame, const Inst* inst) {
     const LaneSource<kScalar> indices(frame, inst->operand[1]);
     const uint32_t first = inst->operand[2], words = inst->operand[3];
+    if (indices.isUniform(frame.lanes)) {
+        const uint32_t* row = localRow(frame, first, words, indices.at(0));
+        if (row == nullptr) {
+            spreadWord(frame, inst->operand[0], 0);
+        } else {
+            fillRow(frame, inst->operand[0], [&](size_t lane) HWY_ATTR { return hn::Load(kU32, row + lane); });
+        }
+        return inst + 1;
+    }
+    auto* results = frame.row<uint32_t>(inst->operand[0]);
     for (uint32_t lane = 0; lane < frame.lanes; ++lane) {
-        const uint32_t index = indices.at(lane);
-        frame.row<uint32_t>(inst->operand[0])[lane] =
-            index < words ? frame.local[size_t{first + index} * frame.localStride + lane] : 0;
+        const uint32_t* row = localRow(frame, first, words, indices.at(lane));
+        results[lane] = row == nullptr ? 0 : row[lane];
     }
     return inst + 1;
 }
@@ -125,9 +171,17 @@ const Inst* storeLocal(Frame& frame, const Inst* inst) {
     const LaneSource<kScalar> indices(frame, inst->operand[0]);
     const auto* values = frame.row<uint32_t>(inst->operand[1]);
     const uint32_t first = inst->operand[2], words = inst->operand[3];
-    frame.masks[kCurrentMask].forEach([&](uint32_t lane) {
-        const uint32_t index = indices.at(lane);
-        if (index < words) frame.local[size_t{first + index} * frame.localStride + lane] = values[lane];
+    const LaneMask current = frame.masks[kCurrentMask];
+    if (current.contains(LaneMask::first(frame.lanes)) && indices.isUniform(frame.lanes)) {
+        uint32_t* row = localRow(frame, first, words, indices.at(0));
+        for (uint32_t lane = 0; row != nullptr && lane < frame.lanes; lane += kVectorLanes) {
+            hn::Store(hn::Load(kU32, values + lane), kU32, row + lane);
+        }
+        return inst + 1;
+    }
+    current.forEach([&](uint32_t lane) {
+        uint32_t* row = localRow(frame, first, words, indices.at(lane));
+        if (row != nullptr) row[lane] = values[lane];
     });
     return inst + 1;
 }
@@ -158,7 +212,7 @@ void addForms(HandlerTables& tables, std::index_sequence<kForm...>) {
 
 void addMemory(HandlerTables& tables) {
     addForms(tables, std::make_index_sequence<4>());
-    addPlain<loadBufferScalar>(tables, Op::loadBuffer, 4);
+    addForward<loadBufferScalar>(tables, Op::loadBuffer, 4);
     addPlain<bufferSize<false>>(tables, Op::bufferSize, 0);
     addPlain<bufferSize<true>>(tables, Op::bufferSize, 1);
     addPlain<loadLocal<false>>(tables, Op::loadLocal);

@@ -20,11 +20,17 @@ uint32_t placeOf(const MachineCode& code, const Operand& operand) {
 class Region {
   public:
     Region(MachineCode& code, uint32_t begin, uint32_t end, const std::vector<uint32_t>& writes,
-           std::vector<uint32_t>& lastWriter)
-        : code_(code), begin_(begin), nodes_(end - begin), writes_(writes), lastWriter_(lastWriter) {}
+           const std::vector<uint32_t>& becomes, std::vector<uint32_t>& lastWriter)
+        : code_(code),
+          begin_(begin),
+          nodes_(end - begin),
+          writes_(writes),
+          becomes_(becomes),
+          lastWriter_(lastWriter) {}
 
     void run() {
         connect();
+        deferNextRound();
         measure();
         std::vector<uint32_t> order;
         order.reserve(nodes_.size());
@@ -98,6 +104,41 @@ class Region {
         }
     }
 
+    bool reaches(uint32_t from, uint32_t to) const {
+        constexpr size_t kMost = 256;
+        std::vector<uint32_t> open{to}, seen{to};
+        while (!open.empty()) {
+            const uint32_t n = open.back();
+            open.pop_back();
+            for (const uint32_t b : nodes_[n].before) {
+                // A walk that gets long says yes: nothing is lost but an order that would be nicer.
+                if (b == from || seen.size() > kMost) return true;
+                if (std::find(seen.begin(), seen.end(), b) != seen.end()) continue;
+                seen.push_back(b);
+                open.push_back(b);
+            }
+        }
+        return false;
+    }
+
+    /// Puts the definition of what a place is about to become behind the readers of what it is.
+    void deferNextRound() {
+        std::vector<std::pair<uint32_t, uint32_t>> defined;  // place that it becomes, node
+        for (uint32_t n = 0; n < nodes_.size(); ++n) {
+            forEachPlace(code_.insts[begin_ + n], [&](uint32_t place, bool written) {
+                if (written && becomes_[place] != kNone) defined.emplace_back(becomes_[place], n);
+            });
+        }
+        for (const auto& [place, definition] : defined) {
+            for (uint32_t n = 0; n < nodes_.size(); ++n) {
+                bool reads = false;
+                forEachPlace(code_.insts[begin_ + n],
+                             [&](uint32_t p, bool written) { reads |= p == place && !written; });
+                if (reads && n != definition && !reaches(definition, n)) constrain(n, definition);
+            }
+        }
+    }
+
     /// The rows that a tree of values with one reader takes, in order of need; and the order of operands by it.
     void measure() {
         for (Node& node : nodes_) {
@@ -133,9 +174,51 @@ class Region {
     MachineCode& code_;
     const uint32_t begin_;
     std::vector<Node> nodes_;
-    const std::vector<uint32_t>& writes_;  // by place, in the whole code
-    std::vector<uint32_t>& lastWriter_;    // by place: a node of this region, or kNone
+    const std::vector<uint32_t>& writes_;   // by place, in the whole code
+    const std::vector<uint32_t>& becomes_;  // by place: where a move further on takes its value, or kNone
+    std::vector<uint32_t>& lastWriter_;     // by place: a node of this region, or kNone
 };
+
+bool isMove(Op op) {
+    return op == Op::copy || op == Op::copyMasked || op == Op::moveScalar;
+}
+
+/// Lets the next value of a phi be computed where a move behind would put it, if nobody can tell.
+void foldScalarMoves(MachineCode& code, const std::vector<bool>& isTarget, const std::vector<uint32_t>& writes) {
+    std::vector<uint32_t> reads;
+    const auto countOf = [&](uint32_t scalar) -> uint32_t& {
+        if (scalar >= reads.size()) reads.resize(scalar + 1);
+        return reads[scalar];
+    };
+    for (const MachineInst& inst : code.insts) {
+        for (const Operand& operand : inst.operands) {
+            if (operand.isScalar() && !operand.written) ++countOf(operand.id);
+        }
+    }
+    for (uint32_t k = 0; k < code.insts.size(); ++k) {
+        MachineInst& move = code.insts[k];
+        if (move.op != Op::moveScalar || countOf(move.operands[1].id) != 1) continue;
+        const uint32_t to = move.operands[0].id, from = move.operands[1].id;
+        if (writes[placeOf(code, move.operands[0])] < 2) continue;
+        for (uint32_t j = k; !isTarget[j] && j-- > 0;) {
+            MachineInst& inst = code.insts[j];
+            const auto names = [&](uint32_t scalar, bool written) {
+                return std::any_of(inst.operands.begin(), inst.operands.end(), [&](const Operand& operand) {
+                    return operand.isScalar() && operand.id == scalar && operand.written == written;
+                });
+            };
+            if (names(from, true)) {
+                // Both are read before the result is written.
+                inst.operands[0].id = to;
+                move.dead = true;
+                break;
+            }
+            const auto isLabel = [](const Operand& operand) { return operand.kind == Operand::Kind::label; };
+            if (std::any_of(inst.operands.begin(), inst.operands.end(), isLabel)) break;
+            if (names(to, true) || names(to, false)) break;
+        }
+    }
+}
 
 }  // namespace
 
@@ -152,13 +235,19 @@ void schedule(MachineCode& code) {
         }
     }
     writes.resize(std::max(writes.size(), code.registers.size()));
-    std::vector<uint32_t> lastWriter(writes.size(), kNone);
+    std::vector<uint32_t> lastWriter(writes.size(), kNone), becomes(writes.size(), kNone);
+    for (const MachineInst& inst : code.insts) {
+        if (!isMove(inst.op)) continue;
+        const uint32_t to = placeOf(code, inst.operands[0]), from = placeOf(code, inst.operands[1]);
+        if (from != kNone && writes[to] > 1) becomes[from] = to;
+    }
     for (uint32_t k = 0; k < code.insts.size();) {
         uint32_t end = k;
         while (end < code.insts.size() && isMovableOp(code.insts[end].op) && (end == k || !isTarget[end])) ++end;
-        if (end > k + 1) Region(code, k, end, writes, lastWriter).run();
+        if (end > k + 1) Region(code, k, end, writes, becomes, lastWriter).run();
         k = std::max(end, k + 1);
     }
+    foldScalarMoves(code, isTarget, writes);
 }
 
 }  // namespace vernier::batch

@@ -107,16 +107,23 @@ std::optional<StripShape> stripShape(const MachineInst& inst) {
         case Op::broadcastMasked:
             return StripShape{1, 1, false};
         case Op::split:
+        case Op::splitInto:
+        case Op::splitPast:
         case Op::choose:
             return StripShape{0, 1, false};
         case Op::enter:
         case Op::leave:
+        case Op::leaveInto:
         case Op::splitScalar:
+        case Op::splitScalarInto:
+        case Op::splitScalarPast:
         case Op::follow:
         case Op::skipEmpty:
         case Op::discard:
         case Op::moveScalar:
             return StripShape{0, 0, false};
+        case Op::loadBuffer:  // of a scalar
+            return result ? std::nullopt : std::optional(StripShape{0, 0, false});
         default:
             return std::nullopt;
     }

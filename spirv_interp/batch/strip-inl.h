@@ -200,9 +200,9 @@ void addPlain(HandlerTables& tables, Op op, size_t form = 0) {
 
 /// Enters a plain handler that satisfies Strip::forward.
 template <PlainHandler kHandler>
-void addForward(HandlerTables& tables, Op op) {
-    tables.full[static_cast<size_t>(op)][0] = FullStrip::erase(FullStrip::forward<kHandler>);
-    tables.narrow[static_cast<size_t>(op)][0] = NarrowStrip::erase(NarrowStrip::forward<kHandler>);
+void addForward(HandlerTables& tables, Op op, size_t form = 0) {
+    tables.full[static_cast<size_t>(op)][form] = FullStrip::erase(FullStrip::forward<kHandler>);
+    tables.narrow[static_cast<size_t>(op)][form] = NarrowStrip::erase(NarrowStrip::forward<kHandler>);
 }
 
 /// Enters an operation that satisfies Strip::compound.

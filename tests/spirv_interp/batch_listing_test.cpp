@@ -86,25 +86,24 @@ draw:
     1  ieq s0, s5, 0x00000000
     2  end
 batch:
-    0  splitScalar s0, m2, m3
+    0  splitScalarInto s0, m2, m3, @2
     1  enter m2, @3
     2  discard
     3  enter m3, @6
     4  moveScalar s1, 0x00000000
-    5  leave m4
-    6  enter m4, @17
+    5  leaveInto m4, @7
+    6  enter m4, @16
     7  slt acc, s1, r0
-    8  split acc, m5, m7
+    8  splitInto acc, m5, m7, @13
     9  skipEmpty m7, @12
    10  broadcastMasked r1, s1, m7
    11  follow m6, m7
-   12  enter m5, @16
-   13  iadd s3, s1, 0x00000001
-   14  moveScalar s1, s3
-   15  leave m4
-   16  repeat m4, @6
-   17  enter m6, @18
-   18  end
+   12  enter m5, @15
+   13  iadd s1, s1, 0x00000001
+   14  again m4, @7
+   15  repeat m4, @6
+   16  enter m6, @17
+   17  end
 )");
 }
 
@@ -133,16 +132,16 @@ input 0 r0
 output 0 r2
 batch:
     0  copy r1, r0
-    1  leave m2
+    1  leaveInto m2, @3
     2  enter m2, @12
     3  slt acc, r1, 0x00000064
-    4  split acc, m3, m5
+    4  splitInto acc, m3, m5, @9
     5  skipEmpty m5, @8
     6  copyMasked r2, r1, m5
     7  follow m4, m5
     8  enter m3, @11
     9  iadd r1, r1, r0
-   10  leave m2
+   10  again m2, @3
    11  repeat m2, @2
    12  enter m4, @13
    13  end
@@ -242,6 +241,58 @@ batch:
     4  ffloor acc, acc
     5  fneg r1, acc
     6  end
+)");
+}
+
+TEST(BatchListing, WhatAPhiBecomesIsComputedAfterItsLastUse) {
+    // Both phis keep their rows: %5 comes first in the program, but %6 still reads what it replaces.
+    EXPECT_EQ(listing(R"(program fragment "main"
+input 0 f32 user 0.0 smooth center
+input 1 f32 user 0.1 smooth center
+output 0 f32 user 0.0
+output 1 f32 user 0.1
+b0:
+  %0 f32 = input #0
+  %1 f32 = input #1
+  jump b1
+b1 loop b3 <- b0 b2:
+  %2 f32 = phi %0 %5
+  %3 f32 = phi %1 %6
+  %4 b1 = folt.f32 %2 %3
+  branch %4 b2 b3
+b2 <- b1:
+  %5 f32 = fadd %2 %1
+  %6 f32 = fmax %2 %3
+  jump b1
+b3 <- b1:
+  %7 f32 = phi %2
+  %8 f32 = phi %3
+  storeOutput #0 %7
+  storeOutput #1 %8
+  ret
+)"),
+              R"(registers 5
+input 0 r0
+input 1 r1
+output 0 r3
+output 1 r4
+batch:
+    0  copy r2, r1
+    1  leaveInto m2, @3
+    2  enter m2, @14
+    3  folt acc, r0, r2
+    4  splitInto acc, m3, m5, @10
+    5  skipEmpty m5, @9
+    6  copyMasked r3, r0, m5
+    7  copyMasked r4, r2, m5
+    8  follow m4, m5
+    9  enter m3, @13
+   10  fmax r2, r0, r2
+   11  fadd r0, r0, r1
+   12  again m2, @3
+   13  repeat m2, @2
+   14  enter m4, @15
+   15  end
 )");
 }
 
