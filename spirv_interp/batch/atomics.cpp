@@ -16,16 +16,6 @@ HWY_BEFORE_NAMESPACE();
 namespace vernier::batch::HWY_NAMESPACE {
 namespace {
 
-/// Replaces *word by change(*word) in one step; returns the old word.
-template <class U, class F>
-U exchangeBy(U* word, F&& change) {
-    std::atomic_ref target(*word);
-    U old = target.load(std::memory_order_relaxed);
-    while (!target.compare_exchange_weak(old, change(old), std::memory_order_acq_rel, std::memory_order_relaxed)) {
-    }
-    return old;
-}
-
 /// A word of an integer and of a float with as many bits.
 template <class U>
 struct Views;
@@ -40,23 +30,58 @@ struct Views<uint64_t> {
     using Float = double;
 };
 
+/// What an operation leaves in a word.
 template <class U>
-U atomic(ir::AtomicOp operation, U* word, U value, U comparator) {
-    std::atomic_ref target(*word);
+U combined(ir::AtomicOp operation, U old, U value, U comparator) {
     const auto asSigned = [](U x) { return static_cast<typename Views<U>::Signed>(x); };
     const auto asFloat = [](U x) { return std::bit_cast<typename Views<U>::Float>(x); };
     const auto isNan = [&](U x) { return asFloat(x) != asFloat(x); };
     switch (operation) {
         case ir::AtomicOp::add:
+            return old + value;
+        case ir::AtomicOp::sub:
+            return old - value;
+        case ir::AtomicOp::iand:
+            return old & value;
+        case ir::AtomicOp::ior:
+            return old | value;
+        case ir::AtomicOp::ixor:
+            return old ^ value;
+        case ir::AtomicOp::exchange:
+        case ir::AtomicOp::store:
+            return value;
+        case ir::AtomicOp::load:
+            return old;
+        case ir::AtomicOp::smin:
+            return asSigned(old) < asSigned(value) ? old : value;
+        case ir::AtomicOp::smax:
+            return asSigned(old) > asSigned(value) ? old : value;
+        case ir::AtomicOp::umin:
+            return old < value ? old : value;
+        case ir::AtomicOp::umax:
+            return old > value ? old : value;
+        case ir::AtomicOp::compareExchange:
+            return old == comparator ? value : old;
+        case ir::AtomicOp::fadd:
+            return std::bit_cast<U>(asFloat(old) + asFloat(value));
+        // A NaN gives way to the other operand, as in fmin and fmax.
+        case ir::AtomicOp::fmin:
+            return isNan(value) || asFloat(old) < asFloat(value) ? old : value;
+        case ir::AtomicOp::fmax:
+            return isNan(value) || asFloat(old) > asFloat(value) ? old : value;
+    }
+    return old;
+}
+
+/// The old word. Memory that several threads see is changed in one step.
+template <class U>
+U atomic(ir::AtomicOp operation, U* word, U value, U comparator) {
+    std::atomic_ref target(*word);
+    switch (operation) {
+        case ir::AtomicOp::add:
             return target.fetch_add(value);
         case ir::AtomicOp::sub:
             return target.fetch_sub(value);
-        case ir::AtomicOp::iand:
-            return target.fetch_and(value);
-        case ir::AtomicOp::ior:
-            return target.fetch_or(value);
-        case ir::AtomicOp::ixor:
-            return target.fetch_xor(value);
         case ir::AtomicOp::exchange:
             return target.exchange(value);
         case ir::AtomicOp::load:
@@ -64,30 +89,26 @@ U atomic(ir::AtomicOp operation, U* word, U value, U comparator) {
         case ir::AtomicOp::store:
             target.store(value);
             return 0;
-        case ir::AtomicOp::smin:
-            return exchangeBy(word, [&](U old) { return asSigned(old) < asSigned(value) ? old : value; });
-        case ir::AtomicOp::smax:
-            return exchangeBy(word, [&](U old) { return asSigned(old) > asSigned(value) ? old : value; });
-        case ir::AtomicOp::umin:
-            return exchangeBy(word, [&](U old) { return old < value ? old : value; });
-        case ir::AtomicOp::umax:
-            return exchangeBy(word, [&](U old) { return old > value ? old : value; });
-        case ir::AtomicOp::compareExchange:
-            target.compare_exchange_strong(comparator, value);
-            return comparator;
-        case ir::AtomicOp::fadd:
-            return exchangeBy(word, [&](U old) { return std::bit_cast<U>(asFloat(old) + asFloat(value)); });
-        // A NaN gives way to the other operand, as in fmin and fmax.
-        case ir::AtomicOp::fmin:
-            return exchangeBy(word, [&](U old) { return isNan(value) || asFloat(old) < asFloat(value) ? old : value; });
-        case ir::AtomicOp::fmax:
-            return exchangeBy(word, [&](U old) { return isNan(value) || asFloat(old) > asFloat(value) ? old : value; });
+        default:
+            break;
     }
-    return 0;
+    U old = target.load(std::memory_order_relaxed);
+    while (!target.compare_exchange_weak(old, combined(operation, old, value, comparator), std::memory_order_acq_rel,
+                                         std::memory_order_relaxed)) {
+    }
+    return old;
+}
+
+/// The same in memory that only this thread sees.
+template <class U>
+U alone(ir::AtomicOp operation, U* word, U value, U comparator) {
+    const U old = *word;
+    *word = combined(operation, old, value, comparator);
+    return operation == ir::AtomicOp::store ? 0 : old;
 }
 
 /// Runs an atomic for the lanes whose effects count; find(lane) is the word or nullptr. The others get 0.
-template <class U, class Find>
+template <class U, auto kApply = atomic<U>, class Find>
 void runAtomic(const Frame& frame, uint32_t result, uint32_t operation, uint32_t value, uint32_t comparator,
                Find&& find) {
     for (uint32_t lane = 0; lane < frame.lanes; ++lane) writeLane<U>(frame, result, lane, 0);
@@ -95,8 +116,8 @@ void runAtomic(const Frame& frame, uint32_t result, uint32_t operation, uint32_t
         U* word = find(lane);
         if (word == nullptr) return;
         writeLane<U>(frame, result, lane,
-                     atomic<U>(static_cast<ir::AtomicOp>(operation), word, readLane<U>(frame, value, lane),
-                               readLane<U>(frame, comparator, lane)));
+                     kApply(static_cast<ir::AtomicOp>(operation), word, readLane<U>(frame, value, lane),
+                            readLane<U>(frame, comparator, lane)));
     });
 }
 
@@ -105,6 +126,13 @@ const Inst* atomicBuffer(Frame& frame, const Inst* inst) {
     const Inst& in = *inst;
     const auto* descriptors = frame.row<uint32_t>(in[1]);
     const auto* offsets = frame.row<uint32_t>(in[2]);
+    if (in[3] != ir::kNoIndex && frame.program->resources[in[3]].kind == ir::ResourceKind::workgroupMemory) {
+        // A work-group never leaves its thread.
+        const BufferBinding memory = bufferOf(frame, in[3], 0);
+        runAtomic<U, alone<U>>(frame, in[0], in[4], in[5], in[6],
+                               [&](uint32_t lane) { return elementAt<U>(memory, offsets[lane]); });
+        return inst + instsFor(7);
+    }
     runAtomic<U>(frame, in[0], in[4], in[5], in[6],
                  [&](uint32_t lane) { return elementAt<U>(bufferOf(frame, in[3], descriptors[lane]), offsets[lane]); });
     return inst + instsFor(7);
