@@ -7,30 +7,40 @@
 namespace vernier::ir {
 
 void optimise(Program& program, const OptimiseOptions& options) {
+    const auto show = [&](std::string_view pass) {
+        if (options.observer != nullptr) (*options.observer)(pass, program);
+    };
+    const auto run = [&](std::string_view name, bool (*pass)(Program&)) {
+        const bool changed = pass(program);
+        if (changed) show(name);
+        return changed;
+    };
+    show("lowering");
     removeUnreachable(program);
-    removeDead(program);
+    run("removeDead", removeDead);
     // Which resources are only read, for the passes that move loads.
     analyse(program);
     // A branch that goes away exposes constants and equal values, and the other way round; two rounds find nearly all.
     // The first puts loops into the shape that unrolling knows.
     for (int round = 0; round < 2; ++round) {
-        bool changed = simplifyPhis(program);
-        changed |= foldConstants(program);
-        changed |= eliminateCommon(program);
-        changed |= removeDead(program);
-        changed |= foldBranches(program);
-        changed |= convertIfs(program);
-        if (round == 0) changed |= unrollLoops(program);
+        bool changed = run("simplifyPhis", simplifyPhis);
+        changed |= run("foldConstants", foldConstants);
+        changed |= run("eliminateCommon", eliminateCommon);
+        changed |= run("removeDead", removeDead);
+        changed |= run("foldBranches", foldBranches);
+        changed |= run("convertIfs", convertIfs);
+        if (round == 0) changed |= run("unrollLoops", unrollLoops);
         if (!changed) break;
     }
-    foldBranches(program);
-    simplifyPhis(program);
-    foldConstants(program);
-    if (options.contract) contract(program);
-    removeDead(program);
-    closeLoops(program);
+    run("foldBranches", foldBranches);
+    run("simplifyPhis", simplifyPhis);
+    run("foldConstants", foldConstants);
+    if (options.contract) run("contract", contract);
+    run("removeDead", removeDead);
+    run("closeLoops", closeLoops);
     compact(program);
     analyse(program);
+    show("compact");
 }
 
 }  // namespace vernier::ir

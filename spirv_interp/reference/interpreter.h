@@ -186,7 +186,30 @@ class ElementaryFunctions {
     virtual float evaluate(uint32_t function, float x, float y) const = 0;
 };
 
+/// An instruction that an invocation has executed.
+struct Step {
+    uint32_t invocation = 0;  // place in the quad or subgroup
+    spv::Op op = spv::OpNop;
+    uint32_t result = 0;  // id; 0 without one. Of OpFunctionCall when the call returns
+    uint32_t type = 0;    // id of the result's type, or 0
+    std::span<const uint32_t> operands;
+    uint32_t line = 0;  // of the source, 0 = unknown
+    /// The scalars of the result, or of the object of an OpStore; empty for pointers. Which of the two counts follows
+    /// from isFloat.
+    bool isFloat = false;
+    std::vector<double> numbers;
+    std::vector<uint64_t> bits;
+};
+
+class StepObserver {
+  public:
+    virtual ~StepObserver() = default;
+    virtual void executed(const Step& step) = 0;
+};
+
 struct Options {
+    /// Told of every instruction after its execution. Must outlive the interpreter.
+    StepObserver* observer = nullptr;
     /// Round every 32-bit float result to float32, inputs and image results included. No effect with Number =
     /// float.
     bool roundToFloat = false;

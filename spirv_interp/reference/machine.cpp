@@ -35,8 +35,38 @@ typename Machine<Number>::Status Machine<Number>::run() {
         const Instruction& instruction = frame.function->instructions[frame.next++];
         charge(1);
         execute(instruction);
+        // A call's result is there when it returns, and who waits executes the instruction again.
+        if (program_.options.observer == nullptr || status_ == Status::waiting) continue;
+        if (instruction.op != spv::OpFunctionCall) observe(instruction);
     }
     return status_;
+}
+
+template <class Number>
+void Machine<Number>::observe(const Instruction& i) const {
+    Step step;
+    step.invocation = invocation_;
+    step.op = i.op;
+    step.result = i.result;
+    step.type = i.type;
+    step.operands = i.operands;
+    step.line = i.line;
+    const Id shown = i.op == spv::OpStore ? i.operand(1) : i.result;
+    const IdKind kind = shown == 0 || frames_.empty() ? IdKind::none : module_.info(shown).kind;
+    // Instructions of sets that are ignored have ids without values.
+    const bool hasValue =
+        kind == IdKind::constant || (kind == IdKind::local && frames_.back().values[module_.info(shown).index].defined);
+    if (hasValue) {
+        const Value<Number>& v = value(shown);
+        const Type& type = module_.valueType(shown);
+        const bool flat = type.isScalar() || type.kind == TypeKind::vector || type.kind == TypeKind::matrix;
+        step.isFloat = flat && module_.scalarType(type).kind == TypeKind::floating;
+        for (size_t k = 0; flat && k < v.scalars.size(); ++k) {
+            step.numbers.push_back(static_cast<double>(v.scalars[k].number));
+            step.bits.push_back(v.scalars[k].bits);
+        }
+    }
+    program_.options.observer->executed(step);
 }
 
 template <class Number>
@@ -166,6 +196,10 @@ void Machine<Number>::returnFrom(const Value<Number>* result) {
     if (!result->pointer && !result->image && result->scalars.size() != module_.valueScalars(type))
         fail("the result of call " + name(caller) + " does not fit its type");
     frames_.back().values[info.index] = *result;
+    if (program_.options.observer == nullptr) return;
+    // The call stands before the instruction that its frame comes to next.
+    const Frame& frame = frames_.back();
+    observe(frame.function->instructions[frame.next - 1]);
 }
 
 template <class Number>
@@ -191,7 +225,10 @@ void Machine<Number>::enterBlock(Id label) {
     frame.block = label;
     frame.blockRank = block.rank;
     frame.next = next;
-    for (auto& [phi, incoming] : phis) setValue(*phi, std::move(incoming));
+    for (auto& [phi, incoming] : phis) {
+        setValue(*phi, std::move(incoming));
+        if (program_.options.observer != nullptr) observe(*phi);
+    }
 }
 
 /// Keeps the loops around the frame's place: those that `target` is outside of are left, a back edge counts.

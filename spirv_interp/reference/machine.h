@@ -150,6 +150,7 @@ class Machine {
     bool executeControl(const Instruction& i);
     void demote();
     void charge(uint64_t steps);
+    void observe(const Instruction& i) const;
     /// True when the others have come and their values are in group_; false when the machine has to wait for them
     /// first. Whoever gets true resets group_.
     bool meet(Meeting meeting, Scalars<Number> offer);

@@ -88,6 +88,7 @@ struct Instruction {
     Id type = 0;  // result type
     Id result = 0;
     std::span<const uint32_t> operands;  // without result type and result
+    uint32_t line = 0;                   // source line, 0 = unknown
 
     uint32_t operand(size_t index) const {
         if (index >= operands.size()) fail(name(op) + " has too few operands");

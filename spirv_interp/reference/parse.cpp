@@ -96,8 +96,12 @@ class Parser {
     void visit(const Instruction& i) {
         switch (i.op) {
             case spv::OpNop:
+                return;
             case spv::OpLine:
+                line_ = i.operand(1);
+                return;
             case spv::OpNoLine:
+                line_ = 0;
                 return;
             case spv::OpFunction:
                 return beginFunction(i);
@@ -443,6 +447,7 @@ class Parser {
         if (i.op == spv::OpExtInst && module_.info(i.operand(0)).kind == IdKind::ignoredSet) return;
         if (i.result != 0) defineLocal(i.result, module_.typeIndex(i.type));
         function_->instructions.push_back(i);
+        function_->instructions.back().line = line_;
         if (!isTerminator(i.op)) return;
         function_->blocks.back().end = function_->instructions.size();
         inBlock_ = false;
@@ -452,6 +457,7 @@ class Parser {
     Function* function_ = nullptr;  // the one being parsed
     uint32_t functionType_ = 0;
     bool inBlock_ = false;
+    uint32_t line_ = 0;                 // of the source
     std::vector<size_t> localSizeIds_;  // entry points
 };
 

@@ -1,0 +1,178 @@
+#include "spirv_interp/tool/invocation.h"
+
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+
+namespace vernier::tool {
+namespace {
+
+constexpr std::pair<spv::BuiltIn, const char*> kBuiltins[] = {
+    {spv::BuiltInPosition, "Position"},         {spv::BuiltInPointSize, "PointSize"},
+    {spv::BuiltInClipDistance, "ClipDistance"}, {spv::BuiltInCullDistance, "CullDistance"},
+    {spv::BuiltInVertexIndex, "VertexIndex"},   {spv::BuiltInInstanceIndex, "InstanceIndex"},
+    {spv::BuiltInBaseVertex, "BaseVertex"},     {spv::BuiltInBaseInstance, "BaseInstance"},
+    {spv::BuiltInDrawIndex, "DrawIndex"},       {spv::BuiltInFragCoord, "FragCoord"},
+    {spv::BuiltInFrontFacing, "FrontFacing"},   {spv::BuiltInPointCoord, "PointCoord"},
+    {spv::BuiltInSampleId, "SampleId"},         {spv::BuiltInSamplePosition, "SamplePosition"},
+    {spv::BuiltInSampleMask, "SampleMask"},     {spv::BuiltInPrimitiveId, "PrimitiveId"},
+    {spv::BuiltInFragDepth, "FragDepth"},
+};
+
+std::vector<std::string> split(const std::string& text) {
+    std::vector<std::string> parts;
+    for (size_t first = 0; first <= text.size();) {
+        const size_t comma = std::min(text.find(',', first), text.size());
+        const size_t begin = text.find_first_not_of(" \t", first);
+        const size_t end = text.find_last_not_of(" \t", comma - 1);
+        if (comma > first && begin < comma) parts.push_back(text.substr(begin, end - begin + 1));
+        first = comma + 1;
+    }
+    return parts;
+}
+
+template <class T>
+void append(std::vector<std::byte>& bytes, T value) {
+    const size_t at = bytes.size();
+    bytes.resize(at + sizeof value);
+    std::memcpy(bytes.data() + at, &value, sizeof value);
+}
+
+Result<std::vector<std::byte>> parseBytes(const std::string& text) {
+    const size_t colon = text.find(':');
+    const std::string kind = text.substr(0, colon);
+    const std::string rest = colon == std::string::npos ? "" : text.substr(colon + 1);
+    std::vector<std::byte> bytes;
+    if (kind == "zero") {
+        const unsigned long size = std::strtoul(rest.c_str(), nullptr, 0);
+        if (size == 0 || size > (1ul << 30)) return invalidArgument("zero:" + rest + " is no size in bytes");
+        bytes.resize((size + 3) / 4 * 4);
+        return bytes;
+    }
+    for (const std::string& item : split(rest)) {
+        if (kind == "f") {
+            append(bytes, std::strtof(item.c_str(), nullptr));
+        } else if (kind == "d") {
+            append(bytes, std::strtod(item.c_str(), nullptr));
+        } else if (kind == "i" || kind == "u") {
+            append(bytes, static_cast<uint32_t>(std::strtoll(item.c_str(), nullptr, 0)));
+        } else {
+            return invalidArgument("bytes are f:, d:, i:, u: or zero:, not \"" + kind + ":\"");
+        }
+    }
+    return bytes;
+}
+
+template <class Number>
+reference::Scalar<Number> scalarOf(reference::ScalarKind kind, const std::string& text) {
+    using reference::ScalarKind;
+    using Scalar = reference::Scalar<Number>;
+    switch (kind) {
+        case ScalarKind::boolean:
+            return Scalar::ofBits(text == "true" || (text != "false" && std::strtol(text.c_str(), nullptr, 0) != 0));
+        case ScalarKind::float32:
+            return Scalar::ofNumber(Number(std::strtof(text.c_str(), nullptr)));
+        case ScalarKind::float64:
+            return Scalar::ofNumber(static_cast<Number>(std::strtod(text.c_str(), nullptr)));
+        case ScalarKind::int64:
+        case ScalarKind::uint64:
+            return Scalar::ofBits(static_cast<uint64_t>(std::strtoll(text.c_str(), nullptr, 0)));
+        default:
+            return Scalar::ofBits(static_cast<uint32_t>(std::strtoll(text.c_str(), nullptr, 0)));
+    }
+}
+
+bool isNamed(const reference::InterfaceVariable& variable, const std::string& name) {
+    if (!variable.name.empty() && (variable.name == name || variable.name == "gl_" + name)) return true;
+    return variable.isBuiltin ? builtinName(variable.builtin) == name
+                              : "location" + std::to_string(variable.location) == name;
+}
+
+}  // namespace
+
+Status applySetting(const std::string& setting, Invocation& invocation) {
+    const size_t equals = setting.find('=');
+    if (equals == std::string::npos) return invalidArgument("\"" + setting + "\" has no \"=\"");
+    const std::string name = setting.substr(0, equals), value = setting.substr(equals + 1);
+    if (name.starts_with("buffer")) {
+        unsigned set = 0, binding = 0;
+        if (std::sscanf(name.c_str(), "buffer %u.%u", &set, &binding) != 2) {
+            return invalidArgument("\"" + name + "\" is no \"buffer SET.BINDING\"");
+        }
+        auto bytes = parseBytes(value);
+        if (!bytes) return bytes.error();
+        invocation.buffers[{set, binding}] = std::move(*bytes);
+    } else if (name == "push") {
+        auto bytes = parseBytes(value);
+        if (!bytes) return bytes.error();
+        invocation.pushConstants = std::move(*bytes);
+    } else if (name == "groups") {
+        const std::vector<std::string> counts = split(value);
+        for (size_t k = 0; k < 3 && k < counts.size(); ++k) {
+            invocation.groups[k] = static_cast<uint32_t>(std::strtoul(counts[k].c_str(), nullptr, 0));
+        }
+    } else {
+        invocation.inputs[name] = split(value);
+    }
+    return {};
+}
+
+Status readDescription(const std::string& path, Invocation& invocation) {
+    std::ifstream file(path);
+    if (!file) return invalidArgument(path + " cannot be read");
+    for (std::string line; std::getline(file, line);) {
+        line.resize(std::min(line.find('#'), line.size()));
+        const size_t first = line.find_first_not_of(" \t\r"), last = line.find_last_not_of(" \t\r");
+        if (first == std::string::npos) continue;
+        if (const Status status = applySetting(line.substr(first, last - first + 1), invocation); !status.ok()) {
+            return status;
+        }
+    }
+    return {};
+}
+
+std::string builtinName(spv::BuiltIn builtin) {
+    for (const auto& [value, name] : kBuiltins)
+        if (value == builtin) return name;
+    return "builtin" + std::to_string(static_cast<uint32_t>(builtin));
+}
+
+std::string variableName(const reference::InterfaceVariable& variable) {
+    if (!variable.name.empty()) return variable.name;
+    return variable.isBuiltin ? builtinName(variable.builtin) : "location" + std::to_string(variable.location);
+}
+
+template <class Number>
+Result<reference::InterfaceValues<Number>> interfaceValues(const Invocation& invocation,
+                                                           const reference::Module& module, size_t entryPoint) {
+    reference::InterfaceValues<Number> values;
+    for (const auto& [name, items] : invocation.inputs) {
+        const reference::InterfaceVariable* found = nullptr;
+        std::string known;
+        for (const reference::InterfaceVariable& variable : module.interfaceVariables(entryPoint)) {
+            if (variable.output) continue;
+            known += " " + variableName(variable);
+            if (isNamed(variable, name)) found = &variable;
+        }
+        if (found == nullptr) return invalidArgument("no input \"" + name + "\"; there are:" + known);
+        for (uint32_t k = 0; k < items.size(); ++k) {
+            const auto scalar = scalarOf<Number>(found->kind, items[k]);
+            if (found->isBuiltin) {
+                values.builtins[found->builtin].push_back(scalar);
+            } else {
+                const uint32_t location = found->location + k / found->components;
+                const uint32_t component = found->component + k % found->components;
+                if (component < 4) values.locations[{location, found->index}][component] = scalar;
+            }
+        }
+    }
+    return values;
+}
+
+template Result<reference::InterfaceValues<float>> interfaceValues(const Invocation&, const reference::Module&, size_t);
+template Result<reference::InterfaceValues<double>> interfaceValues(const Invocation&, const reference::Module&,
+                                                                    size_t);
+template Result<reference::InterfaceValues<reference::Real>> interfaceValues(const Invocation&,
+                                                                             const reference::Module&, size_t);
+
+}  // namespace vernier::tool
