@@ -190,6 +190,7 @@ struct WorkGroupContext::Impl {
     }
 
     bool run(uint64_t first, uint32_t count) {
+        if (count == 0) return true;  // a grid without work-groups has no first
         GroupId id = groupAt(first);
         while (count != 0) {
             const uint32_t groups = std::min(count, groupsPerBatch);

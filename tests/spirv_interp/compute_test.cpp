@@ -300,6 +300,17 @@ TEST(Compute, WorkGroupRate) {
     EXPECT_LT(whole.instructions, packed.instructions);
 }
 
+TEST(Compute, AGridMayBeEmpty) {
+    const ir::Program program = loadCompute(
+        shader("local_size_x=4", "layout(set=0,binding=0) buffer B { uint v[]; };", "v[gl_WorkGroupID.x] = 1;"));
+    WorkGroupContext context(compileCompute(program, bestIsa(), 0));
+    context.beginDispatch({}, {{3, 0, 5}, {}});
+    EXPECT_TRUE(context.run(0, 0));
+    // Nothing is bound: stores are dropped.
+    context.beginDispatch({}, {{3, 1, 5}, {}});
+    EXPECT_TRUE(context.run(0, 15));
+}
+
 TEST(Compute, Refusals) {
     EXPECT_EQ(refusalOf(shader("local_size_x=1024,local_size_y=2", "", "")),
               "SPIR-V: entry point 'main': work-groups of 1024 x 2 x 1 invocations; from 1 to 1024 are supported");
