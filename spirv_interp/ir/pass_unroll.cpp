@@ -10,8 +10,12 @@
 namespace vernier::ir {
 namespace {
 
-constexpr uint32_t kMaxTrips = 32;
-constexpr size_t kMaxInsts = 1024;  // of all copies together
+constexpr uint32_t kMaxCounted = 256;  // trips
+constexpr uint32_t kMaxTrips = 32;     // of a loop that goes away
+constexpr size_t kMaxInsts = 1024;     // of all copies together
+// Of a loop that stays, of which one round does the work of several: so small that keeping it up costs something.
+constexpr size_t kMaxSmallInsts = 64;
+constexpr uint32_t kRounds = 4;
 constexpr uint32_t kMaxDepth = 32;  // of the expressions that decide
 constexpr uint32_t kMaxLoops = 64;  // of a program: each is a pass over all of it
 
@@ -22,6 +26,7 @@ struct Loop {
     uint32_t entryOperand = 0, latchOperand = 0;  // of the header's phis
     size_t staySuccessor = 0;                     // of the header
     uint32_t trips = 0;                           // how often the header goes on into the loop
+    uint32_t rounds = 0;                          // put into one; 0: all of them, and the loop goes away
 };
 
 class Unroller {
@@ -40,18 +45,25 @@ class Unroller {
             if (!loop || !countTrips(*loop)) continue;
             size_t insts = 0;
             for (BlockId i = loop->header; i < loop->end; ++i) insts += program_.blocks[i].insts.size();
-            if (insts * std::max(loop->trips, 1u) <= kMaxInsts) return loop;
+            if (loop->trips <= kMaxTrips && insts * std::max(loop->trips, 1u) <= kMaxInsts) return loop;
+            loop->rounds = kRounds;
+            if (loop->trips % kRounds == 0 && insts <= kMaxSmallInsts && loop->latch != loop->header) return loop;
         }
         return std::nullopt;
     }
 
     void unroll(const Loop& loop);
+    void repeat(const Loop& loop);
 
   private:
     std::optional<Loop> shapeOf(BlockId header) const;
     bool countTrips(Loop& loop);
     std::optional<uint64_t> evaluate(ValueId value, uint32_t depth);
+    void nameThemselves();
+    std::vector<Inst> headerPhis(const Loop& loop) const;
+    void setPhis(const std::vector<Inst>& phis, uint32_t operand);
     Block copyBlock(const Loop& loop, BlockId from, uint32_t trip, bool last);
+    void shiftOthers(const Loop& loop, BlockId shift, BlockId exiting);
 
     Program& program_;
     std::vector<const Inst*> definition_;
@@ -114,7 +126,7 @@ bool Unroller::countTrips(Loop& loop) {
     std::unordered_map<ValueId, std::optional<uint64_t>> next;
     known_.clear();
     phis([&](const Inst& phi, auto operands) { next[phi.result] = evaluate(operands[loop.entryOperand], kMaxDepth); });
-    for (loop.trips = 0; loop.trips <= kMaxTrips; ++loop.trips) {
+    for (loop.trips = 0; loop.trips <= kMaxCounted; ++loop.trips) {
         known_ = next;
         const std::optional<uint64_t> stays = evaluate(condition, kMaxDepth);
         if (!stays) return false;
@@ -124,6 +136,25 @@ bool Unroller::countTrips(Loop& loop) {
         });
     }
     return false;
+}
+
+void Unroller::nameThemselves() {
+    map_.resize(program_.valueTypes.size());
+    for (ValueId v = 0; v < map_.size(); ++v) map_[v] = v;
+}
+
+std::vector<Inst> Unroller::headerPhis(const Loop& loop) const {
+    std::vector<Inst> phis;
+    for (const Inst& inst : program_.blocks[loop.header].insts)
+        if (inst.op == Op::phi) phis.push_back(inst);
+    return phis;
+}
+
+/// The header's phis stand for one of their operands from now on, all at once.
+void Unroller::setPhis(const std::vector<Inst>& phis, uint32_t operand) {
+    std::vector<ValueId> values;
+    for (const Inst& phi : phis) values.push_back(map_[program_.operandsOf(phi)[operand]]);
+    for (size_t i = 0; i < phis.size(); ++i) map_[phis[i].result] = values[i];
 }
 
 /// A block of the loop as it runs in one trip, with map_ for the values. `last`: the header that finds the loop done;
@@ -168,21 +199,13 @@ Block Unroller::copyBlock(const Loop& loop, BlockId from, uint32_t trip, bool la
 void Unroller::unroll(const Loop& loop) {
     const BlockId blocks = loop.end - loop.header, lastHeader = loop.header + loop.trips * blocks;
     const BlockId shift = loop.trips * blocks + 1 - blocks;  // of what stands behind the loop; may wrap around
-    map_.resize(program_.valueTypes.size());
-    for (ValueId v = 0; v < map_.size(); ++v) map_[v] = v;
-    std::vector<Inst> phis;
-    for (const Inst& inst : program_.blocks[loop.header].insts)
-        if (inst.op == Op::phi) phis.push_back(inst);
-    const auto setPhis = [&](uint32_t which) {
-        std::vector<ValueId> values;
-        for (const Inst& phi : phis) values.push_back(map_[program_.operandsOf(phi)[which]]);
-        for (size_t i = 0; i < phis.size(); ++i) map_[phis[i].result] = values[i];
-    };
+    nameThemselves();
+    const std::vector<Inst> phis = headerPhis(loop);
     std::vector<Block> copies;
-    setPhis(loop.entryOperand);
+    setPhis(phis, loop.entryOperand);
     for (uint32_t trip = 0; trip < loop.trips; ++trip) {
         for (BlockId b = loop.header; b < loop.end; ++b) copies.push_back(copyBlock(loop, b, trip, false));
-        setPhis(loop.latchOperand);
+        setPhis(phis, loop.latchOperand);
     }
     // The last header's own values have their old names again.
     std::vector<ValueId> replacement(program_.valueTypes.size(), kNoValue);
@@ -193,18 +216,53 @@ void Unroller::unroll(const Loop& loop) {
     copies.push_back(copyBlock(loop, loop.header, loop.trips, true));
     replacement.resize(program_.valueTypes.size(), kNoValue);
 
+    copies.back().successors[0] = loop.exit + shift;
+    shiftOthers(loop, shift, lastHeader);
     auto& all = program_.blocks;
-    const auto moved = [&](BlockId b) { return b < loop.end ? b : b + shift; };
-    copies.back().successors[0] = moved(loop.exit);
-    for (BlockId b = 0; b < all.size(); ++b) {
-        if (b >= loop.header && b < loop.end) continue;
-        for (BlockId& s : all[b].successors) s = moved(s);
-        for (BlockId& p : all[b].predecessors) p = p == loop.header ? lastHeader : moved(p);
-        if (all[b].loopHeader && all[b].loopEnd >= loop.end) all[b].loopEnd += shift;
-    }
     const auto at = all.erase(all.begin() + loop.header, all.begin() + loop.end);
     all.insert(at, std::make_move_iterator(copies.begin()), std::make_move_iterator(copies.end()));
     replaceUses(program_, replacement);
+}
+
+/// The edges and loop ends of the blocks outside the loop when what stands behind it moves by `shift`. `exiting`: the
+/// block that leaves the loop then.
+void Unroller::shiftOthers(const Loop& loop, BlockId shift, BlockId exiting) {
+    const auto moved = [&](BlockId b) { return b < loop.end ? b : b + shift; };
+    for (BlockId b = 0; b < program_.blocks.size(); ++b) {
+        Block& block = program_.blocks[b];
+        if (b >= loop.header && b < loop.end) continue;
+        for (BlockId& s : block.successors) s = moved(s);
+        for (BlockId& p : block.predecessors) p = p == loop.header ? exiting : moved(p);
+        if (block.loopHeader && block.loopEnd >= loop.end) block.loopEnd += shift;
+    }
+}
+
+/// The loop stays, and goes round as many times less. The header asks once per round: in between the answer is known.
+void Unroller::repeat(const Loop& loop) {
+    const BlockId blocks = loop.end - loop.header, shift = (loop.rounds - 1) * blocks;
+    nameThemselves();
+    std::vector<Block> copies;
+    const auto phis = headerPhis(loop);
+    for (uint32_t round = 1; round < loop.rounds; ++round) {
+        setPhis(phis, loop.latchOperand);
+        for (BlockId b = loop.header; b < loop.end; ++b) copies.push_back(copyBlock(loop, b, round, false));
+    }
+    shiftOthers(loop, shift, loop.header);
+    Block& header = program_.blocks[loop.header];
+    Block& latch = program_.blocks[loop.latch];
+    const BlockId lastLatch = loop.latch + shift;
+    std::replace(latch.successors.begin(), latch.successors.end(), loop.header, loop.end);
+    Block& last = copies[lastLatch - loop.end];
+    std::replace(last.successors.begin(), last.successors.end(), loop.end + shift, loop.header);
+    header.predecessors[loop.latchOperand] = lastLatch;
+    header.successors[1 - loop.staySuccessor] = loop.exit + shift;
+    header.loopEnd += shift;
+    for (const Inst& phi : phis) {
+        ValueId& operand = program_.operands[phi.firstOperand + loop.latchOperand];
+        operand = map_[operand];
+    }
+    program_.blocks.insert(program_.blocks.begin() + loop.end, std::make_move_iterator(copies.begin()),
+                           std::make_move_iterator(copies.end()));
 }
 
 }  // namespace
@@ -214,7 +272,10 @@ bool unrollLoops(Program& program) {
         Unroller unroller(program);
         const std::optional<Loop> loop = unroller.find();
         if (!loop) return unrolled > 0;
-        unroller.unroll(*loop);
+        if (loop->rounds == 0)
+            unroller.unroll(*loop);
+        else
+            unroller.repeat(*loop);
     }
     return true;
 }

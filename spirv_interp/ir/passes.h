@@ -26,7 +26,8 @@ bool foldBranches(Program& program);
 bool convertIfs(Program& program);
 
 /// Loops that are known to run a small number of times become that many copies of their blocks: what is computed from
-/// the counter becomes constant, and no lane masks are kept. Only innermost loops that their header alone leaves.
+/// the counter becomes constant, and no lane masks are kept. Small ones that run often do the work of four rounds in
+/// one. Only innermost loops that their header alone leaves.
 bool unrollLoops(Program& program);
 
 /// Operations whose results nobody uses are removed, and stores of undefined values to outputs.

@@ -175,6 +175,71 @@ b10 <- b9:
 )");
 }
 
+TEST(Pass, UnrollFourRoundsOfALongLoop) {
+    // 252 rounds become 63 of four; the values behind the loop are still the header's.
+    EXPECT_EQ(after(unrollLoops, R"(b0:
+  %0 i32 = constant 0x0
+  %1 i32 = constant 0x1
+  %2 i32 = constant 0xfc
+  %3 f32 = input #0
+  jump b1
+b1 loop b3 <- b0 b2:
+  %4 i32 = phi %0 %8
+  %5 f32 = phi %3 %7
+  %6 b1 = slt.i32 %4 %2
+  branch %6 b2 b3
+b2 <- b1:
+  %7 f32 = fmul %5 %3
+  %8 i32 = iadd %4 %1
+  jump b1
+b3 <- b1:
+  %9 f32 = phi %5
+  storeOutput #0 %9
+  ret
+)"),
+              R"(b0:
+  %0 i32 = constant 0x0
+  %1 i32 = constant 0x1
+  %2 i32 = constant 0xfc
+  %3 f32 = input #0
+  jump b1
+b1 loop b9 <- b0 b8:
+  %4 i32 = phi %0 %17
+  %5 f32 = phi %3 %16
+  %6 b1 = slt.i32 %4 %2
+  branch %6 b2 b9
+b2 <- b1:
+  %7 f32 = fmul %5 %3
+  %8 i32 = iadd %4 %1
+  jump b3
+b3 <- b2:
+  %9 b1 = slt.i32 %8 %2
+  jump b4
+b4 <- b3:
+  %10 f32 = fmul %7 %3
+  %11 i32 = iadd %8 %1
+  jump b5
+b5 <- b4:
+  %12 b1 = slt.i32 %11 %2
+  jump b6
+b6 <- b5:
+  %13 f32 = fmul %10 %3
+  %14 i32 = iadd %11 %1
+  jump b7
+b7 <- b6:
+  %15 b1 = slt.i32 %14 %2
+  jump b8
+b8 <- b7:
+  %16 f32 = fmul %13 %3
+  %17 i32 = iadd %14 %1
+  jump b1
+b9 <- b1:
+  %18 f32 = phi %5
+  storeOutput #0 %18
+  ret
+)");
+}
+
 TEST(Pass, UnrollNestedLoopsAndLoopsThatNeverRun) {
     // The inner loop goes round once, its counter doubling; the outer one, which has the inner one's copies then,
     // twice.
