@@ -21,18 +21,20 @@ struct Code {
     std::vector<uint32_t> inputs, outputs;  // byte offset of the row by interface slot, or kNone
     std::vector<ImageSite> imageSites;
     std::vector<uint32_t> indexedRows;
-    std::string listing;
+    std::string listing;  // where one was asked for
 };
 
-/// Encodes machine code for batches of up to `lanes` lanes.
+/// Encodes machine code for batches of up to `lanes` lanes. A listing is for disassemble() alone: making it takes time.
 Code encode(const MachineCode& machine, const Allocation& allocation, const ScalarFile& scalars,
-            const HandlerTables& handlers, uint32_t lanes);
+            const HandlerTables& handlers, uint32_t lanes, bool withListing);
 
 class CompiledProgram final : public BatchProgram {
   public:
-    CompiledProgram(const ir::Program& source, LoweredProgram lowered, const BatchOptions& options, bool packed);
+    CompiledProgram(const ir::Program& source, LoweredProgram lowered, const BatchOptions& options, bool packed,
+                    bool withListing = false);
 
     const BatchStatistics& statistics() const override { return statistics_; }
+    /// Compiles once more, with listings.
     std::string disassemble() const override;
 
     const ir::Program& source() const { return source_; }
@@ -54,7 +56,10 @@ class CompiledProgram final : public BatchProgram {
     }
 
   private:
+    std::string text() const;
+
     ir::Program source_;
+    BatchOptions options_;
     const HandlerTables& handlers_;
     Code batch_, workGroup_, draw_;
     std::vector<uint32_t> scalars_, inputScalars_;

@@ -13,12 +13,13 @@ namespace {
 class Encoder {
   public:
     Encoder(const MachineCode& machine, const Allocation& allocation, const ScalarFile& scalars,
-            const HandlerTables& handlers, uint32_t lanes)
+            const HandlerTables& handlers, uint32_t lanes, bool withListing)
         : machine_(machine),
           allocation_(allocation),
           scalars_(scalars),
           handlers_(handlers),
           lanes_(lanes),
+          withListing_(withListing),
           rowLanes_(lanes > kLaneGroup ? handlers.fullLanes : kLaneGroup) {}
 
     Code run() {
@@ -68,7 +69,7 @@ class Encoder {
         }
         fillSideTable(inst);
         ++code_.instructions;
-        list(inst, here);
+        if (withListing_) list(inst, here);
     }
 
     uint32_t encodeOperand(const Operand& operand, uint32_t here) const {
@@ -153,7 +154,9 @@ class Encoder {
     const Allocation& allocation_;
     const ScalarFile& scalars_;
     const HandlerTables& handlers_;
-    const uint32_t lanes_, rowLanes_;
+    const uint32_t lanes_;
+    const bool withListing_;
+    const uint32_t rowLanes_;
     std::vector<uint32_t> places_;
     Code code_;
 };
@@ -161,8 +164,8 @@ class Encoder {
 }  // namespace
 
 Code encode(const MachineCode& machine, const Allocation& allocation, const ScalarFile& scalars,
-            const HandlerTables& handlers, uint32_t lanes) {
-    return Encoder(machine, allocation, scalars, handlers, lanes).run();
+            const HandlerTables& handlers, uint32_t lanes, bool withListing) {
+    return Encoder(machine, allocation, scalars, handlers, lanes, withListing).run();
 }
 
 }  // namespace vernier::batch

@@ -83,8 +83,9 @@ const HandlerTables& handlerTables(Isa isa, MathTier tier) {
 }
 
 CompiledProgram::CompiledProgram(const ir::Program& source, LoweredProgram lowered, const BatchOptions& options,
-                                 bool packed)
+                                 bool packed, bool withListing)
     : source_(source),
+      options_(options),
       handlers_(handlerTables(options.isa, options.tier)),
       packed_(packed),
       masks_(maskFunctions(options.isa)) {
@@ -95,7 +96,7 @@ CompiledProgram::CompiledProgram(const ir::Program& source, LoweredProgram lower
     }
     const auto encodePiece = [&](MachineCode& code, uint32_t most) {
         schedule(code);
-        return encode(code, allocate(code, handlers_.narrow), lowered.scalars, handlers_, most);
+        return encode(code, allocate(code, handlers_.narrow), lowered.scalars, handlers_, most, withListing);
     };
     batch_ = encodePiece(lowered.batch, lanes);
     workGroup_ = encodePiece(lowered.workGroup, kLaneGroup);
@@ -106,6 +107,11 @@ CompiledProgram::CompiledProgram(const ir::Program& source, LoweredProgram lower
 }
 
 std::string CompiledProgram::disassemble() const {
+    // It was lowered before: it can be.
+    return CompiledProgram(source_, lower(source_, packed_).value(), options_, packed_, true).text();
+}
+
+std::string CompiledProgram::text() const {
     std::string text = "registers " + std::to_string(batch_.rows) + "\n";
     const auto list = [&](const char* name, const std::vector<uint32_t>& rows) {
         for (size_t k = 0; k < rows.size(); ++k) {
