@@ -174,9 +174,9 @@ bool Machine<Number>::executeFloatComparison(const Instruction& i) {
 template <class Number>
 bool Machine<Number>::executeMatrix(const Instruction& i) {
     const auto step = [&](const Number& x) {
-        Scalar<Number> scalar = Scalar<Number>::ofNumber(x);
-        if (program_.options.stepwise) round(scalar, module_.scalarType(resultType(i)).width);
-        return scalar.number;
+        // Halves are worked on in float, and rounded at the end.
+        const bool single = program_.options.stepwise && module_.scalarType(resultType(i)).width != 64;
+        return single ? Number(toFloat32(x)) : x;
     };
     // Row vectors of `a` (rows x inner) times columns of `b` (inner x columns).
     const auto product = [&](size_t rows, size_t inner, size_t columns) {

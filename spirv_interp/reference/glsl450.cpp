@@ -90,6 +90,8 @@ template <class Number>
 template <class W>
 bool Machine<Number>::glslNumberIn(const Instruction& i, uint32_t function) {
     const bool stepwise = program_.options.stepwise;
+    const bool half = module_.scalarType(resultType(i)).width == 16;
+    const auto toHalf = [](double x) { return Number(halfToFloat32(doubleToHalf(x))); };
     using std::acos, std::acosh, std::asin, std::asinh, std::atan, std::atan2, std::atanh, std::ceil, std::cos,
         std::cosh, std::exp, std::exp2, std::fabs, std::floor, std::fma, std::log, std::log2, std::pow, std::rint,
         std::sin, std::sinh, std::sqrt, std::tan, std::tanh, std::trunc;
@@ -133,7 +135,13 @@ bool Machine<Number>::glslNumberIn(const Instruction& i, uint32_t function) {
         case GLSLstd450Ceil:
             return unary([](const W& x) { return ceil(x); });
         case GLSLstd450Fract:
-            return unary([](const W& x) { return fract(x); });
+            return unary([=](const W& x) {
+                constexpr float kHalfBelowOne = 0x1.ffcp-1f;
+                const W fraction = fract(x);
+                if (!half) return fraction;
+                const Number rounded = toHalf(static_cast<double>(fraction));
+                return static_cast<W>(rounded < Number(kHalfBelowOne) ? rounded : Number(kHalfBelowOne));
+            });
         case GLSLstd450Radians:
             return unary(
                 [=](const W& x) { return stepwise ? W(x * constant<W>(kRadiansPerDegree)) : W(x * pi<W>() / W(180)); });
@@ -202,6 +210,10 @@ bool Machine<Number>::glslNumberIn(const Instruction& i, uint32_t function) {
                   &c = data(i.operand(4), count);
             const bool single = program_.options.roundToFloat && module_.scalarType(resultType(i)).width == 32;
             return finish(count, [&](size_t k) {
+                // The product of two halves is exact in binary64, and so is the half next to the sum.
+                if (half)
+                    return toHalf(static_cast<double>(a[k].number) * static_cast<double>(b[k].number) +
+                                  static_cast<double>(c[k].number));
                 return single ? Number(fma(toFloat32(a[k].number), toFloat32(b[k].number), toFloat32(c[k].number)))
                               : fma(a[k].number, b[k].number, c[k].number);
             });

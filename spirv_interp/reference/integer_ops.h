@@ -14,10 +14,11 @@ inline uint64_t widthMask(uint32_t width) {
 }
 
 inline int64_t asSigned(uint64_t bits, uint32_t width) {
-    return width == 32 ? static_cast<int32_t>(static_cast<uint32_t>(bits)) : static_cast<int64_t>(bits);
+    const uint32_t unused = 64 - width;
+    return static_cast<int64_t>(bits << unused) >> unused;
 }
 
-/// The result of `op` on `operands` of `width` bits (32 or 64; ignored for booleans, which are 0 or 1).
+/// The result of `op` on `operands` of `width` bits (8 to 64; ignored for booleans, which are 0 or 1).
 /// Integer results are cut to `width`; comparisons give 0 or 1. Nothing if `op` is none of these
 /// instructions.
 std::optional<uint64_t> integerOperation(spv::Op op, uint32_t width, const std::array<uint64_t, 4>& operands);

@@ -3,7 +3,7 @@
 //
 // The rules of comparison:
 //  - two NaNs are equal whatever their sign and payload (SPIR-V leaves them open, and which operand's NaN an addition
-//    hands on is the compiler's choice); in buffers and images a word counts as a float when both sides hold a NaN
+//    hands on is the compiler's choice); in memory a word, or half of one, counts as a float when both sides hold a NaN
 //    there;
 //  - elementary functions (sin ... pow) are the tier's own: the reference interpreter is given them through
 //    ElementaryFunctions, so that programs stay comparable to the bit after any number of operations. How far they are
