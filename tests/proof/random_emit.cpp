@@ -116,7 +116,7 @@ class Emitter {
         const Id vec4 = typeId({Base::f32, 4, 1}), ivec4 = typeId({Base::i32, 4, 1});
         words_ = bufferOf(scalarType(Base::u32), 4, 0, false);
         vectors_ = bufferOf(vec4, 16, 1, false);
-        if (program_.stage == ir::Stage::compute) source_ = bufferOf(vec4, 16, 3, true);
+        if (program_.stage == ir::Stage::compute) source_ = bufferOf(typeId(ioType(2)), 16, 3, true);
         const Id floats = b_.newId(), integers = b_.newId(), block = b_.newId();
         for (const auto& [array, element] : {std::pair{floats, vec4}, {integers, ivec4}}) {
             b_.add(ModuleBuilder::globals, spv::OpTypeArray, {array, element, constantU32(8)});
@@ -183,10 +183,11 @@ class Emitter {
             for (uint32_t k = 0; k < 3; ++k) {
                 const Id base = b_.value(spv::OpIMul, u32, {number, constantU32(3)});
                 const Id at = b_.value(spv::OpIAdd, u32, {base, constantU32(k)});
-                const Id vec4 = typeId({Base::f32, 4, 1});
-                Id value = load(vec4, b_.value(spv::OpAccessChain, pointerType(spv::StorageClassStorageBuffer, vec4),
-                                               {source_, zero, at}));
-                if (k != 0) value = b_.value(spv::OpBitcast, typeId(ioType(k)), {value});
+                // As integers: a float that is loaded and stored may lose what tells one NaN from another.
+                const Id uvec4 = typeId(ioType(2));
+                Id value = load(uvec4, b_.value(spv::OpAccessChain, pointerType(spv::StorageClassStorageBuffer, uvec4),
+                                                {source_, zero, at}));
+                if (k != 2) value = b_.value(spv::OpBitcast, typeId(ioType(k)), {value});
                 store(inputs_[k], value);
             }
             local_ = interface({Base::u32, 1, 1}, spv::StorageClassInput, spv::DecorationBuiltIn,
