@@ -221,8 +221,7 @@ bool Lowering::lowerExtendedResult(const Instruction& inst) {
 }
 
 void Lowering::lowerSelect(const Instruction& inst) {
-    if (idValue(inst[4]).kind != IdValue::Kind::value)
-        refuse(inst, "a choice between pointers or images is not supported");
+    if (leafTypes(inst[1]).empty()) refuse(inst, "a choice between images or pointers to variables is not supported");
     const Leaves condition = leavesOf(inst[3]), yes = leavesOf(inst[4]), no = leavesOf(inst[5]);
     const std::span<ir::ValueId> leaves = newLeaves(yes.size());
     for (size_t i = 0; i < yes.size(); ++i) {
@@ -251,7 +250,9 @@ std::pair<ir::ValueId, ir::ValueId> Lowering::extended(spv::Op op, ir::ValueId a
 /// The bits of the operand's components, lowest first, dealt out to the result's.
 void Lowering::lowerBitcast(const Instruction& inst) {
     const std::vector<LeafType>& types = leafTypes(inst[1]);
-    if (idValue(inst[3]).kind != IdValue::Kind::value || types.empty()) refuse(inst, "pointers have no bits");
+    if (types.empty() || isBufferPointer(inst[1]) || isBufferPointer(module_.definition(inst[3])[1])) {
+        refuse(inst, "only pointers into physical storage buffers have bits");
+    }
     const Leaves operand = leavesOf(inst[3]);
     const LeafType from = scalarOfId(inst[3]), to = types[0];
     const std::span<ir::ValueId> leaves = newLeaves(types.size());

@@ -42,9 +42,10 @@ bool Lowering::lowerComposite(const Instruction& inst) {
             const std::span<ir::ValueId> leaves = newLeaves(leafTypes(type).size());
             size_t next = 0;
             for (uint32_t word = 3; word < inst.count; ++word) {
-                if (idValue(inst[word]).kind != IdValue::Kind::value)
-                    refuse(inst, "a constituent is no value of scalars");
-                for (const ir::ValueId leaf : idValue(inst[word]).leaves) {
+                const bool empty =
+                    idValue(inst[word]).kind == IdValue::Kind::value && idValue(inst[word]).leaves.empty();
+                if (empty) continue;
+                for (const ir::ValueId leaf : leavesOf(inst[word])) {
                     if (next < leaves.size()) leaves[next++] = leaf;
                 }
             }

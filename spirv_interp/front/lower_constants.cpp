@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "spirv_interp/front/lowering.h"
+#include "spirv_interp/ir/ops.h"
 
 namespace vernier {
 
@@ -113,6 +114,8 @@ Lowering::Leaves Lowering::zeroOf(uint32_t type) {
     const std::vector<LeafType>& types = leafTypes(type);
     const std::span<ir::ValueId> leaves = newLeaves(types.size());
     for (size_t i = 0; i < types.size(); ++i) leaves[i] = emitter_.constant(types[i], 0);
+    // A null pointer into a buffer has no descriptor and no handle.
+    if (isBufferPointer(type)) leaves[0] = emitter_.constantI32(ir::kNullHandle);
     return leaves;
 }
 

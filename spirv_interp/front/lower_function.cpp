@@ -62,7 +62,7 @@ void Lowering::lowerFunction(const Function& function, Frame& frame) {
                 ++returns;
             } else if (inst.op == spv::Op::OpPhi) {
                 const auto leaves = static_cast<uint32_t>(leafTypes(inst[1]).size());
-                if (leaves == 0) refuse(inst, "a phi of pointers or images is not supported");
+                if (leaves == 0) refuse(inst, "a phi of images or of pointers to variables is not supported");
                 frame.phis[order[at].index].push_back({inst, emitter_.newVariables(leaves)});
             }
         }
@@ -275,7 +275,7 @@ void Lowering::lowerCall(const Instruction& inst) {
         for (uint32_t i = 0; i < types.size(); ++i) leaves[i] = emitter_.read(inner.returnVariables + i, types[i]);
         setValue(inst[2], inst[1], leaves);
     } else if (type.kind != SpirvType::Kind::void_) {
-        refuse(inst, "functions that return pointers or images are not supported");
+        refuse(inst, "functions that return images or pointers to variables are not supported");
     }
 }
 

@@ -70,7 +70,9 @@ void Lowering::lowerVariable(const Instruction& inst) {
             return;
         case spv::StorageClass::Function:
         case spv::StorageClass::Private:
-            if (type.kind == SpirvType::Kind::pointer) refuse(inst, "variables that hold pointers are not supported");
+            if (type.kind == SpirvType::Kind::pointer && type.leaves == 0) {
+                refuse(inst, "variables that hold pointers are only supported for pointers into storage buffers");
+            }
             if (type.isOpaque()) refuse(inst, "variables that hold images or samplers are not supported");
             if (indexing_[id] == Indexing::memory) {
                 pointer.base = Pointer::Base::local;

@@ -8,6 +8,14 @@ namespace vernier {
 
 using Base = Pointer::Base;
 
+namespace {
+
+bool isWritable(ir::ResourceKind kind) {
+    return kind == ir::ResourceKind::storageBuffer || kind == ir::ResourceKind::workgroupMemory;
+}
+
+}  // namespace
+
 // --- access chains
 // ------------------------------------------------------------------------------------------------------
 
@@ -17,8 +25,24 @@ void Lowering::lowerAccessChain(const Instruction& inst) {
     setPointer(inst[2], pointer);
 }
 
+/// An access chain whose first index, Element, counts the pointer on in an array it points into.
+void Lowering::lowerPtrAccessChain(const Instruction& inst) {
+    Pointer pointer = pointerOf(inst[3]);
+    if (!pointer.inBytes()) refuse(inst, "the base does not point into a buffer");
+    advance(pointer, inst[4], 0, strideOfPointer(inst[3], pointer));
+    for (uint32_t word = 5; word < inst.count; ++word) pointer = stepInto(pointer, inst[word], inst);
+    setPointer(inst[2], pointer);
+}
+
 /// Moves by `index` steps of `stride` units; an index that is constant is kept inside `count` (0: no bound).
 void Lowering::advance(Pointer& pointer, uint32_t indexId, uint32_t count, uint32_t stride) {
+    if (pointer.base == Base::address) {
+        const ir::ValueId wide =
+            convertInteger(true, {ir::Type::i64, 64, true}, scalarOf(indexId), scalarOfId(indexId));
+        pointer.dynamic =
+            binary(ir::Op::iadd, pointer.dynamic, binary(ir::Op::imul, wide, emitter_.constant(ir::Type::i64, stride)));
+        return;
+    }
     const ir::ValueId index = indexOf(indexId);
     if (const std::optional<uint64_t> bits = emitter_.constantBits(index)) {
         const auto fixed = static_cast<uint32_t>(*bits);
@@ -32,7 +56,7 @@ void Lowering::advance(Pointer& pointer, uint32_t indexId, uint32_t count, uint3
         pointer.choiceStride = stride;
         return;
     }
-    const ir::ValueId distance = emitter_.emit(ir::Op::imul, ir::Type::i32, {index, emitter_.constantI32(stride)});
+    const ir::ValueId distance = binary(ir::Op::imul, index, emitter_.constantI32(stride));
     pointer.dynamic = pointer.dynamic == ir::kNoValue
                           ? distance
                           : emitter_.emit(ir::Op::iadd, ir::Type::i32, {pointer.dynamic, distance});
@@ -60,7 +84,7 @@ Pointer Lowering::stepInto(const Pointer& from, uint32_t indexId, const Instruct
         stepDescriptor(pointer, type, indexId);
         return pointer;
     }
-    const bool buffer = pointer.base == Base::buffer && !pointer.wordLayout;
+    const bool buffer = pointer.inBytes() && !pointer.wordLayout;
     const auto unitsOf = [&](const SpirvType& part) {
         return pointer.base == Base::ssa ? part.leaves : pointer.wordLayout ? part.words * 4 : part.words;
     };
@@ -87,7 +111,7 @@ Pointer Lowering::stepInto(const Pointer& from, uint32_t indexId, const Instruct
             const uint32_t stride =
                 buffer ? module_.decorationOr(typeId, spv::Decoration::ArrayStride, Decoration::kNoMember, 0)
                        : unitsOf(typeInfo(type.element));
-            advance(pointer, indexId, pointer.base == Base::buffer ? 0 : type.count, stride);
+            advance(pointer, indexId, pointer.inBytes() ? 0 : type.count, stride);
             break;
         }
         case SpirvType::Kind::matrix: {
@@ -117,9 +141,13 @@ Pointer Lowering::stepInto(const Pointer& from, uint32_t indexId, const Instruct
 // --- scalars in memory
 // --------------------------------------------------------------------------------------------------
 
-/// The place in the pointer's unit, `more` further on, as a value.
+/// The place in the pointer's unit, `more` further on, as a value: i32, or i64 for an address.
 ir::ValueId Lowering::place(const Pointer& pointer, uint32_t more) {
-    const uint32_t first = pointer.base == Base::buffer ? bufferOffsetOf(pointer.root) : 0;
+    if (pointer.base == Base::address) {
+        return binary(ir::Op::iadd, pointer.dynamic, emitter_.constant(ir::Type::i64, pointer.offset + more));
+    }
+    const bool fromVariable = pointer.base == Base::buffer && !pointer.fromResource;
+    const uint32_t first = fromVariable ? bufferOffsetOf(pointer.root) : 0;
     const ir::ValueId fixed = emitter_.constantI32(first + pointer.offset + more);
     return pointer.dynamic == ir::kNoValue ? fixed
                                            : emitter_.emit(ir::Op::iadd, ir::Type::i32, {pointer.dynamic, fixed});
@@ -137,7 +165,9 @@ ir::ValueId Lowering::loadWord(const Pointer& pointer, uint32_t at, ir::Type typ
                                  ir::immPair(pointer.root, pointer.extent));
         case Base::buffer:
             return emitter_.emit(ir::Op::loadBuffer, type, {descriptorOf(pointer), place(pointer, at)},
-                                 ir::immPair(resourceOf(pointer.root), bytes));
+                                 ir::immPair(resourceOrAny(pointer), bytes));
+        case Base::address:
+            return emitter_.emit(ir::Op::loadAddress, type, {place(pointer, at)}, bytes == 0 ? 4 : bytes);
         default:
             break;
     }
@@ -151,14 +181,14 @@ ir::ValueId Lowering::loadWord(const Pointer& pointer, uint32_t at, ir::Type typ
 
 ir::ValueId Lowering::loadScalar(const Pointer& pointer, uint32_t at, const LeafType& type) {
     if (ir::isWide(type)) {
-        const uint32_t word = pointer.base == Base::buffer ? 4 : 1;
+        const uint32_t word = pointer.inBytes() ? 4 : 1;
         const ir::ValueId low = loadWord(pointer, at, ir::Type::i32);
         return emitter_.emit(ir::Op::makeWide, type, {low, loadWord(pointer, at + word, ir::Type::i32)});
     }
     if (type.type == ir::Type::b1 && pointer.base != Base::input) {
         return compare(ir::Op::ine, loadWord(pointer, at, ir::Type::i32), emitter_.constantI32(0));
     }
-    if (type.bits < 32 && pointer.base == Base::buffer) {
+    if (type.bits < 32 && pointer.inBytes()) {
         return ofPiece(loadWord(pointer, at, ir::Type::i32, type.bytes()), type);
     }
     const ir::ValueId value = loadWord(pointer, at, type);
@@ -168,12 +198,12 @@ ir::ValueId Lowering::loadScalar(const Pointer& pointer, uint32_t at, const Leaf
 
 void Lowering::storeScalar(const Pointer& pointer, uint32_t at, ir::ValueId value, const LeafType& type) {
     if (ir::isWide(type)) {
-        const uint32_t word = pointer.base == Base::buffer ? 4 : 1;
+        const uint32_t word = pointer.inBytes() ? 4 : 1;
         storeWord(pointer, at, emitter_.emit(ir::Op::lowWord, ir::Type::i32, {value}));
         storeWord(pointer, at + word, emitter_.emit(ir::Op::highWord, ir::Type::i32, {value}));
     } else if (type.type == ir::Type::b1) {
         storeWord(pointer, at, convert(ir::Op::zext, ir::Type::i32, value));
-    } else if (type.bits < 32 && pointer.base == Base::buffer) {
+    } else if (type.bits < 32 && pointer.inBytes()) {
         storeWord(pointer, at, pieceOf(value, type), type.bytes());
     } else {
         storeWord(pointer, at, value);
@@ -185,9 +215,11 @@ void Lowering::storeWord(const Pointer& pointer, uint32_t at, ir::ValueId value,
     if (pointer.base == Base::local) {
         emitter_.emit(ir::Op::storeLocal, ir::Type::none, {place(pointer, at), value},
                       ir::immPair(pointer.root, pointer.extent));
+    } else if (pointer.base == Base::address) {
+        emitter_.emit(ir::Op::storeAddress, ir::Type::none, {place(pointer, at), value}, bytes == 0 ? 4 : bytes);
     } else {
         emitter_.emit(ir::Op::storeBuffer, ir::Type::none, {descriptorOf(pointer), place(pointer, at), value},
-                      ir::immPair(resourceOf(pointer.root), bytes));
+                      ir::immPair(resourceOrAny(pointer), bytes));
     }
 }
 
@@ -226,6 +258,7 @@ void Lowering::visitBuffer(const Pointer& pointer, uint32_t at, const Visit& vis
         }
         case SpirvType::Kind::matrix: {
             const SpirvType& column = typeInfo(type.element);
+            if (pointer.matrixStride == 0) refuseId(pointer.root, "points to a matrix whose layout is not known");
             part.type = type.element;
             part.elementStride = pointer.rowMajor ? pointer.matrixStride : 0;
             const uint32_t stride = pointer.rowMajor ? column.scalar.bytes() : pointer.matrixStride;
@@ -251,7 +284,7 @@ void Lowering::visitBuffer(const Pointer& pointer, uint32_t at, const Visit& vis
 Lowering::Leaves Lowering::load(const Pointer& pointer) {
     const std::vector<LeafType>& types = leafTypes(pointer.type);
     const std::span<ir::ValueId> leaves = newLeaves(types.size());
-    if (pointer.base == Base::buffer) {
+    if (pointer.inBytes()) {
         size_t next = 0;
         visitBuffer(pointer, 0,
                     [&](uint32_t at, const LeafType& type) { leaves[next++] = loadScalar(pointer, at, type); });
@@ -308,11 +341,12 @@ void Lowering::store(const Pointer& pointer, Leaves leaves) {
             }
             break;
         }
-        case Base::buffer: {
-            const ir::ResourceKind kind = program_.resources[resourceOf(pointer.root)].kind;
-            if (kind != ir::ResourceKind::storageBuffer && kind != ir::ResourceKind::workgroupMemory) {
+        case Base::buffer:
+            if (!pointer.anyResource && !isWritable(program_.resources[resourceOf(pointer.root)].kind)) {
                 refuseId(pointer.root, "is stored to, but it is only read");
             }
+            [[fallthrough]];
+        case Base::address: {
             size_t next = 0;
             visitBuffer(pointer, 0,
                         [&](uint32_t at, const LeafType& type) { storeScalar(pointer, at, leaves[next++], type); });
@@ -341,6 +375,10 @@ bool Lowering::lowerMemory(const Instruction& inst) {
         case spv::Op::OpAccessChain:
         case spv::Op::OpInBoundsAccessChain:
             lowerAccessChain(inst);
+            return true;
+        case spv::Op::OpPtrAccessChain:
+        case spv::Op::OpInBoundsPtrAccessChain:
+            lowerPtrAccessChain(inst);
             return true;
         case spv::Op::OpLoad: {
             const Pointer& pointer = pointerOf(inst[3]);
@@ -377,7 +415,7 @@ bool Lowering::lowerMemory(const Instruction& inst) {
             lowerTexelPointer(inst);
             return true;
         default:
-            return lowerAtomic(inst);
+            return lowerAtomic(inst) || lowerPointer(inst);
     }
 }
 
@@ -390,92 +428,11 @@ void Lowering::lowerArrayLength(const Instruction& inst) {
     const uint32_t stride =
         module_.decorationOr(type.members[inst[4]], spv::Decoration::ArrayStride, Decoration::kNoMember, 4);
     const ir::ValueId size =
-        emitter_.emit(ir::Op::bufferSize, ir::Type::i32, {descriptorOf(pointer)}, resourceOf(pointer.root));
+        emitter_.emit(ir::Op::bufferSize, ir::Type::i32, {descriptorOf(pointer)}, resourceOrAny(pointer));
     const ir::ValueId first = emitter_.constantI32(offset);
     // max(size, offset) - offset: an array that begins behind the end has no elements.
     const ir::ValueId bytes = binary(ir::Op::isub, binary(ir::Op::umax, size, first), first);
     setScalar(inst[2], inst[1], binary(ir::Op::udiv, bytes, emitter_.constantI32(std::max(stride, 1u))));
-}
-
-// --- atomics
-// ------------------------------------------------------------------------------------------------------------
-
-ir::ValueId Lowering::atomic(const Pointer& pointer, ir::AtomicOp op, ir::Type type, Leaves values) {
-    std::vector<ir::ValueId> operands;
-    if (pointer.base == Base::texel) {
-        ir::ImageOp image = imageOpOf(pointer.texel->image, ir::ImageKind::atomic);
-        image.atomicOp = op;
-        image.hasSample = pointer.texel->sample != ir::kNoValue;
-        operands = imageOperandsOf(pointer.texel->image);
-        operands.insert(operands.end(), pointer.texel->coords.begin(), pointer.texel->coords.end());
-        if (image.hasSample) operands.push_back(pointer.texel->sample);
-        operands.insert(operands.end(), values.begin(), values.end());
-        return emitImage(image, type, operands);
-    }
-    if (pointer.base != Base::buffer) refuseId(pointer.root, "is not memory that atomics work on");
-    operands = {descriptorOf(pointer), place(pointer, 0)};
-    operands.insert(operands.end(), values.begin(), values.end());
-    return emitter_.emit(ir::Op::atomicBuffer, type, operands,
-                         ir::immPair(resourceOf(pointer.root), static_cast<uint32_t>(op)));
-}
-
-bool Lowering::lowerAtomic(const Instruction& inst) {
-    struct Entry {
-        spv::Op spirv;
-        ir::AtomicOp op;
-    };
-    static constexpr Entry kBinary[] = {
-        {spv::Op::OpAtomicExchange, ir::AtomicOp::exchange},
-        {spv::Op::OpAtomicIAdd, ir::AtomicOp::add},
-        {spv::Op::OpAtomicISub, ir::AtomicOp::sub},
-        {spv::Op::OpAtomicSMin, ir::AtomicOp::smin},
-        {spv::Op::OpAtomicUMin, ir::AtomicOp::umin},
-        {spv::Op::OpAtomicSMax, ir::AtomicOp::smax},
-        {spv::Op::OpAtomicUMax, ir::AtomicOp::umax},
-        {spv::Op::OpAtomicAnd, ir::AtomicOp::iand},
-        {spv::Op::OpAtomicOr, ir::AtomicOp::ior},
-        {spv::Op::OpAtomicXor, ir::AtomicOp::ixor},
-    };
-    const auto run = [&](uint32_t pointerId, ir::AtomicOp op, std::initializer_list<ir::ValueId> values) {
-        const Pointer& pointer = pointerOf(pointerId);
-        if (typeInfo(pointer.type).kind != SpirvType::Kind::integer || typeInfo(pointer.type).words != 1) {
-            // Exchanges, loads and stores of floats move bits; the interpreter moves i32.
-            const bool moves = op == ir::AtomicOp::exchange || op == ir::AtomicOp::load || op == ir::AtomicOp::store;
-            if (!moves || scalarType(pointer.type) != ir::Type::f32) refuse(inst, "only 32-bit atomics are supported");
-        }
-        std::vector<ir::ValueId> words;
-        for (const ir::ValueId value : values) {
-            words.push_back(emitter_.typeOf(value) == ir::Type::f32 ? convert(ir::Op::bitcast, ir::Type::i32, value)
-                                                                    : value);
-        }
-        const ir::ValueId result = atomic(pointer, op, ir::Type::i32, words);
-        return scalarType(pointer.type) == ir::Type::f32 ? convert(ir::Op::bitcast, ir::Type::f32, result) : result;
-    };
-    for (const Entry& entry : kBinary) {
-        if (entry.spirv != inst.op) continue;
-        setScalar(inst[2], inst[1], run(inst[3], entry.op, {scalarOf(inst[6])}));
-        return true;
-    }
-    switch (inst.op) {
-        case spv::Op::OpAtomicLoad:
-            setScalar(inst[2], inst[1], run(inst[3], ir::AtomicOp::load, {}));
-            return true;
-        case spv::Op::OpAtomicStore:
-            run(inst[1], ir::AtomicOp::store, {scalarOf(inst[4])});
-            return true;
-        case spv::Op::OpAtomicIIncrement:
-            setScalar(inst[2], inst[1], run(inst[3], ir::AtomicOp::add, {emitter_.constantI32(1)}));
-            return true;
-        case spv::Op::OpAtomicIDecrement:
-            setScalar(inst[2], inst[1], run(inst[3], ir::AtomicOp::sub, {emitter_.constantI32(1)}));
-            return true;
-        case spv::Op::OpAtomicCompareExchange:
-            setScalar(inst[2], inst[1],
-                      run(inst[3], ir::AtomicOp::compareExchange, {scalarOf(inst[7]), scalarOf(inst[8])}));
-            return true;
-        default:
-            return false;
-    }
 }
 
 }  // namespace vernier

@@ -6,6 +6,8 @@
 namespace vernier {
 namespace {
 
+constexpr LeafType kWord{ir::Type::i32, 32, false};
+
 uint32_t wordsOf(ir::Type type) {
     return type == ir::Type::i64 || type == ir::Type::f64 ? 2 : 1;
 }
@@ -84,10 +86,17 @@ void Lowering::lowerType(const Instruction& inst) {
                 type.words = sum(type.words, member.words);
             }
             break;
+        case spv::Op::OpTypeForwardPointer:
         case spv::Op::OpTypePointer:
             type.kind = Kind::pointer;
             type.storage = static_cast<spv::StorageClass>(inst[2]);
             type.element = inst[3];
+            if (type.storage == spv::StorageClass::PhysicalStorageBuffer) {
+                type.scalar = {ir::Type::i64, 64, false};
+            } else if (isBufferPointer(id)) {
+                // A descriptor or buffer handle, and a byte offset: lower_pointer.cpp.
+                type.leaves = type.words = 2;
+            }
             break;
         case spv::Op::OpTypeFunction:
             type.kind = Kind::function;
@@ -153,6 +162,9 @@ void Lowering::appendLeafTypes(uint32_t id, std::vector<LeafType>& types) const 
             for (uint32_t i = 0; i < type.count && typeInfo(type.element).leaves != 0; ++i) {
                 appendLeafTypes(type.element, types);
             }
+            break;
+        case SpirvType::Kind::pointer:
+            types.insert(types.end(), type.leaves, type.scalar != ir::Type::none ? type.scalar : kWord);
             break;
         default:
             if (type.scalar != ir::Type::none) types.push_back(type.scalar);

@@ -88,6 +88,14 @@ constexpr Capability kCapabilities[] = {
     Capability::GroupNonUniformQuad,
     Capability::SubgroupBallotKHR,
     Capability::SubgroupVoteKHR,
+    Capability::Int64Atomics,
+    Capability::AtomicFloat32AddEXT,
+    Capability::AtomicFloat64AddEXT,
+    Capability::AtomicFloat32MinMaxEXT,
+    Capability::AtomicFloat64MinMaxEXT,
+    Capability::VariablePointersStorageBuffer,
+    Capability::VariablePointers,
+    Capability::PhysicalStorageBufferAddresses,
 };
 
 /// The name by way of the disassembler, which knows the grammar.
@@ -141,6 +149,7 @@ void Lowering::run() {
     localOfId_.assign(module_.bound(), ir::kNoIndex);
     workgroupOffset_.assign(module_.bound(), 0);
     classifyVariables();
+    classifyPointers();
     emitter_.begin(emitter_.newBlock());
     lowerGlobals();
     lowerExecutionModes(*found);
@@ -218,14 +227,24 @@ const IdValue& Lowering::idValue(uint32_t id) const {
     return ids_[id];
 }
 
-Lowering::Leaves Lowering::leavesOf(uint32_t id) const {
+Lowering::Leaves Lowering::leavesOf(uint32_t id) {
     const IdValue& value = idValue(id);
+    if (value.kind == IdValue::Kind::pointer) return pointerLeaves(id, *value.pointer);
     if (value.kind != IdValue::Kind::value || value.leaves.empty()) refuseId(id, "is not a value of scalars");
     return value.leaves;
 }
 
-const Pointer& Lowering::pointerOf(uint32_t id) const {
+const LeafType& Lowering::scalarOfId(uint32_t id) {
+    const std::vector<LeafType>& types = leafTypes(module_.definition(id)[1]);
+    if (types.empty()) refuseId(id, "is not a value of scalars");
+    return types[0];
+}
+
+const Pointer& Lowering::pointerOf(uint32_t id) {
     const IdValue& value = idValue(id);
+    if (value.kind == IdValue::Kind::value && typeInfo(value.type).kind == SpirvType::Kind::pointer) {
+        return *arena_.create(pointerOfLeaves(id, value.type, value.leaves));
+    }
     if (value.kind != IdValue::Kind::pointer) refuseId(id, "is not a pointer");
     return *value.pointer;
 }

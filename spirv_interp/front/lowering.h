@@ -28,7 +28,8 @@ struct Pointer {
         local,    // invocation-local memory: `root` is its first word, `extent` its words
         input,    // input slots: `root` is the first, `extent` their number
         builtin,  // a built-in variable made of others (lower_builtins.cpp): `root` is the spv::BuiltIn
-        buffer,   // `root` is the id of the variable
+        buffer,   // `root` is the id of the variable, or of a pointer into any buffer
+        address,  // of a physical storage buffer: `dynamic` is the address, i64; `root` is the id of the pointer
         handle,   // an image or sampler: `root` is the id of the variable
         texel,    // of a storage image: `texel` tells
     };
@@ -39,12 +40,17 @@ struct Pointer {
     ir::ValueId dynamic = ir::kNoValue;      // the rest, in the same unit; ssa: which of `choices` equal parts
     uint32_t choices = 0, choiceStride = 0;  // ssa with `dynamic`: the parts and the leaves from one to the next
     ir::ValueId descriptor = ir::kNoValue;   // buffer, handle: index in the array of descriptors
+    bool anyResource = false;                // buffer: `descriptor` is a buffer handle, which names the resource too
+    bool fromResource = false;               // buffer: the offset counts from the resource's begin, not the variable's
     bool descriptorArray = false;            // the next indices select a descriptor
     uint32_t matrixStride = 0;               // buffer: of the matrices inside
     bool rowMajor = false;
     uint32_t elementStride = 0;  // buffer: bytes between the components of a vector that is a matrix's column
     bool wordLayout = false;     // buffer: without layout decorations, the words of the leaves one after the other
     const struct Texel* texel = nullptr;
+
+    /// Laid out by decorations, in bytes.
+    bool inBytes() const { return base == Base::buffer || base == Base::address; }
 };
 
 /// An image, a sampler or both.
@@ -91,6 +97,7 @@ class Lowering {
     /// How access chains index a variable: by constants only; at run time, but only once and among few parts, so that
     /// selects between SSA values serve best; or in any way, which takes memory.
     enum class Indexing : uint8_t { constant, choice, memory };
+    static constexpr uint32_t kSeveral = ~0u;
     struct SlotCursor {
         uint32_t location = 0, component = 0;
     };
@@ -99,24 +106,31 @@ class Lowering {
         uint32_t firstSlot = 0;  // in Program::outputs, one per word
     };
 
-    // lowering.cpp: the whole, ids, errors
-    void lowerExecutionModes(const EntryPoint& entry);
-    void lowerGlobals();
+    // classify.cpp: facts about variables and pointers, from the words of the module
     void classifyVariables();
     Indexing indexingOf(const Instruction& chain, Indexing before) const;
     bool isConstantId(uint32_t id) const;
+    void classifyPointers();
+    bool isBufferPointer(uint32_t type) const;
+    uint32_t onlyVariableOf(uint32_t pointer) const;
+
+    // lowering.cpp: the whole, ids, errors
+    void lowerExecutionModes(const EntryPoint& entry);
+    void lowerGlobals();
     [[noreturn]] void refuse(const Instruction& inst, const std::string& reason) const;
     [[noreturn]] void refuseId(uint32_t id, const std::string& reason) const;
     std::string describe(const Instruction& inst) const;
     const IdValue& idValue(uint32_t id) const;
-    Leaves leavesOf(uint32_t id) const;
-    ir::ValueId scalarOf(uint32_t id) const { return leavesOf(id)[0]; }
-    const Pointer& pointerOf(uint32_t id) const;
+    Leaves leavesOf(uint32_t id);
+    ir::ValueId scalarOf(uint32_t id) { return leavesOf(id)[0]; }
+    const Pointer& pointerOf(uint32_t id);
     const Handle& handleOf(uint32_t id) const;
     void setValue(uint32_t id, uint32_t type, Leaves leaves);
     void setScalar(uint32_t id, uint32_t type, ir::ValueId value);
     void setPointer(uint32_t id, const Pointer& pointer);
     void setHandle(uint32_t id, const Handle& handle);
+    /// The scalar that a scalar or vector with this id is made of; for a pointer with a value, that value.
+    const LeafType& scalarOfId(uint32_t id);
     std::span<ir::ValueId> newLeaves(size_t count) { return arena_.array<ir::ValueId>(count); }
 
     // lower_types.cpp
@@ -126,7 +140,6 @@ class Lowering {
     void appendLeafTypes(uint32_t id, std::vector<LeafType>& types) const;
     uint32_t typeOfId(uint32_t id) const { return idValue(id).type; }
     const LeafType& scalarType(uint32_t id) const { return typeInfo(id).scalar; }
-    const LeafType& scalarOfId(uint32_t id) const { return scalarType(typeOfId(id)); }
 
     // lower_constants.cpp
     void lowerConstant(const Instruction& inst);
@@ -197,6 +210,7 @@ class Lowering {
     void stepDescriptor(Pointer& pointer, const SpirvType& type, uint32_t indexId);
     void advance(Pointer& pointer, uint32_t indexId, uint32_t count, uint32_t stride);
     void lowerAccessChain(const Instruction& inst);
+    void lowerPtrAccessChain(const Instruction& inst);
     Leaves load(const Pointer& pointer);
     void storeChoice(const Pointer& pointer, Leaves leaves);
     void store(const Pointer& pointer, Leaves leaves);
@@ -212,6 +226,14 @@ class Lowering {
     void storeWord(const Pointer& pointer, uint32_t at, ir::ValueId value, uint32_t bytes = 0);
     template <class Visit>
     void visitBuffer(const Pointer& pointer, uint32_t at, const Visit& visit);
+
+    // lower_pointer.cpp: pointers as values
+    Leaves pointerLeaves(uint32_t id, const Pointer& pointer);
+    Pointer pointerOfLeaves(uint32_t id, uint32_t type, Leaves leaves);
+    bool lowerPointer(const Instruction& inst);
+    void lowerPointerDifference(const Instruction& inst);
+    uint32_t resourceOrAny(const Pointer& pointer);
+    uint32_t strideOfPointer(uint32_t pointerId, const Pointer& pointer);
 
     // lower_narrow.cpp: scalars of less than 32 bits
     ir::ValueId emitTyped(ir::Op op, const LeafType& to, Leaves operands, const LeafType& from, uint64_t imm = 0);
@@ -296,13 +318,16 @@ class Lowering {
     std::vector<uint32_t> typeIndex_;  // by id, into types_
     std::vector<SpirvType> types_{SpirvType{}};
     std::vector<std::vector<LeafType>> leafTypes_{{}};
-    std::vector<Indexing> indexing_;  // by id of a variable or parameter
+    std::vector<Indexing> indexing_;       // by id of a variable or parameter
+    std::vector<uint32_t> pointerClass_;   // by id, union-find: pointers that may hold each other's values
+    std::vector<uint32_t> classVariable_;  // by class: the buffer variable its pointers point into; kSeveral
     std::vector<Output> outputs_;
     std::vector<uint32_t> interface_;     // ids of the entry point's interface variables
     std::vector<uint32_t> resourceOfId_;  // by id of a variable; kNoIndex = not used so far
     std::vector<uint32_t> localOfId_;     // by id of a variable in local memory: its first word
     std::vector<uint32_t>
         workgroupOffset_;           // by id of a variable in work-group memory: its first byte, once it is used
+    bool workgroupBlocks_ = false;  // work-group memory is laid out by decorations
     uint32_t workgroupSizeId_ = 0;  // the constant that is the built-in WorkgroupSize
     uint32_t callCount_ = 0;
     std::vector<const Function*> calls_;  // functions being inlined, outermost first

@@ -165,8 +165,8 @@ Words compileGlsl(ir::Stage stage, std::string_view source, bool debug, VnGlslTa
     return words;
 }
 
-Words assemble(std::string_view source) {
-    spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_1);
+Words assemble(std::string_view source, uint32_t minor) {
+    spvtools::SpirvTools tools(minor == 3 ? SPV_ENV_VULKAN_1_1 : minor == 5 ? SPV_ENV_VULKAN_1_2 : SPV_ENV_VULKAN_1_3);
     tools.SetMessageConsumer([](spv_message_level_t, const char*, const spv_position_t& at, const char* message) {
         ADD_FAILURE() << "line " << at.line << ": " << message;
     });

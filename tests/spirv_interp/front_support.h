@@ -24,8 +24,8 @@ using Words = std::vector<uint32_t>;
 Words compileGlsl(ir::Stage stage, std::string_view source, bool debug = false,
                   VnGlslTarget target = VN_GLSL_TARGET_DEFAULT);
 
-/// SPIR-V of an assembly source (SPIRV-Tools).
-Words assemble(std::string_view source);
+/// SPIR-V of an assembly source (SPIRV-Tools). `minor`: version 1.minor of SPIR-V, 3, 5 or 6.
+Words assemble(std::string_view source, uint32_t minor = 3);
 
 /// The module after spirv-opt -O: phis, selects and flattened control flow that no GLSL compiler writes by itself.
 Words optimised(const Words& words);
