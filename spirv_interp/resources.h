@@ -28,6 +28,7 @@ struct ImageCall {
     const uint32_t* ddy[3] = {};
     const uint32_t* offset[3] = {};    // i32
     const uint32_t* sample = nullptr;  // i32
+    const uint32_t* minLod = nullptr;  // f32 bits
     const uint32_t* texel[4] = {};     // store: value; atomic: value, comparator
     uint32_t* result[4] = {};          // where to put the results; nullptr: not wanted
 };

@@ -68,6 +68,7 @@ void runSample(const TextureUnit& unit, SampleFn routine, const ImageCall& call,
         request.dref = call.dref ? asFloat(call.dref) : kZeroLanes.data();
         request.lodMode = mode;
         request.lod = call.lodOrBias ? asFloat(call.lodOrBias) : nullptr;
+        request.minLod = call.minLod ? asFloat(call.minLod) : nullptr;
         for (size_t i = 0; i < 3; ++i) {
             request.gradX[i] = call.ddx[i] ? asFloat(call.ddx[i]) : nullptr;
             request.gradY[i] = call.ddy[i] ? asFloat(call.ddy[i]) : nullptr;

@@ -142,11 +142,17 @@ HWY_INLINE VF biasedLambda(const SamplerState& sampler, const SampleRequest& req
     return hn::Add(lambda, clampOrLowV(bias, splatFloat(-kMaxSamplerLodBias), splatFloat(kMaxSamplerLodBias)));
 }
 
-HWY_INLINE LevelChoice chooseLevels(const TextureView& view, const SamplerState& sampler, VF lambdaPrime) {
+/// The lower bound of the level of detail: the sampler's, or the instruction's if that is higher.
+HWY_INLINE VF lowestLod(const SamplerState& sampler, const SampleRequest& request, uint32_t first, uint32_t count) {
+    const VF lowest = splatFloat(sampler.minLod);
+    return request.minLod == nullptr ? lowest : hn::Max(lowest, loadLanes(request.minLod, first, count));
+}
+
+HWY_INLINE LevelChoice chooseLevels(const TextureView& view, const SamplerState& sampler, VF lowest, VF lambdaPrime) {
     const F32 df;
     const I32 di;
     LevelChoice choice;
-    choice.lambda = clampOrLowV(lambdaPrime, splatFloat(sampler.minLod), splatFloat(sampler.maxLod));
+    choice.lambda = clampOrLowV(lambdaPrime, lowest, splatFloat(sampler.maxLod));
     const auto last = static_cast<int32_t>(view.levelCount) - 1;
     const VF d = clampOrLowV(choice.lambda, hn::Zero(df), splatFloat(static_cast<float>(last)));
     if (sampler.mipmapMode == VK_SAMPLER_MIPMAP_MODE_LINEAR) {

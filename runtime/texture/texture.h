@@ -89,6 +89,7 @@ struct SampleRequest {
     const float* dref = nullptr;     // comparison value, read when the sampler compares
     LodMode lodMode = LodMode::implicitLod;
     const float* lod = nullptr;
+    const float* minLod = nullptr;  // bounds the level of detail from below, as the sampler's does; null = no bound
     const float* gradX[3] = {};
     const float* gradY[3] = {};
     int32_t offset[3] = {};  // texels

@@ -158,7 +158,7 @@ struct ImageSite {
     uint32_t dref = kNone, lodOrBias = kNone;
     uint32_t ddx[3] = {kNone, kNone, kNone}, ddy[3] = {kNone, kNone, kNone};
     uint32_t offset[3] = {kNone, kNone, kNone};
-    uint32_t sample = kNone;
+    uint32_t sample = kNone, minLod = kNone;
     uint32_t texel[4] = {kNone, kNone, kNone, kNone};
     uint32_t result[4] = {kNone, kNone, kNone, kNone};
     bool effects = false;  // store or atomic: only lanes whose effects count

@@ -37,6 +37,7 @@ class ImageRunner {
         call_.dref = rowAt(site.dref);
         call_.lodOrBias = rowAt(site.lodOrBias);
         call_.sample = rowAt(site.sample);
+        call_.minLod = rowAt(site.minLod);
     }
 
     void run() {

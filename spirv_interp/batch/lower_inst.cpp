@@ -318,6 +318,7 @@ void Lowerer::lowerImage(const ir::Inst& inst) {
     rows(ddy, op.gradients, 3, hidden);
     rows(places.offsets, op.offsets, 3, hidden);
     hidden.push_back(row(places.sample));
+    hidden.push_back(row(places.minLod));
     const uint32_t values = places.values == ir::kNoIndex ? 0 : static_cast<uint32_t>(operands.size()) - places.values;
     rows(places.values, values, 4, hidden);
     for (uint32_t k = 0; k < 4; ++k) {

@@ -80,6 +80,7 @@ void forEachRow(ImageSite& site, F&& function) {
     for (uint32_t& row : site.ddy) function(row);
     for (uint32_t& row : site.offset) function(row);
     function(site.sample);
+    function(site.minLod);
     for (uint32_t& row : site.texel) function(row);
     for (uint32_t& row : site.result) function(row);
 }

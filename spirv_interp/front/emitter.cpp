@@ -115,6 +115,7 @@ Inst& Emitter::append(Op op, Type type, std::span<const ValueId> operands, uint6
     inst.noContraction = noContraction_;
     inst.relaxed = relaxed_;
     inst.line = line_;
+    inst.file = file_;
     inst.imm = imm;
     inst.firstOperand = static_cast<uint32_t>(program_.operands.size());
     inst.operandCount = static_cast<uint16_t>(operands.size());
@@ -245,6 +246,7 @@ ValueId Emitter::newPhi(BlockId block, uint32_t variable, Type type) {
     inst.op = Op::phi;
     inst.type = type;
     inst.line = line_;
+    inst.file = file_;
     inst.result = program_.newValue(type);
     State& state = states_[block];
     const Phi phi{block, static_cast<uint32_t>(state.phis.size()), variable};

@@ -18,12 +18,16 @@ class Emitter {
     explicit Emitter(ir::Program& program) : program_(program) {}
 
     /// Applied to the instructions to come.
-    void setLine(uint32_t line) { line_ = line; }
+    void setLine(uint32_t line, uint32_t file = 0) {
+        line_ = line;
+        file_ = file;
+    }
     void setFlags(bool noContraction, bool relaxed) {
         noContraction_ = noContraction;
         relaxed_ = relaxed;
     }
     uint32_t line() const { return line_; }
+    uint32_t file() const { return file_; }
 
     // Values.
     ir::ValueId constant(ir::Type type, uint64_t bits);
@@ -117,7 +121,7 @@ class Emitter {
     ir::Inst& append(ir::Op op, ir::Type type, std::span<const ir::ValueId> operands, uint64_t imm);
 
     ir::Program& program_;
-    uint32_t line_ = 0;
+    uint32_t line_ = 0, file_ = 0;
     bool noContraction_ = false, relaxed_ = false, terminated_ = true;
     ir::BlockId current_ = 0;
     std::vector<State> states_;

@@ -19,11 +19,12 @@ spv_target_env environmentOf(uint32_t version) {
     return version > 0x00010300 ? SPV_ENV_VULKAN_1_1_SPIRV_1_4 : SPV_ENV_VULKAN_1_1;
 }
 
-struct DestroyContext {
-    void operator()(spv_context context) const { spvContextDestroy(context); }
-};
 struct DestroyOptions {
     void operator()(spv_validator_options options) const { spvValidatorOptionsDestroy(options); }
+};
+
+struct DestroyContext {
+    void operator()(spv_context context) const { spvContextDestroy(context); }
 };
 
 }  // namespace
@@ -34,10 +35,13 @@ Status checkModule(std::span<const uint32_t> words) {
     const std::unique_ptr<std::remove_pointer_t<spv_context>, DestroyContext> context(
         spvContextCreate(environmentOf(words[1])));
     // What features of the device may allow and every program can have: LocalSizeId (maintenance4) and any layout of
-    // blocks in work-group memory.
+    // blocks.
     const std::unique_ptr<std::remove_pointer_t<spv_validator_options>, DestroyOptions> options(
         spvValidatorOptionsCreate());
     spvValidatorOptionsSetAllowLocalSizeId(options.get(), true);
+    spvValidatorOptionsSetRelaxBlockLayout(options.get(), true);
+    spvValidatorOptionsSetUniformBufferStandardLayout(options.get(), true);
+    spvValidatorOptionsSetScalarBlockLayout(options.get(), true);
     spvValidatorOptionsSetWorkgroupScalarBlockLayout(options.get(), true);
     spv_diagnostic diagnostic = nullptr;
     spv_const_binary_t binary{words.data(), words.size()};

@@ -106,7 +106,7 @@ constexpr Elementwise kElementwise[] = {
 }  // namespace
 
 bool Lowering::lowerArithmetic(const Instruction& inst) {
-    return lowerElementwise(inst) || lowerExtendedResult(inst) || lowerMatrix(inst);
+    return lowerElementwise(inst) || lowerExtendedResult(inst) || lowerMatrix(inst) || lowerIntegerDot(inst);
 }
 
 ir::ValueId Lowering::toI32(ir::ValueId value) {

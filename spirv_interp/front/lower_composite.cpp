@@ -30,6 +30,7 @@ uint32_t Lowering::leafOfPart(uint32_t typeId, const Instruction& inst, uint32_t
 bool Lowering::lowerComposite(const Instruction& inst) {
     const uint32_t type = inst[1], id = inst[2];
     switch (inst.op) {
+        case spv::Op::OpExpectKHR:
         case spv::Op::OpCopyObject: {
             const IdValue copied = idValue(inst[3]);
             ids_[id] = copied;

@@ -111,6 +111,8 @@ void Lowering::lowerFunction(const Function& function, Frame& frame) {
 
 void Lowering::lowerBlock(const SpirvBlock& block, Frame& frame) {
     const uint32_t index = frame.function->blockOfLabel.at(block.label);
+    // A line ends with its block.
+    emitter_.setLine(0);
     for (const Frame::PhiVariables& phi : frame.phis[index]) {
         const std::vector<LeafType>& types = leafTypes(phi.inst[1]);
         const std::span<ir::ValueId> leaves = newLeaves(types.size());
@@ -130,11 +132,10 @@ void Lowering::lowerBlock(const SpirvBlock& block, Frame& frame) {
 void Lowering::lowerInstruction(const Instruction& inst) {
     switch (inst.op) {
         case spv::Op::OpLine:
-            emitter_.setLine(inst[2]);
-            return;
         case spv::Op::OpNoLine:
-            emitter_.setLine(0);
+            lowerLine(inst);
             return;
+        case spv::Op::OpAssumeTrueKHR:
         case spv::Op::OpNop:
         case spv::Op::OpPhi:
         case spv::Op::OpLoopMerge:
@@ -157,6 +158,7 @@ void Lowering::lowerInstruction(const Instruction& inst) {
             return;
         case spv::Op::OpExtInst:
             if (module_.extendedSet(inst[3]) == "GLSL.std.450") break;
+            lowerDebugInstruction(inst);
             return;
         default:
             break;
@@ -263,11 +265,11 @@ void Lowering::lowerCall(const Instruction& inst) {
         // Values, pointers and images alike: the parameter is another name for the argument.
         ids_[callee->parameters[i]] = idValue(inst[static_cast<uint32_t>(4 + i)]);
     }
-    const uint32_t line = emitter_.line();
+    const uint32_t line = emitter_.line(), file = emitter_.file();
     Frame inner;
     inner.function = callee;
     lowerFunction(*callee, inner);
-    emitter_.setLine(line);
+    emitter_.setLine(line, file);
     const SpirvType& type = typeInfo(inst[1]);
     if (type.leaves != 0) {
         const std::vector<LeafType>& types = leafTypes(inst[1]);

@@ -195,27 +195,33 @@ void Lowering::lowerSplit(const Instruction& inst) {
 
 void Lowering::lowerInterpolate(const Instruction& inst) {
     const Pointer& pointer = pointerOf(inst[5]);
-    if (pointer.base != Pointer::Base::input || pointer.dynamic != ir::kNoValue) {
-        refuse(inst, "the interpolant is not an input with constant indices");
-    }
+    if (pointer.base != Pointer::Base::input) refuse(inst, "the interpolant is no input");
+    const Leaves at = inst.count > 6 ? leavesOf(inst[6]) : Leaves();
+    const auto interpolated = [&](uint32_t slot) {
+        switch (inst[4]) {
+            case GLSLstd450InterpolateAtCentroid:
+                return emitter_.emit(Op::interpolateAtCentroid, ir::Type::f32, {}, slot);
+            case GLSLstd450InterpolateAtSample:
+                return emitter_.emit(Op::interpolateAtSample, ir::Type::f32, {indexOf(inst[6])}, slot);
+            default:
+                return emitter_.emit(Op::interpolateAtOffset, ir::Type::f32, {at[0], at[1]}, slot);
+        }
+    };
     const std::vector<LeafType>& types = leafTypes(inst[1]);
     const std::span<ir::ValueId> leaves = newLeaves(types.size());
     for (uint32_t i = 0; i < leaves.size(); ++i) {
-        const uint32_t slot = pointer.root + pointer.offset + i;
         if (types[i] != ir::Type::f32) refuse(inst, "the interpolant is not of 32-bit floats");
-        switch (inst[4]) {
-            case GLSLstd450InterpolateAtCentroid:
-                leaves[i] = emitter_.emit(Op::interpolateAtCentroid, types[i], {}, slot);
-                break;
-            case GLSLstd450InterpolateAtSample:
-                leaves[i] = emitter_.emit(Op::interpolateAtSample, types[i], {indexOf(inst[6])}, slot);
-                break;
-            default: {
-                const Leaves offset = leavesOf(inst[6]);
-                leaves[i] = emitter_.emit(Op::interpolateAtOffset, types[i], {offset[0], offset[1]}, slot);
-                break;
-            }
+        if (pointer.dynamic == ir::kNoValue) {
+            leaves[i] = interpolated(pointer.root + pointer.offset + i);
+            continue;
         }
+        // All that an index could mean; one out of range means the last.
+        const std::span<ir::ValueId> choices = newLeaves(pointer.extent);
+        for (uint32_t slot = 0; slot < pointer.extent; ++slot) {
+            const bool fits = program_.inputs[pointer.root + slot].type == ir::Type::f32;
+            choices[slot] = fits ? interpolated(pointer.root + slot) : emitter_.undef(ir::Type::f32);
+        }
+        leaves[i] = chooseLeaf(choices, place(pointer, i));
     }
     setValue(inst[2], inst[1], leaves);
 }

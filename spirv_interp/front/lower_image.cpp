@@ -45,6 +45,7 @@ constexpr auto kConstOffset = static_cast<uint32_t>(spv::ImageOperandsMask::Cons
 constexpr auto kOffset = static_cast<uint32_t>(spv::ImageOperandsMask::Offset);
 constexpr auto kConstOffsets = static_cast<uint32_t>(spv::ImageOperandsMask::ConstOffsets);
 constexpr auto kSample = static_cast<uint32_t>(spv::ImageOperandsMask::Sample);
+constexpr auto kMinLod = static_cast<uint32_t>(spv::ImageOperandsMask::MinLod);
 // Availability, visibility and volatility: invocations see their own accesses in order, others' at barriers. Sign and
 // zero extension repeat what the sampled type says.
 constexpr uint32_t bitsOf(std::initializer_list<spv::ImageOperandsMask> masks) {
@@ -187,9 +188,12 @@ void Lowering::appendImageOperands(const Instruction& inst, uint32_t maskWord, i
         op.hasSample = true;
         append(leavesOf(inst[word++]).first(1));
     }
-    const uint32_t known = kBias | kLod | kGrad | kConstOffset | kOffset | kConstOffsets | kSample | kNoEffect;
-    if ((mask & ~known) != 0)
-        refuse(inst, "image operands " + std::to_string(mask & ~known) + " (MinLod) are not supported");
+    if (mask & kMinLod) {
+        op.hasMinLod = true;
+        append(leavesOf(inst[word++]).first(1));
+    }
+    const uint32_t known = kBias | kLod | kGrad | kConstOffset | kOffset | kConstOffsets | kSample | kMinLod | kNoEffect;
+    if ((mask & ~known) != 0) refuse(inst, "image operands " + std::to_string(mask & ~known) + " are not supported");
 }
 
 void Lowering::lowerSample(const Instruction& inst) {

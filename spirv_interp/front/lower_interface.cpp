@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "spirv_interp/front/lowering.h"
+#include "spirv_interp/front/spelling.h"
 #include "spirv_interp/ir/ops.h"
 
 namespace vernier {
@@ -110,7 +111,7 @@ void Lowering::lowerVariable(const Instruction& inst) {
             pointer.descriptorArray = type.kind == SpirvType::Kind::array || type.kind == SpirvType::Kind::runtimeArray;
             break;
         default:
-            refuse(inst, "storage class " + std::to_string(inst[3]) + " is not supported");
+            refuse(inst, "storage class " + nameOf(pointerType.storage) + " is not supported");
     }
     setPointer(id, pointer);
 }
@@ -164,7 +165,7 @@ ir::Builtin Lowering::builtinOf(const SlotPlace& place, uint32_t builtin) const 
         }
     }
     refuseId(place.variable,
-             "is built-in variable " + std::to_string(builtin) + ", which is not supported in this stage");
+             "is the built-in " + nameOf(static_cast<spv::BuiltIn>(builtin)) + ", which is not supported in this stage");
 }
 
 void Lowering::decorateSlot(const SlotPlace& place, ir::InterfaceSlot& slot, SlotCursor& at) const {

@@ -4,6 +4,7 @@
 
 #include <spirv-tools/libspirv.h>
 
+#include "spirv_interp/front/spelling.h"
 #include "spirv_interp/ir/names.h"
 
 namespace vernier {
@@ -96,25 +97,13 @@ constexpr Capability kCapabilities[] = {
     Capability::VariablePointersStorageBuffer,
     Capability::VariablePointers,
     Capability::PhysicalStorageBufferAddresses,
+    Capability::MinLod,
+    Capability::DotProduct,
+    Capability::DotProductInputAll,
+    Capability::DotProductInput4x8Bit,
+    Capability::DotProductInput4x8BitPacked,
+    Capability::ExpectAssumeKHR,
 };
-
-/// The name by way of the disassembler, which knows the grammar.
-std::string capabilityName(uint32_t capability) {
-    const uint32_t words[] = {
-        spv::MagicNumber, 0x00010600, 0, 1, 0, (2u << 16) | static_cast<uint32_t>(spv::Op::OpCapability), capability};
-    const spv_context context = spvContextCreate(SPV_ENV_UNIVERSAL_1_6);
-    spv_text text = nullptr;
-    std::string name = std::to_string(capability);
-    if (spvBinaryToText(context, words, std::size(words), SPV_BINARY_TO_TEXT_OPTION_NO_HEADER, &text, nullptr) ==
-        SPV_SUCCESS) {
-        name.assign(text->str, text->length);
-        name.erase(0, name.find_last_of(' ') + 1);
-        name.erase(name.find_last_not_of('\n') + 1);
-    }
-    spvTextDestroy(text);
-    spvContextDestroy(context);
-    return name;
-}
 
 spv::ExecutionModel modelOf(ir::Stage stage) {
     switch (stage) {
@@ -164,8 +153,10 @@ void Lowering::lowerGlobals() {
         if (inst.op == spv::Op::OpCapability) {
             const auto capability = static_cast<Capability>(inst[1]);
             if (std::find(std::begin(kCapabilities), std::end(kCapabilities), capability) == std::end(kCapabilities)) {
-                throw LoweringError{unsupported("SPIR-V: capability " + capabilityName(inst[1]) + " is not supported")};
+                throw LoweringError{unsupported("SPIR-V: capability " + nameOf(capability) + " is not supported")};
             }
+        } else if (inst.op == spv::Op::OpLine || inst.op == spv::Op::OpNoLine) {
+            lowerLine(inst);
         } else if (inst.op == spv::Op::OpExtInstImport) {
             const std::string_view set = module_.extendedSet(inst[1]);
             if (set != "GLSL.std.450" && !set.starts_with("NonSemantic.")) {
@@ -186,6 +177,7 @@ void Lowering::lowerGlobals() {
             lowerVariable(inst);
         }
     }
+    emitter_.setLine(0);
 }
 
 void Lowering::lowerExecutionModes(const EntryPoint& entry) {
@@ -213,7 +205,7 @@ void Lowering::lowerExecutionModes(const EntryPoint& entry) {
             case spv::ExecutionMode::RoundingModeRTE:
                 break;
             default:
-                refuse(inst, "execution mode " + std::to_string(inst[2]) + " is not supported");
+                refuse(inst, "execution mode " + executionModeOf(inst) + " is not supported");
         }
     }
     checkLocalSize(entry);
@@ -281,8 +273,7 @@ std::string Lowering::describe(const Instruction& inst) const {
     bool hasResult = false, hasType = false;
     spv::HasResultAndType(inst.op, &hasResult, &hasType);
     if (hasResult) text += " " + module_.nameOf(inst[hasType ? 2 : 1]);
-    if (emitter_.line() != 0) text += ", line " + std::to_string(emitter_.line());
-    return text;
+    return text + where();
 }
 
 void Lowering::refuse(const Instruction& inst, const std::string& reason) const {
@@ -290,9 +281,7 @@ void Lowering::refuse(const Instruction& inst, const std::string& reason) const 
 }
 
 void Lowering::refuseId(uint32_t id, const std::string& reason) const {
-    std::string text = "SPIR-V: " + module_.nameOf(id) + " " + reason;
-    if (emitter_.line() != 0) text += ", line " + std::to_string(emitter_.line());
-    throw LoweringError{unsupported(std::move(text))};
+    throw LoweringError{unsupported("SPIR-V: " + module_.nameOf(id) + " " + reason + where())};
 }
 
 }  // namespace vernier

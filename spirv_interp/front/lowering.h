@@ -141,6 +141,12 @@ class Lowering {
     uint32_t typeOfId(uint32_t id) const { return idValue(id).type; }
     const LeafType& scalarType(uint32_t id) const { return typeInfo(id).scalar; }
 
+    // lower_debug.cpp: source lines
+    void lowerLine(const Instruction& inst);
+    void lowerDebugInstruction(const Instruction& inst);
+    uint32_t fileIndex(uint32_t stringId);
+    std::string where() const;
+
     // lower_constants.cpp
     void lowerConstant(const Instruction& inst);
     ir::ValueId constantOfBits(const LeafType& type, uint64_t bits);
@@ -257,6 +263,8 @@ class Lowering {
     ir::ValueId toI32(ir::ValueId value);
     ir::ValueId withType(ir::ValueId value, ir::Type type);
     bool lowerMatrix(const Instruction& inst);
+    bool lowerIntegerDot(const Instruction& inst);
+    ir::ValueId saturatingSum(ir::ValueId a, ir::ValueId b, const LeafType& type, bool isSigned);
     bool lowerComposite(const Instruction& inst);
     uint32_t leafOfPart(uint32_t type, const Instruction& inst, uint32_t firstWord, uint32_t& partType) const;
     ir::ValueId chooseLeaf(Leaves values, ir::ValueId index);
@@ -330,6 +338,7 @@ class Lowering {
     bool workgroupBlocks_ = false;  // work-group memory is laid out by decorations
     uint32_t workgroupSizeId_ = 0;  // the constant that is the built-in WorkgroupSize
     uint32_t callCount_ = 0;
+    std::vector<uint32_t> fileOfId_;  // by id of an OpString: index into Program::files; 0 = not used so far
     std::vector<const Function*> calls_;  // functions being inlined, outermost first
 };
 

@@ -61,6 +61,7 @@ struct Inst {
     uint32_t firstOperand = 0;   // into Program::operands
     uint16_t operandCount = 0;
     uint32_t line = 0;  // source line, 0 = unknown
+    uint32_t file = 0;  // source file: index into Program::files, 0 = unknown
     uint64_t imm = 0;
 };
 
@@ -193,7 +194,7 @@ enum class ReduceMode : uint8_t { reduce, inclusive, exclusive };
 /// descriptor index of the image (i32), descriptor index of the sampler (i32, when samplerResource is another
 /// resource), `coords` coordinates (f32, or i32 for fetch/read/store; array layer last), dref (f32), lod or bias (f32;
 /// i32 for fetch and querySize), gradients d/dx then d/dy (`gradients` f32 each), offsets (`offsets` i32), sample
-/// (i32), texel (4 values, store) or value[, comparator] (atomic).
+/// (i32), minimum of the level of detail (f32), texel (4 values, store) or value[, comparator] (atomic).
 struct ImageOp {
     ImageKind kind = ImageKind::sampleImplicit;
     uint32_t imageResource = kNoIndex;    // into Program::resources
@@ -201,7 +202,7 @@ struct ImageOp {
     ImageDim dim = ImageDim::d2;
     bool arrayed = false, multisampled = false, depthCompare = false;
     uint8_t coords = 0, gradients = 0, offsets = 0;
-    bool hasBias = false, hasLod = false, hasSample = false;
+    bool hasBias = false, hasLod = false, hasSample = false, hasMinLod = false;
     uint8_t component = 0;  // gather
     AtomicOp atomicOp = AtomicOp::add;
 };
@@ -215,6 +216,7 @@ struct Program {
     std::vector<InterfaceSlot> inputs, outputs;
     std::vector<Resource> resources;
     std::vector<ImageOp> imageOps;
+    std::vector<std::string> files{""};  // names of source files; the first stands for an unknown one
     uint32_t localWords = 0;  // invocation-local memory
     // Fragment execution modes and facts that planning needs; recomputed by analyse() (ir/analyse.h) after passes.
     bool earlyFragmentTests = false;

@@ -39,7 +39,7 @@ uint32_t imageOperandTypes(const ImageOp& op, uint32_t index) {
     if (at.coords != kNoIndex && index >= at.coords && index < at.coords + op.coords) {
         return integerCoords ? bit(Type::i32) : bit(Type::f32);
     }
-    if (index == at.dref) return bit(Type::f32);
+    if (index == at.dref || index == at.minLod) return bit(Type::f32);
     if (index == at.lodOrBias) {
         return op.kind == ImageKind::fetch || op.kind == ImageKind::querySize ? bit(Type::i32) : bit(Type::f32);
     }
@@ -122,6 +122,7 @@ ImageOperands imageOperands(const ImageOp& op) {
     at.gradients = take(op.gradients);
     at.offsets = take(op.offsets);
     at.sample = take(op.hasSample ? 1 : 0);
+    at.minLod = take(op.hasMinLod ? 1 : 0);
     uint32_t values = 0;
     if (op.kind == ImageKind::store) values = 4;
     if (op.kind == ImageKind::atomic) {

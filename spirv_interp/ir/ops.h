@@ -99,7 +99,7 @@ uint32_t operandCountOf(const Program& program, const Inst& inst);
 /// Where the operands of an image instruction stand; kNoIndex = not there. `count` is their number.
 struct ImageOperands {
     uint32_t image = 0, sampler = kNoIndex, coords = kNoIndex, dref = kNoIndex, lodOrBias = kNoIndex,
-             gradients = kNoIndex, offsets = kNoIndex, sample = kNoIndex, values = kNoIndex;
+             gradients = kNoIndex, offsets = kNoIndex, sample = kNoIndex, minLod = kNoIndex, values = kNoIndex;
     uint32_t count = 0;
 };
 ImageOperands imageOperands(const ImageOp& op);

@@ -209,6 +209,7 @@ class Parser {
         op.hasBias = in.acceptWord("bias");
         op.hasLod = in.acceptWord("lod");
         op.hasSample = in.acceptWord("sample");
+        op.hasMinLod = in.acceptWord("minLod");
         if (op.kind == ImageKind::atomic) op.atomicOp = in.name<AtomicOp>("an atomic operation");
     }
 
@@ -280,7 +281,10 @@ class Parser {
         if (opInfo(*op).kind == 'T') targets(in, block);
         inst.noContraction = in.acceptWord("!noContraction");
         inst.relaxed = in.acceptWord("!relaxed");
-        if (in.accept("@")) inst.line = static_cast<uint32_t>(in.number(~0u));
+        if (in.accept("@")) {
+            inst.line = static_cast<uint32_t>(in.number(~0u));
+            if (in.accept(":")) inst.file = static_cast<uint32_t>(in.number(~0u));
+        }
         if (in.failed()) return;
         for (uint32_t r = 0; r < opInfo(*op).results; ++r) {
             const size_t value = static_cast<size_t>(inst.result) + r;

@@ -48,6 +48,7 @@ void printImageOp(std::string& out, size_t index, const ImageOp& op) {
     flag("bias", op.hasBias);
     flag("lod", op.hasLod);
     flag("sample", op.hasSample);
+    flag("minLod", op.hasMinLod);
     if (op.kind == ImageKind::atomic) out += " " + std::string(nameOf(op.atomicOp));
     out += "\n";
 }
@@ -121,6 +122,7 @@ std::string printInst(const Program& program, const Block& block, const Inst& in
     if (inst.noContraction) out += " !noContraction";
     if (inst.relaxed) out += " !relaxed";
     if (inst.line != 0) out += " @" + number(inst.line);
+    if (inst.line != 0 && inst.file != 0) out += ":" + number(inst.file);
     return out;
 }
 
@@ -139,6 +141,7 @@ std::string print(const Program& program) {
         out += "\n";
     }
     for (size_t i = 0; i < program.imageOps.size(); ++i) printImageOp(out, i, program.imageOps[i]);
+    for (size_t i = 1; i < program.files.size(); ++i) out += "file " + number(i) + " \"" + program.files[i] + "\"\n";
     printFlags(out, program);
     for (size_t b = 0; b < program.blocks.size(); ++b) {
         const Block& block = program.blocks[b];
