@@ -54,7 +54,8 @@ class Sampler {
     void queryLod() const {
         forEachVector([&](uint32_t first, uint32_t count) HWY_ATTR {
             const VF lambdaPrime = lambda(first, count);
-            const LevelChoice choice = chooseLevels(view_, sampler_, lowestLod(sampler_, request_, first, count), lambdaPrime);
+            const LevelChoice choice =
+                chooseLevels(view_, sampler_, lowestLod(sampler_, request_, first, count), lambdaPrime);
             const VF level = hn::Add(hn::ConvertTo(F32(), choice.high), choice.weight);
             if (request_.out[0] != nullptr) storeLanes(bitsOf(level), request_.out[0], first, count);
             if (request_.out[1] != nullptr) storeLanes(bitsOf(lambdaPrime), request_.out[1], first, count);
@@ -406,7 +407,8 @@ class Sampler {
         if (view_.levelCount == 1 && sampler_.magFilter == sampler_.minFilter) {
             sampleLevel(view_.levels[0], at, hn::MaskFromVec(hn::Zero(F32())), texel);
         } else {
-            const LevelChoice choice = chooseLevels(view_, sampler_, lowestLod(sampler_, request_, first, count), lambda(first, count));
+            const LevelChoice choice =
+                chooseLevels(view_, sampler_, lowestLod(sampler_, request_, first, count), lambda(first, count));
             const Mask magnified = hn::Not(hn::Gt(choice.lambda, hn::Zero(F32())));
             sampleLevels(choice.high, at, magnified, texel);
             if (!hn::AllTrue(F32(), hn::Eq(choice.weight, hn::Zero(F32())))) {
@@ -433,7 +435,8 @@ class Sampler {
         if constexpr (kShape != Shape::volume && !Source::kFinite) {
             const Route route = compare_ ? Route::r : routeOf(view_.swizzle, request_.component);
             const Coordinates at = coordinates(first, count);
-            const LevelChoice choice = chooseLevels(view_, sampler_, lowestLod(sampler_, request_, first, count), lambda(first, count));
+            const LevelChoice choice =
+                chooseLevels(view_, sampler_, lowestLod(sampler_, request_, first, count), lambda(first, count));
             alignas(64) int32_t index[kVectorLanes];
             hn::Store(choice.high, I32(), index);
             constexpr int kOrder[4] = {2, 3, 1, 0};  // (0,1), (1,1), (1,0), (0,0)

@@ -8,6 +8,7 @@
 #include <hwy/highway.h>
 
 #include <atomic>
+#include <cstring>
 
 #include "spirv_interp/batch/handlers.h"
 #include "spirv_interp/batch/memory-inl.h"
@@ -138,6 +139,26 @@ const Inst* atomicBuffer(Frame& frame, const Inst* inst) {
     return inst + instsFor(7);
 }
 
+/// In work-group memory, which no other thread sees, 64-bit values may stand at any word.
+const Inst* atomicShared64(Frame& frame, const Inst* inst) {
+    const Inst& in = *inst;
+    const auto* offsets = frame.row<uint32_t>(in[2]);
+    const BufferBinding memory = bufferOf(frame, in[3], 0);
+    const auto operation = static_cast<ir::AtomicOp>(in[4]);
+    for (uint32_t lane = 0; lane < frame.lanes; ++lane) writeLane<uint64_t>(frame, in[0], lane, 0);
+    effectLanes(frame).forEach([&](uint32_t lane) {
+        const uint32_t offset = offsets[lane] & ~3u;
+        if (memory.size < 8 || offset > memory.size - 8) return;
+        uint64_t old = 0;
+        std::memcpy(&old, memory.data + offset, sizeof old);
+        const uint64_t next =
+            combined(operation, old, readLane<uint64_t>(frame, in[5], lane), readLane<uint64_t>(frame, in[6], lane));
+        std::memcpy(memory.data + offset, &next, sizeof next);
+        writeLane<uint64_t>(frame, in[0], lane, old);
+    });
+    return inst + instsFor(7);
+}
+
 /// Device memory by address; remembers the range of the last access, which most accesses share.
 class AddressSpace {
   public:
@@ -220,6 +241,7 @@ const Inst* atomicAddress(Frame& frame, const Inst* inst) {
 void addAtomics(HandlerTables& tables) {
     addPlain<atomicBuffer<uint32_t>>(tables, Op::atomicBuffer);
     addPlain<atomicBuffer<uint64_t>>(tables, Op::atomicBuffer64);
+    addPlain<atomicShared64>(tables, Op::atomicShared64);
     addPlain<loadAddress>(tables, Op::loadAddress);
     addPlain<storeAddress>(tables, Op::storeAddress);
     addPlain<atomicAddress<uint32_t>>(tables, Op::atomicAddress);

@@ -193,7 +193,8 @@ void Lowering::classifyPointers() {
             uint32_t& variable = classVariable_[pointerClass_[inst[2]]];
             variable = variable == 0 || shared ? inst[2] : kSeveral;
             const Instruction pointer = module_.definition(inst[1]);
-            workgroupBlocks_ = workgroupBlocks_ || (shared && module_.hasDecoration(pointer[3], spv::Decoration::Block));
+            workgroupBlocks_ =
+                workgroupBlocks_ || (shared && module_.hasDecoration(pointer[3], spv::Decoration::Block));
         }
     }
 }

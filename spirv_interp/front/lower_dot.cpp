@@ -74,11 +74,13 @@ ir::ValueId Lowering::saturatingSum(ir::ValueId a, ir::ValueId b, const LeafType
     }
     const ir::ValueId sum = binary(Op::iadd, a, b);
     if (!isSigned) {
-        return emitter_.emit(Op::select, type, {compare(Op::ult, sum, a), emitter_.constant(type, ~0ull >> (64 - type.bits)), sum});
+        return emitter_.emit(Op::select, type,
+                             {compare(Op::ult, sum, a), emitter_.constant(type, ~0ull >> (64 - type.bits)), sum});
     }
     // It overflows when the operands have one sign and the sum has the other; then it is the limit of their sign.
     const ir::ValueId zero = emitter_.constant(type, 0);
-    const ir::ValueId overflow = compare(Op::slt, binary(Op::iand, binary(Op::ixor, a, sum), binary(Op::ixor, b, sum)), zero);
+    const ir::ValueId overflow =
+        compare(Op::slt, binary(Op::iand, binary(Op::ixor, a, sum), binary(Op::ixor, b, sum)), zero);
     const ir::ValueId sign = binary(Op::ashr, a, emitter_.constant(type, type.bits - 1u));
     const ir::ValueId limit = binary(Op::ixor, sign, emitter_.constant(type, ~0ull >> (65 - type.bits)));
     return emitter_.emit(Op::select, type, {overflow, limit, sum});

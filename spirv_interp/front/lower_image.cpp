@@ -192,7 +192,8 @@ void Lowering::appendImageOperands(const Instruction& inst, uint32_t maskWord, i
         op.hasMinLod = true;
         append(leavesOf(inst[word++]).first(1));
     }
-    const uint32_t known = kBias | kLod | kGrad | kConstOffset | kOffset | kConstOffsets | kSample | kMinLod | kNoEffect;
+    const uint32_t known =
+        kBias | kLod | kGrad | kConstOffset | kOffset | kConstOffsets | kSample | kMinLod | kNoEffect;
     if ((mask & ~known) != 0) refuse(inst, "image operands " + std::to_string(mask & ~known) + " are not supported");
 }
 

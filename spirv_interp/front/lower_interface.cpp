@@ -164,8 +164,8 @@ ir::Builtin Lowering::builtinOf(const SlotPlace& place, uint32_t builtin) const 
             return entry.builtin;
         }
     }
-    refuseId(place.variable,
-             "is the built-in " + nameOf(static_cast<spv::BuiltIn>(builtin)) + ", which is not supported in this stage");
+    refuseId(place.variable, "is the built-in " + nameOf(static_cast<spv::BuiltIn>(builtin)) +
+                                 ", which is not supported in this stage");
 }
 
 void Lowering::decorateSlot(const SlotPlace& place, ir::InterfaceSlot& slot, SlotCursor& at) const {

@@ -338,7 +338,7 @@ class Lowering {
     bool workgroupBlocks_ = false;  // work-group memory is laid out by decorations
     uint32_t workgroupSizeId_ = 0;  // the constant that is the built-in WorkgroupSize
     uint32_t callCount_ = 0;
-    std::vector<uint32_t> fileOfId_;  // by id of an OpString: index into Program::files; 0 = not used so far
+    std::vector<uint32_t> fileOfId_;      // by id of an OpString: index into Program::files; 0 = not used so far
     std::vector<const Function*> calls_;  // functions being inlined, outermost first
 };
 

@@ -53,7 +53,8 @@ std::string nameOf(spv::Decoration decoration) {
 std::string executionModeOf(const Instruction& inst) {
     // "OpExecutionMode %4 LocalSize 8 8 1"
     std::string text = disassembled({inst.words, inst.words + inst.count});
-    for (int word = 0; word < 2 && !text.empty(); ++word) text.erase(0, text.find(' ') == std::string::npos ? text.size() : text.find(' ') + 1);
+    for (int word = 0; word < 2 && !text.empty(); ++word)
+        text.erase(0, text.find(' ') == std::string::npos ? text.size() : text.find(' ') + 1);
     return text.empty() ? std::to_string(inst[2]) : text.substr(0, text.find(' '));
 }
 

@@ -9,7 +9,8 @@
 
 namespace vernier {
 
-/// The last operand of an instruction made of these operand words, as the disassembler writes it; the number if it cannot.
+/// The last operand of an instruction made of these operand words, as the disassembler writes it; the number if it
+/// cannot.
 std::string lastOperandOf(spv::Op op, std::initializer_list<uint32_t> operands);
 
 std::string nameOf(spv::Capability capability);

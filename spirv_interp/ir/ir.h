@@ -217,7 +217,7 @@ struct Program {
     std::vector<Resource> resources;
     std::vector<ImageOp> imageOps;
     std::vector<std::string> files{""};  // names of source files; the first stands for an unknown one
-    uint32_t localWords = 0;  // invocation-local memory
+    uint32_t localWords = 0;             // invocation-local memory
     // Fragment execution modes and facts that planning needs; recomputed by analyse() (ir/analyse.h) after passes.
     bool earlyFragmentTests = false;
     bool usesQuads = false;   // derivatives or implicit LOD: helper lanes are needed

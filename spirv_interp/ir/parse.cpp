@@ -142,6 +142,9 @@ class Parser {
             slot(in, program_.outputs);
         } else if (in.acceptWord("resource")) {
             resource(in);
+        } else if (in.acceptWord("file")) {
+            index(in, program_.files.size());
+            program_.files.push_back(in.quoted());
         } else if (in.acceptWord("imageOp")) {
             imageOp(in);
         } else if (in.acceptWord("facts")) {

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "tests/spirv_interp/batch_harness.h"
+#include "tests/spirv_interp/compute_harness.h"
 #include "tests/spirv_interp/shader_run.h"
 
 namespace vernier::test {
@@ -106,6 +107,43 @@ TEST(WideAtomics, Floats) {
         }
         const auto words = valuesOf<float>(shader.buffers[0]);
         for (size_t k = 0; k < 4; ++k) EXPECT_EQ(words[k], f[k]);
+    }
+}
+
+// In work-group memory 64-bit values may stand at any word, and narrow ones next to each other.
+TEST(WideAtomics, WorkgroupMemory) {
+    const ir::Program program = loadCompute(R"(#version 450
+#extension GL_EXT_shader_explicit_arithmetic_types : require
+#extension GL_EXT_shader_atomic_int64 : require
+layout(local_size_x = 40) in;
+layout(set = 0, binding = 0) buffer B { uint o[]; };
+shared struct { uint first; uint64_t sum; int64_t least; uint8_t bytes[40]; float16_t half1; } s;
+shared uint16_t shorts[40];
+void main() {
+    uint i = gl_LocalInvocationIndex;
+    if (i == 0) { s.sum = 5ul; s.least = 0l; s.half1 = 0.25hf; }
+    barrier();
+    atomicAdd(s.sum, (uint64_t(i) << 32) + 3ul);
+    atomicMin(s.least, -int64_t(i) * 10000000000l);
+    s.bytes[i] = uint8_t(i * 7u);
+    shorts[39 - i] = uint16_t(i * 3000u);
+    if (i == 9) s.half1 += 1.5hf;
+    barrier();
+    o[i * 6] = uint(s.sum); o[i * 6 + 1] = uint(s.sum >> 32);
+    o[i * 6 + 2] = uint(s.least / -10000000000l);
+    o[i * 6 + 3] = uint(s.bytes[(i + 1u) % 40u]);
+    o[i * 6 + 4] = uint(shorts[i]);
+    o[i * 6 + 5] = uint(s.half1 * 100.0hf);
+}
+)");
+    const auto o = dispatchEverywhere(program, {}, {{0, std::vector<uint32_t>(240)}})[0];
+    for (uint32_t i = 0; i < 40; ++i) {
+        EXPECT_EQ(o[i * 6], 5 + 40 * 3u);
+        EXPECT_EQ(o[i * 6 + 1], 39 * 20u);
+        EXPECT_EQ(o[i * 6 + 2], 39u);
+        EXPECT_EQ(o[i * 6 + 3], (i + 1) % 40 * 7 % 256);
+        EXPECT_EQ(o[i * 6 + 4], (39 - i) * 3000 % 65536);
+        EXPECT_EQ(o[i * 6 + 5], 175u);
     }
 }
 
