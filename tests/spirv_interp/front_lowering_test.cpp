@@ -419,11 +419,11 @@ OpReturn
               42);
 }
 
-TEST_F(Lowering, RefusesPointersThatAreChosen) {
+TEST_F(Lowering, RefusesOtherRoundingModes) {
     const Words words = assemble(R"(
 OpCapability Shader
-OpCapability VariablePointersStorageBuffer
-OpExtension "SPV_KHR_variable_pointers"
+OpCapability RoundingModeRTZ
+OpExtension "SPV_KHR_float_controls"
 OpMemoryModel Logical GLSL450
 OpEntryPoint Fragment %main "main"
 OpExecutionMode %main OriginUpperLeft
@@ -440,7 +440,7 @@ OpFunctionEnd
     const Result<ir::Program> program = loadShader(source);
     ASSERT_FALSE(program.ok());
     EXPECT_EQ(program.error().code, ErrorCode::unsupported);
-    EXPECT_EQ(program.error().message, "SPIR-V: capability VariablePointersStorageBuffer is not supported");
+    EXPECT_EQ(program.error().message, "SPIR-V: capability RoundingModeRTZ is not supported");
 }
 
 }  // namespace
