@@ -40,14 +40,49 @@ namespace {
     X(shaderStorageImageArrayDynamicIndexing)  \
     X(shaderClipDistance)                      \
     X(shaderCullDistance)                      \
+    X(shaderFloat64)                           \
+    X(shaderInt64)                             \
+    X(shaderInt16)                             \
+    X(shaderResourceMinLod)                    \
     X(inheritedQueries)
 
 // The members of the structures that extensions bring, and whether they are supported.
-#define VERNIER_EXTENSION_FEATURES(X)                                        \
-    X(VkPhysicalDeviceTimelineSemaphoreFeatures, timelineSemaphore, true)    \
-    X(VkPhysicalDeviceDepthClipEnableFeaturesEXT, depthClipEnable, true)     \
-    X(VkPhysicalDeviceProvokingVertexFeaturesEXT, provokingVertexLast, true) \
-    X(VkPhysicalDeviceProvokingVertexFeaturesEXT, transformFeedbackPreservesProvokingVertex, false)
+#define VERNIER_EXTENSION_FEATURES(X)                                                               \
+    X(VkPhysicalDeviceTimelineSemaphoreFeatures, timelineSemaphore, true)                           \
+    X(VkPhysicalDeviceDepthClipEnableFeaturesEXT, depthClipEnable, true)                            \
+    X(VkPhysicalDeviceProvokingVertexFeaturesEXT, provokingVertexLast, true)                        \
+    X(VkPhysicalDeviceProvokingVertexFeaturesEXT, transformFeedbackPreservesProvokingVertex, false) \
+    X(VkPhysicalDevice16BitStorageFeatures, storageBuffer16BitAccess, true)                         \
+    X(VkPhysicalDevice16BitStorageFeatures, uniformAndStorageBuffer16BitAccess, true)               \
+    X(VkPhysicalDevice16BitStorageFeatures, storagePushConstant16, true)                            \
+    X(VkPhysicalDevice16BitStorageFeatures, storageInputOutput16, true)                             \
+    X(VkPhysicalDevice8BitStorageFeatures, storageBuffer8BitAccess, true)                           \
+    X(VkPhysicalDevice8BitStorageFeatures, uniformAndStorageBuffer8BitAccess, true)                 \
+    X(VkPhysicalDevice8BitStorageFeatures, storagePushConstant8, true)                              \
+    X(VkPhysicalDeviceShaderFloat16Int8Features, shaderFloat16, true)                               \
+    X(VkPhysicalDeviceShaderFloat16Int8Features, shaderInt8, true)                                  \
+    X(VkPhysicalDeviceShaderAtomicInt64Features, shaderBufferInt64Atomics, true)                    \
+    X(VkPhysicalDeviceShaderAtomicInt64Features, shaderSharedInt64Atomics, true)                    \
+    X(VkPhysicalDeviceVariablePointersFeatures, variablePointersStorageBuffer, true)                \
+    X(VkPhysicalDeviceVariablePointersFeatures, variablePointers, true)                             \
+    X(VkPhysicalDeviceShaderDrawParametersFeatures, shaderDrawParameters, true)                     \
+    X(VkPhysicalDeviceUniformBufferStandardLayoutFeatures, uniformBufferStandardLayout, true)       \
+    X(VkPhysicalDeviceScalarBlockLayoutFeatures, scalarBlockLayout, true)                           \
+    X(VkPhysicalDeviceShaderDemoteToHelperInvocationFeatures, shaderDemoteToHelperInvocation, true) \
+    X(VkPhysicalDeviceShaderTerminateInvocationFeatures, shaderTerminateInvocation, true)           \
+    X(VkPhysicalDeviceShaderIntegerDotProductFeatures, shaderIntegerDotProduct, true)               \
+    X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderBufferFloat32Atomics, true)               \
+    X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderBufferFloat32AtomicAdd, true)             \
+    X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderBufferFloat64Atomics, true)               \
+    X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderBufferFloat64AtomicAdd, true)             \
+    X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderSharedFloat32Atomics, true)               \
+    X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderSharedFloat32AtomicAdd, true)             \
+    X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderSharedFloat64Atomics, true)               \
+    X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderSharedFloat64AtomicAdd, true)             \
+    X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderImageFloat32Atomics, false)               \
+    X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderImageFloat32AtomicAdd, false)             \
+    X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, sparseImageFloat32Atomics, false)               \
+    X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, sparseImageFloat32AtomicAdd, false)
 
 // VkPhysicalDeviceFeatures is nothing but VkBool32 members.
 constexpr size_t kFeatureCount = sizeof(VkPhysicalDeviceFeatures) / sizeof(VkBool32);

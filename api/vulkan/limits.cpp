@@ -54,6 +54,24 @@ void setAlignments(VkPhysicalDeviceLimits& limits) {
     limits.nonCoherentAtomSize = 1;
 }
 
+/// Every operation of every width rounds to nearest even, and keeps denormals, signs of zeros, infinities and NaNs;
+/// there is no other mode.
+void setFloatControls(VkPhysicalDeviceFloatControlsProperties& p) {
+    p.denormBehaviorIndependence = p.roundingModeIndependence = VK_SHADER_FLOAT_CONTROLS_INDEPENDENCE_NONE;
+    for (VkBool32* mode :
+         {&p.shaderSignedZeroInfNanPreserveFloat16, &p.shaderSignedZeroInfNanPreserveFloat32,
+          &p.shaderSignedZeroInfNanPreserveFloat64, &p.shaderDenormPreserveFloat16, &p.shaderDenormPreserveFloat32,
+          &p.shaderDenormPreserveFloat64, &p.shaderRoundingModeRTEFloat16, &p.shaderRoundingModeRTEFloat32,
+          &p.shaderRoundingModeRTEFloat64}) {
+        *mode = VK_TRUE;
+    }
+    for (VkBool32* mode :
+         {&p.shaderDenormFlushToZeroFloat16, &p.shaderDenormFlushToZeroFloat32, &p.shaderDenormFlushToZeroFloat64,
+          &p.shaderRoundingModeRTZFloat16, &p.shaderRoundingModeRTZFloat32, &p.shaderRoundingModeRTZFloat64}) {
+        *mode = VK_FALSE;
+    }
+}
+
 void setComputeLimits(VkPhysicalDeviceLimits& limits) {
     limits.maxComputeSharedMemorySize = kMaxWorkGroupMemory;
     std::copy_n(kMaxWorkGroupCount, 3, limits.maxComputeWorkGroupCount);
@@ -151,6 +169,14 @@ void fillPropertyChain(void* chain) {
     if (auto* p = findInChain<VkPhysicalDeviceProvokingVertexPropertiesEXT>(chain)) {
         p->provokingVertexModePerPipeline = VK_TRUE;
         p->transformFeedbackPreservesTriangleFanProvokingVertex = VK_FALSE;
+    }
+    if (auto* p = findInChain<VkPhysicalDeviceFloatControlsProperties>(chain)) setFloatControls(*p);
+    if (auto* p = findInChain<VkPhysicalDeviceShaderIntegerDotProductProperties>(chain)) {
+        // None of them is faster than the products and sums written out.
+        const VkBaseOutStructure head{p->sType, static_cast<VkBaseOutStructure*>(p->pNext)};
+        *p = {};
+        p->sType = head.sType;
+        p->pNext = head.pNext;
     }
 }
 

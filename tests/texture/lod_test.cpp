@@ -27,7 +27,7 @@ struct LodResult {
 
 /// Queries with the derivatives dx, dy (in texels of a 256-wide image) along s.
 LodResult query(const SamplerState& sampler, float dx, float dy, float bias = 0, bool explicitGradients = false,
-                Isa isa = bestIsa()) {
+                Isa isa = bestIsa(), const float* minLod = nullptr) {
     static const Image image = levelsImage(256, 9);
     const TextureView view = image.view(isa);
     Batch batch(8);
@@ -38,6 +38,8 @@ LodResult query(const SamplerState& sampler, float dx, float dy, float bias = 0,
         batch.lod[i] = bias;
     }
     batch.request.lodMode = explicitGradients ? LodMode::gradients : LodMode::implicitLod;
+    const std::vector<float> lowest(8, minLod == nullptr ? 0.0f : *minLod);
+    if (minLod != nullptr) batch.request.minLod = lowest.data();
     batch.request.gradX[0] = gx.data();
     batch.request.gradY[0] = gy.data();
     batch.request.gradX[1] = batch.request.gradY[1] = zero.data();
@@ -48,6 +50,23 @@ LodResult query(const SamplerState& sampler, float dx, float dy, float bias = 0,
 const SamplerState kTrilinear =
     makeSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_SAMPLER_MIPMAP_MODE_LINEAR);
 const SamplerState kNearestLevel = makeSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_REPEAT);
+
+TEST(Lod, InstructionsBoundItFromBelow) {
+    for (const float least : {0.0f, 0.5f, 3.0f, 7.75f, 100.0f}) {
+        for (int k = -3; k <= 8; ++k) {
+            // The image has levels 0 to 8; lambda itself is told before any clamp.
+            const LodResult result = query(kTrilinear, std::ldexp(1.0f, k), 0, 0, false, bestIsa(), &least);
+            EXPECT_EQ(result.level, std::min(std::max(static_cast<float>(k), least), 8.0f));
+            EXPECT_EQ(result.lambda, k);
+        }
+    }
+    SamplerState bounded = kTrilinear;
+    bounded.minLod = 2;
+    bounded.maxLod = 5;
+    for (const float least : {0.0f, 3.0f, 7.0f}) {
+        EXPECT_EQ(query(bounded, 1, 0, 0, false, bestIsa(), &least).level, std::clamp(least, 2.0f, 5.0f));
+    }
+}
 
 TEST(Lod, PowersOfTwoAreExact) {
     for (int k = -3; k <= 8; ++k) {

@@ -76,17 +76,21 @@ void VulkanTest::SetUp() {
     auto queueInfo = make<VkDeviceQueueCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO);
     queueInfo.queueCount = 1;
     queueInfo.pQueuePriorities = &priority;
-    const char* deviceExtensions[] = {VK_KHR_MAINTENANCE_1_EXTENSION_NAME, VK_KHR_TIMELINE_SEMAPHORE_EXTENSION_NAME,
-                                      VK_KHR_DEVICE_GROUP_EXTENSION_NAME};
+    std::vector<const char*> deviceExtensions = moreExtensions();
+    for (const char* name : {VK_KHR_MAINTENANCE_1_EXTENSION_NAME, VK_KHR_TIMELINE_SEMAPHORE_EXTENSION_NAME,
+                             VK_KHR_DEVICE_GROUP_EXTENSION_NAME}) {
+        deviceExtensions.push_back(name);
+    }
     auto timeline =
         make<VkPhysicalDeviceTimelineSemaphoreFeatures>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES);
     timeline.timelineSemaphore = VK_TRUE;
+    timeline.pNext = moreFeatures();
     auto deviceInfo = make<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
     deviceInfo.pNext = &timeline;
     deviceInfo.queueCreateInfoCount = 1;
     deviceInfo.pQueueCreateInfos = &queueInfo;
-    deviceInfo.enabledExtensionCount = 3;
-    deviceInfo.ppEnabledExtensionNames = deviceExtensions;
+    deviceInfo.enabledExtensionCount = static_cast<uint32_t>(deviceExtensions.size());
+    deviceInfo.ppEnabledExtensionNames = deviceExtensions.data();
     deviceInfo.pEnabledFeatures = &features;
     ASSERT_EQ(vkCreateDevice(physicalDevice, &deviceInfo, nullptr, &device), VK_SUCCESS);
     vkGetDeviceQueue(device, 0, 0, &queue);

@@ -44,6 +44,9 @@ class VulkanTest : public testing::Test {
   protected:
     void SetUp() override;
     void TearDown() override;
+    /// Extensions that the device gets besides those every test has, and their features: a chain, or nullptr.
+    virtual std::vector<const char*> moreExtensions() { return {}; }
+    virtual void* moreFeatures() { return nullptr; }
 
     TestBuffer makeBuffer(VkDeviceSize size, VkBufferUsageFlags usage);
     TestImage makeImage(VkFormat format, VkExtent2D extent, VkImageUsageFlags usage,
