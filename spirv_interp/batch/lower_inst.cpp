@@ -248,9 +248,11 @@ void Lowerer::lowerAtomic(const ir::Inst& inst) {
     const Operand comparator = operands.size() > first + 1 ? rowOf(operands[first + 1]) : value;
     if (buffer) {
         const uint32_t resource = ir::resourceOf(inst);
-        const bool shared = resource != ir::kNoIndex &&
-                            program_.resources[resource].kind == ir::ResourceKind::workgroupMemory;
-        emit(!wide ? Op::atomicBuffer : shared ? Op::atomicShared64 : Op::atomicBuffer64,
+        const bool shared =
+            resource != ir::kNoIndex && program_.resources[resource].kind == ir::ResourceKind::workgroupMemory;
+        emit(!wide    ? Op::atomicBuffer
+             : shared ? Op::atomicShared64
+                      : Op::atomicBuffer64,
              {target(inst), place, offset, Operand::number(resource), operation, value, comparator})
             .inPlace = false;
     } else {

@@ -40,7 +40,8 @@ uint32_t Lowering::fileIndex(uint32_t stringId) {
     std::string name = Module::literalString(string, 2);
     // The text form of the IR keeps names on one line, in quotes.
     std::replace_if(
-        name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == '"' || c == ';'; }, '?');
+        name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 32 || c == '"' || c == ';'; },
+        '?');
     if (name.empty()) return 0;
     program_.files.push_back(std::move(name));
     return index = static_cast<uint32_t>(program_.files.size() - 1);
