@@ -92,6 +92,17 @@ void storeLanes(const BufferBinding& buffer, const LaneSource<kScalar>& offsets,
     });
 }
 
+/// Whether the T of every lane lies in the buffer.
+template <class T, bool kScalar>
+HWY_INLINE bool allInside(const BufferBinding& buffer, const LaneSource<kScalar>& offsets, uint32_t lanes) {
+    if (kScalar || buffer.size < sizeof(T)) return false;
+    const VU last = hn::Set(kU32, buffer.size - static_cast<uint32_t>(sizeof(T)));
+    for (uint32_t lane = 0; lane < lanes; lane += kVectorLanes) {
+        if (!hn::AllFalse(kU32, hn::Gt(hn::Load(kU32, offsets.words() + lane), last))) return false;
+    }
+    return true;
+}
+
 template <class T, size_t kForm>
 const Inst* storeBuffer(Frame& frame, const Inst* inst) {
     const LaneSource<kForm & 1> descriptors(frame, inst->operand[0]);
@@ -109,7 +120,14 @@ const Inst* storeBuffer(Frame& frame, const Inst* inst) {
     const BufferBinding buffer = bufferOf(frame, resource, descriptors.at(0));
     uint32_t* words = sizeof(T) == 4 ? wordsInARow(buffer, offsets, frame.lanes) : nullptr;
     if (words == nullptr) {
-        storeLanes<T>(buffer, offsets, values, lanes);
+        if (lanes.contains(LaneMask::first(frame.lanes)) && allInside<T>(buffer, offsets, frame.lanes)) {
+            for (uint32_t lane = 0; lane < frame.lanes; ++lane) {
+                auto* element = reinterpret_cast<T*>(buffer.data + (offsets.at(lane) & ~uint32_t{sizeof(T) - 1}));
+                std::atomic_ref(*element).store(static_cast<T>(values[lane]), std::memory_order_relaxed);
+            }
+        } else {
+            storeLanes<T>(buffer, offsets, values, lanes);
+        }
         return inst + 1;
     }
     for (uint32_t lane = 0; lane < frame.lanes; lane += kVectorLanes) {

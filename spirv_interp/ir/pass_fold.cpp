@@ -266,6 +266,25 @@ class Folder {
         }
     }
 
+    /// Whether the top bit of a 32-bit integer is known to be 0.
+    bool isNotNegative(ValueId value) const {
+        const Inst* inst = definition(value);
+        if (inst == nullptr || inst->type != Type::i32) return false;
+        const auto known = [&](uint32_t k) { return bits(operand(*inst, k)); };
+        switch (inst->op) {
+            case Op::iand:
+                return known(0).value_or(~0u) <= INT32_MAX || known(1).value_or(~0u) <= INT32_MAX;
+            case Op::lshr:
+                return known(1).value_or(0) % 32 != 0;
+            case Op::umod:
+                return known(1).value_or(~0u) <= INT32_MAX;
+            case Op::zext:
+                return true;  // from b1
+            default:
+                return false;
+        }
+    }
+
     void shiftBy(Inst& inst, Op op, ValueId value, uint64_t power) {
         rewrite(inst, op, {value, constant(inst.type, static_cast<uint64_t>(std::countr_zero(power)))});
     }
@@ -315,6 +334,12 @@ class Folder {
                 // Halves already.
                 for (const Op half : {Op::ftoh, Op::ftohZero, Op::unpackHalfLow, Op::unpackHalfHigh, Op::quantizeF16}) {
                     if (definedBy(a, half) != nullptr) return replace(inst, a);
+                }
+                return;
+            case Op::utof:
+                // Conversions of signed integers are one machine instruction on every instruction set.
+                if (static_cast<Type>(inst.imm) == Type::i32 && isNotNegative(a)) {
+                    return rewrite(inst, Op::stof, {a}, inst.imm);
                 }
                 return;
             case Op::lowWord:

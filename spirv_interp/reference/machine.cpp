@@ -380,13 +380,16 @@ void Machine<Number>::derivative(const Instruction& i) {
         ((i.op == spv::OpDPdx || i.op == spv::OpDPdy || i.op == spv::OpFwidth) && program_.options.coarseDerivatives);
     const bool x = i.op == spv::OpDPdx || i.op == spv::OpDPdxFine || i.op == spv::OpDPdxCoarse;
     const bool y = i.op == spv::OpDPdy || i.op == spv::OpDPdyFine || i.op == spv::OpDPdyCoarse;
+    // Fwidth is the sum of two results of instructions, each of which is rounded to the type if steps are.
+    const bool single = program_.options.stepwise && module_.scalarType(resultType(i)).width == 32;
+    const auto change = [&](size_t k, bool alongX) {
+        const Number exact = difference(k, alongX, coarse);
+        return single ? Number(toFloat32(exact)) : exact;
+    };
     Scalars<Number> result;
     for (size_t k = 0; k < p.size(); ++k) {
-        if (x || y)
-            result.push_back(Scalar<Number>::ofNumber(difference(k, x, coarse)));
-        else
-            result.push_back(
-                Scalar<Number>::ofNumber(fabs(difference(k, true, coarse)) + fabs(difference(k, false, coarse))));
+        result.push_back(
+            Scalar<Number>::ofNumber(x || y ? change(k, x) : fabs(change(k, true)) + fabs(change(k, false))));
     }
     group_.reset();
     setResult(i, std::move(result));
