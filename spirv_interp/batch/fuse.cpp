@@ -14,10 +14,10 @@ struct Matcher {
     const std::vector<bool>& scalar;
     std::function<bool(ir::ValueId)> isInner;  // may disappear into its user
 
-    /// The inner product or sum that defines a value.
-    const ir::Inst* inner(ir::ValueId value, ir::Op op) const {
+    /// The inner product, sum or shift that defines a value.
+    const ir::Inst* inner(ir::ValueId value, ir::Op op, ir::Type type = ir::Type::f32) const {
         const ir::Inst* inst = definition[value];
-        return inst != nullptr && inst->op == op && inst->type == ir::Type::f32 && isInner(value) ? inst : nullptr;
+        return inst != nullptr && inst->op == op && inst->type == type && isInner(value) ? inst : nullptr;
     }
 
     /// The terms of ((p0 + p1) + p2) + p3, all inner products; empty when the sum is not of this form or
@@ -57,7 +57,28 @@ struct Matcher {
         return fusion;
     }
 
+    /// A shift and what masks or mixes it.
+    std::optional<Fusion> shifted(const ir::Inst& inst) const {
+        const auto operands = program.operandsOf(inst);
+        const bool masks = inst.op == ir::Op::iand;
+        for (const size_t k : {0, 1}) {
+            const auto fusion = [&](Op op, const ir::Inst& shift) {
+                const auto parts = program.operandsOf(shift);
+                return Fusion{op, {parts[0], parts[1], operands[1 - k]}};
+            };
+            if (const ir::Inst* shift = inner(operands[k], ir::Op::lshr, ir::Type::i32)) {
+                return fusion(masks ? Op::shiftRightAnd : Op::shiftRightXor, *shift);
+            }
+            if (masks) continue;
+            if (const ir::Inst* shift = inner(operands[k], ir::Op::shl, ir::Type::i32)) {
+                return fusion(Op::shiftLeftXor, *shift);
+            }
+        }
+        return std::nullopt;
+    }
+
     std::optional<Fusion> match(const ir::Inst& inst) const {
+        if (inst.type == ir::Type::i32 && (inst.op == ir::Op::iand || inst.op == ir::Op::ixor)) return shifted(inst);
         if (inst.type != ir::Type::f32 || (inst.op != ir::Op::fadd && inst.op != ir::Op::fsub)) return std::nullopt;
         if (inst.op == ir::Op::fadd) {
             if (auto fusion = dot(inst)) return fusion;

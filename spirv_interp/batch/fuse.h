@@ -1,5 +1,6 @@
 // Superinstructions: several IR instructions in one dispatch, with the bits they would give one by one. Found
-// for additions and subtractions whose operands are products used nowhere else.
+// for additions and subtractions whose operands are products, and for masks and exclusive ors of shifts, used nowhere
+// else.
 #pragma once
 
 #include <optional>

@@ -91,7 +91,8 @@ void Lowerer::lowerWords(const ir::Inst& inst) {
 bool Lowerer::lowerFused(const ir::Inst& inst) {
     const std::optional<Fusion> fusion = findFusion(program_, facts_.definition, fused_, facts_.scalar, inst);
     if (!fusion) return false;
-    if (fusion->op == Op::multiplyAdd || fusion->op == Op::multiplySubtract || fusion->op == Op::subtractMultiply) {
+    // Sums of products have more operands, and forms of their own.
+    if (fusion->operands.size() == 3) {
         emitVector(fusion->op, target(inst),
                    {operandOf(fusion->operands[0]), operandOf(fusion->operands[1]), operandOf(fusion->operands[2])});
         return true;

@@ -209,6 +209,34 @@ batch:
 )");
 }
 
+TEST(BatchListing, ShiftsAndWhatMasksOrMixesThemAreOneInstruction) {
+    EXPECT_EQ(listing(R"(program fragment "hash"
+input 0 i32 user 0.0 flat center
+output 0 i32 user 0.0
+b0:
+  %0 i32 = input #0
+  %1 i32 = constant 0xf
+  %2 i32 = constant 0x3ff
+  %3 i32 = lshr %0 %1
+  %4 i32 = ixor %0 %3
+  %5 i32 = shl %4 %1
+  %6 i32 = ixor %5 %4
+  %7 i32 = lshr %6 %1
+  %8 i32 = iand %2 %7
+  storeOutput #0 %8
+  ret
+)"),
+              R"(registers 1
+input 0 r0
+output 0 r0
+batch:
+    0  shiftRightXor r0, r0, 0x0000000f, r0
+    1  shiftLeftXor acc, acc, 0x0000000f, r0
+    2  shiftRightAnd r0, acc, 0x0000000f, 0x000003ff
+    3  end
+)");
+}
+
 TEST(BatchListing, IndependentChainsAreComputedOneAfterTheOther) {
     EXPECT_EQ(listing(R"(program fragment "main"
 input 0 f32 user 0.0 smooth center
