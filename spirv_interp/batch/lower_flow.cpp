@@ -16,6 +16,7 @@ void Lowerer::planBlocks() {
     const auto count = static_cast<ir::BlockId>(program_.blocks.size());
     fallsIn_.assign(count, false);
     full_.assign(count, false);
+    endsLoop_.assign(count, false);
     endLabels_.resize(count);
     loopLabels_.resize(count);
     headLabels_.resize(count);
@@ -26,6 +27,7 @@ void Lowerer::planBlocks() {
                       program_.blocks[b - 1].insts.back().op == ir::Op::jump &&
                       facts_.cfg.loop[b] == facts_.cfg.loop[b - 1];
         full_[b] = b == 0 || (fallsIn_[b] && full_[b - 1]);
+        if (block.loopHeader) endsLoop_[block.loopEnd - 1] = true;
         endLabels_[b] = newLabel();
         loopLabels_[b] = newLabel();
         headLabels_[b] = newLabel();
@@ -141,7 +143,7 @@ void Lowerer::lowerTerminator(ir::BlockId b) {
             const ir::BlockId to = block.successors[0];
             if (to == b + 1 && fallsIn_[to]) return;
             const bool goesRound = to == facts_.cfg.loop[b] && program_.blocks[to].loopEnd == b + 1;
-            if (goesRound || to == b + 1) {
+            if (goesRound || isNext(b, to)) {
                 emit(goesRound ? Op::again : Op::leaveInto,
                      {Operand::mask(maskOf(to)), Operand::label(bodyLabels_[to])});
             } else {

@@ -118,10 +118,12 @@ class Lowerer {
     void planBlocks();
     void planOutputs();
     void lowerTerminator(ir::BlockId block);
+    /// Whether `to` comes next in the code. Behind a loop it does not: lanes may still wait at the loop's header.
+    bool isNext(ir::BlockId from, ir::BlockId to) const { return to == from + 1 && !endsLoop_[from]; }
     /// Whether an edge goes to the block that comes next in the code and has nothing to do on the way.
     bool entersNext(ir::BlockId from, size_t successor) const {
         const ir::BlockId to = program_.blocks[from].successors[successor];
-        return to == from + 1 && !fallsIn_[to] && program_.blocks[to].insts.front().op != ir::Op::phi;
+        return isNext(from, to) && !fallsIn_[to] && program_.blocks[to].insts.front().op != ir::Op::phi;
     }
     uint32_t newLabel() {
         code_.labels.push_back(0);
@@ -146,9 +148,10 @@ class Lowerer {
     std::vector<uint32_t> registers_;  // by value
     uint32_t loop_ = kNone;            // header of the loop being lowered
     uint32_t line_ = 0;
-    std::vector<bool> fused_;    // values that only exist inside a superinstruction
-    std::vector<bool> fallsIn_;  // blocks that run on from the block before, with its mask
-    std::vector<bool> full_;     // blocks that every lane runs first
+    std::vector<bool> fused_;     // values that only exist inside a superinstruction
+    std::vector<bool> fallsIn_;   // blocks that run on from the block before, with its mask
+    std::vector<bool> full_;      // blocks that every lane runs first
+    std::vector<bool> endsLoop_;  // last blocks of loops
     std::vector<uint32_t> endLabels_, loopLabels_, headLabels_, bodyLabels_;  // by block
     struct OutputPlan {
         uint32_t stores = 0;

@@ -182,6 +182,44 @@ b5 <- b1:
     }
 }
 
+TEST(BatchFlow, LanesThatWaitInALoopAreNotLeftBehind) {
+    // Every other lane leaves the loop in the first round, through the loop's last block.
+    const ir::Program program = test::parseProgram(R"(program fragment "main"
+input 0 i32 user 0.0 flat center
+output 0 i32 user 0.0
+b0:
+  %0 i32 = input #0
+  %1 i32 = constant 0
+  %2 i32 = constant 1
+  %3 i32 = iand %0 %2
+  %4 b1 = ieq.i32 %3 %1
+  jump b1
+b1 loop b4 <- b0 b2:
+  %5 i32 = phi %1 %6
+  branch %4 b2 b3
+b2 <- b1:
+  %6 i32 = iadd %5 %2
+  %7 b1 = slt.i32 %6 %0
+  branch %7 b1 b4
+b3 <- b1:
+  %8 i32 = iadd %0 %0
+  jump b4
+b4 <- b2 b3:
+  %9 i32 = phi %6 %8
+  storeOutput #0 %9
+  ret
+)");
+    for (const Isa isa : test::isas()) {
+        test::RunSetup setup;
+        setup.isa = isa;
+        const test::RunResult run = test::runBatch(program, ramp(1, 64), setup);
+        for (uint32_t lane = 0; lane < 64; ++lane) {
+            const uint32_t expected = lane % 2 != 0 ? 2 * lane : std::max(lane, 1u);
+            EXPECT_EQ(run.outputs[0][lane], expected) << lane;
+        }
+    }
+}
+
 TEST(BatchFlow, DemotedLanesRunOnAsHelpers) {
     const ir::Program program = test::parseProgram(R"(program fragment "main"
 input 0 i32 user 0.0 flat center
