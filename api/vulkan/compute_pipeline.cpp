@@ -1,5 +1,4 @@
 // Compute pipelines.
-#include "api/vulkan/allocation.h"
 #include "api/vulkan/device.h"
 #include "api/vulkan/entry_points.h"
 #include "api/vulkan/pipeline.h"
@@ -24,14 +23,9 @@ VkResult createOne(const Device& device, const VkComputePipelineCreateInfo& info
 VKAPI_ATTR VkResult VKAPI_CALL CreateComputePipelines(VkDevice device, VkPipelineCache, uint32_t createInfoCount,
                                                       const VkComputePipelineCreateInfo* pCreateInfos,
                                                       const VkAllocationCallbacks* pAllocator, VkPipeline* pPipelines) {
-    VkResult result = VK_SUCCESS;
-    for (uint32_t i = 0; i < createInfoCount; ++i) {
-        pPipelines[i] = VK_NULL_HANDLE;
-        const VkResult one =
-            guarded([&] { return createOne(*object(device), pCreateInfos[i], pAllocator, &pPipelines[i]); });
-        if (one != VK_SUCCESS) result = one;
-    }
-    return result;
+    return createEach(createInfoCount, pCreateInfos, pPipelines, [&](const auto& info, VkPipeline* pipeline) {
+        return createOne(*object(device), info, pAllocator, pipeline);
+    });
 }
 
 }  // namespace vernier::vulkan

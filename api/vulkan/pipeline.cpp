@@ -3,7 +3,6 @@
 #include <cstring>
 #include <string>
 
-#include "api/vulkan/allocation.h"
 #include "api/vulkan/device.h"
 #include "api/vulkan/entry_points.h"
 #include "spirv_interp/program.h"
@@ -139,14 +138,9 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateGraphicsPipelines(VkDevice device, VkPipeli
                                                        const VkGraphicsPipelineCreateInfo* pCreateInfos,
                                                        const VkAllocationCallbacks* pAllocator,
                                                        VkPipeline* pPipelines) {
-    VkResult result = VK_SUCCESS;
-    for (uint32_t i = 0; i < createInfoCount; ++i) {
-        pPipelines[i] = VK_NULL_HANDLE;
-        const VkResult one =
-            guarded([&] { return createOne(*object(device), pCreateInfos[i], pAllocator, &pPipelines[i]); });
-        if (one != VK_SUCCESS) result = one;
-    }
-    return result;
+    return createEach(createInfoCount, pCreateInfos, pPipelines, [&](const auto& info, VkPipeline* pipeline) {
+        return createOne(*object(device), info, pAllocator, pipeline);
+    });
 }
 
 VKAPI_ATTR void VKAPI_CALL DestroyPipeline(VkDevice, VkPipeline pipeline, const VkAllocationCallbacks* pAllocator) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "api/vulkan/allocation.h"
 #include "api/vulkan/handle.h"
 #include "runtime/plan/compute_pipeline.h"
 #include "runtime/plan/pipeline.h"
@@ -42,5 +43,18 @@ struct PipelineState {
     uint32_t dynamicMask = 0;  // bit per VkDynamicState
 };
 Result<PipelineState> pipelineState(const VkGraphicsPipelineCreateInfo& info);
+
+/// Calls create(info, place) for each, which returns a VkResult; a pipeline that fails becomes VK_NULL_HANDLE and the
+/// others are made all the same ("Multiple Pipeline Creation" in the Vulkan specification).
+template <class Info, class Create>
+VkResult createEach(uint32_t count, const Info* infos, VkPipeline* pipelines, Create&& create) {
+    VkResult result = VK_SUCCESS;
+    for (uint32_t i = 0; i < count; ++i) {
+        pipelines[i] = VK_NULL_HANDLE;
+        const VkResult one = guarded([&] { return create(infos[i], &pipelines[i]); });
+        if (one != VK_SUCCESS) result = one;
+    }
+    return result;
+}
 
 }  // namespace vernier::vulkan

@@ -60,7 +60,7 @@ Addition, subtraction, multiplication, division, square root, `fma` and conversi
 nearest, ties to even), and the same on every instruction set: no estimate instructions, no library functions. Functions
 that the specification describes by a formula (`mix`, `length`, `reflect`...) are that formula, every operation rounded.
 Sine, cosine and tangent are right for every float: angles beyond 2^19 are reduced in integers with as many bits of 1/(2π) as
-their exponent asks for (Payne and Hanek 1983), one lane at a time, at about 15 ns per lane. On SSE4, which lacks a fused
+their exponent asks for (Payne and Hanek 1983), one lane at a time, at 10 to 30 ns per lane. On SSE4, which lacks a fused
 multiply-add, fast and standard compute it in double with a check, and cost several times what they cost on AVX2.
 
 Errors are against MPFR (128 bits; operands whose error in double cannot be the greatest are left to double). An ULP is the

@@ -14,7 +14,7 @@ enum class Kind : uint8_t { arithmetic, division, elementary, wide, memory, imag
 constexpr std::array<const char*, 8> kKindNames = {
     "arithmetic", "division, square root", "elementary functions", "64-bit", "memory", "images",
     "control",    "constants, inputs"};
-/// Estimates, in additions of one batch: bench/micro/interp_bench measures what an operation costs.
+/// Rough weights in additions of one batch, chosen by hand; bench/micro/interp_cost measures single operations.
 constexpr std::array<double, 8> kWeights = {1, 1.5, 4, 12, 4, 40, 2, 0};
 
 Kind kindOf(const ir::Inst& inst) {
