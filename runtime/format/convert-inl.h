@@ -56,8 +56,10 @@ HWY_INLINE VF divideExact(VF n, VF d, VF reciprocal) {
 #endif
 }
 
+/// NaN gives `low`: on x86, a maximum with a NaN is its second operand. So it is of equal operands, such as zeros of
+/// both signs.
 HWY_INLINE VF clampOrLowV(VF x, VF low, VF high) {
-    return hn::Min(hn::IfThenElse(hn::Gt(x, low), x, low), high);
+    return hn::Min(hn::Max(x, low), high);
 }
 HWY_INLINE VF zeroIfNaN(VF x) {
     return hn::IfThenElseZero(hn::Eq(x, x), x);

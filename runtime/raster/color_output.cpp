@@ -5,11 +5,6 @@
 namespace vernier {
 namespace {
 
-std::byte* texelAddress(const ColorOutputInput& in, const FragmentSpan& span) {
-    return in.target->data + static_cast<size_t>(span.y) * in.target->rowPitch +
-           static_cast<size_t>(span.x) * in.plan->texelBytes + in.sample * in.target->samplePitch;
-}
-
 // One texel size, and for whole rows of a block one length, known at compile time make each copy a few moves.
 
 template <uint32_t kBytes>
@@ -21,27 +16,45 @@ void copyTexels(std::byte* to, const std::byte* from, uint32_t count) {
     }
 }
 
-template <uint32_t kBytes>
-void gather(const ColorOutputInput& in, std::byte* texels) {
-    for (uint32_t s = 0; s < in.batch->spanCount; ++s) {
-        const FragmentSpan& span = in.batch->spans[s];
-        copyTexels<kBytes>(texels + span.first * kBytes, texelAddress(in, span), span.count);
+/// Calls function(x, y, first, count) for the runs of pixels of a batch.
+template <class Function>
+void forEachRun(const FragmentBatch& batch, const Function& function) {
+    switch (batch.order) {
+        case LaneOrder::spans:
+            for (uint32_t s = 0; s < batch.spanCount; ++s) {
+                const FragmentSpan& span = batch.spans[s];
+                function(span.x, span.y, span.first, span.count);
+            }
+            return;
+        case LaneOrder::rows:
+            for (uint32_t lane = 0; lane < batch.count; lane += kBlockSize)
+                function(batch.x[lane], batch.y[lane], lane, static_cast<uint32_t>(kBlockSize));
+            return;
+        case LaneOrder::quads:
+            for (uint32_t lane = 0; lane < batch.count; lane += 2) function(batch.x[lane], batch.y[lane], lane, 2u);
+            return;
     }
 }
 
 template <uint32_t kBytes>
+void gather(const ColorOutputInput& in, std::byte* texels) {
+    forEachRun(*in.batch, [&](int32_t x, int32_t y, uint32_t first, uint32_t count) {
+        copyTexels<kBytes>(texels + first * kBytes, texelAddress(in, x, y), count);
+    });
+}
+
+template <uint32_t kBytes>
 void scatter(const ColorOutputInput& in, const std::byte* texels) {
-    for (uint32_t s = 0; s < in.batch->spanCount; ++s) {
-        const FragmentSpan& span = in.batch->spans[s];
-        std::byte* place = texelAddress(in, span);
-        const std::byte* from = texels + span.first * kBytes;
+    forEachRun(*in.batch, [&](int32_t x, int32_t y, uint32_t first, uint32_t count) {
+        std::byte* place = texelAddress(in, x, y);
+        const std::byte* from = texels + first * kBytes;
         if (in.mask == nullptr) {
-            copyTexels<kBytes>(place, from, span.count);
-            continue;
+            copyTexels<kBytes>(place, from, count);
+            return;
         }
-        for (uint32_t n = 0; n < span.count; ++n)
-            if (in.mask[span.first + n] != 0) std::memcpy(place + n * kBytes, from + n * kBytes, kBytes);
-    }
+        for (uint32_t n = 0; n < count; ++n)
+            if (in.mask[first + n] != 0) std::memcpy(place + n * kBytes, from + n * kBytes, kBytes);
+    });
 }
 
 template <class Function>
@@ -89,6 +102,12 @@ void keepMasked(const ColorPlan& plan, const std::byte* before, std::byte* after
 
 }  // namespace
 
+uint32_t writtenLanes(const ColorOutputInput& in) {
+    uint32_t lanes = in.batch->count;
+    for (uint32_t n = 0; in.mask != nullptr && n < in.batch->count; ++n) lanes -= 1 - (in.mask[n] & 1);
+    return lanes;
+}
+
 uint32_t outputColors(const ColorOutputInput& in, ColorScratch& scratch) {
     const ColorPlan& plan = *in.plan;
     const uint32_t count = in.batch->count;
@@ -96,8 +115,7 @@ uint32_t outputColors(const ColorOutputInput& in, ColorScratch& scratch) {
     uint32_t reads = 0;
     if (plan.readsDestination) {
         withTexelSize(plan.texelBytes, [&](auto bytes) { gather<bytes()>(in, scratch.before.data()); });
-        reads = count;
-        for (uint32_t n = 0; in.mask != nullptr && n < count; ++n) reads -= 1 - (in.mask[n] & 1);
+        reads = writtenLanes(in);
     }
     if (plan.path == ColorPath::blend) {
         BlendInput blend{};

@@ -30,6 +30,15 @@ struct ColorOutputInput {
     uint32_t sample;
 };
 
+/// The texel of a pixel in the sample that is written.
+inline std::byte* texelAddress(const ColorOutputInput& input, int32_t x, int32_t y) {
+    return input.target->data + static_cast<size_t>(y) * input.target->rowPitch +
+           static_cast<size_t>(x) * input.plan->texelBytes + input.sample * input.target->samplePitch;
+}
+
+/// Lanes that the mask lets through.
+uint32_t writtenLanes(const ColorOutputInput& input);
+
 /// Lanes are written in order, so that of two lanes on one pixel the later one stays. With a destination
 /// read, no pixel may be there twice. Returns how many pixels were read back.
 uint32_t outputColors(const ColorOutputInput& input, ColorScratch& scratch);

@@ -1,4 +1,5 @@
-// Fragments waiting to be shaded together: pixels of any number of primitives with the same fragment state.
+// Fragments that are shaded together: pixels of any number of primitives with the same fragment state, or a block of
+// one primitive.
 #pragma once
 
 #include <array>
@@ -14,7 +15,7 @@ inline constexpr uint32_t kLaneRoom = kMaxFragmentLanes + 16;
 
 /// Consecutive lanes of one primitive.
 struct FragmentSegment {
-    uint32_t planes = 0;  // index into FragmentBatch::planes
+    const TrianglePlanes* planes = nullptr;
     uint32_t first = 0, count = 0;
 };
 
@@ -24,8 +25,18 @@ struct FragmentSpan {
     uint32_t first = 0, count = 0;
 };
 
+/// Where the lanes of a batch lie on the screen.
+enum class LaneOrder : uint8_t {
+    spans,  // anywhere: FragmentBatch::spans tells
+    rows,   // a rectangle kBlockSize pixels wide, row by row
+    quads,  // such a rectangle, quad by quad: upper left, upper right, lower left, lower right
+};
+
+/// In rows and quads, all pixels belong to one primitive, which covers all their samples.
 struct FragmentBatch {
     uint32_t count = 0;
+    LaneOrder order = LaneOrder::spans;
+    int32_t originX = 0, originY = 0;                     // rows, quads: first pixel of the rectangle
     alignas(64) std::array<int32_t, kLaneRoom> x, y;      // pixels
     alignas(64) std::array<uint32_t, kLaneRoom> execute;  // ~0: the lane runs, as a helper perhaps
     alignas(64) std::array<uint32_t, kLaneRoom> store;    // ~0: its effects count
@@ -33,13 +44,21 @@ struct FragmentBatch {
         offsetY;                                           // place inside the pixel, when it is not the centre
     alignas(64) std::array<uint32_t, kLaneRoom> coverage;  // samples the lane stands for
     alignas(64) std::array<uint32_t, kLaneRoom> sample;    // when run per sample
-    uint32_t spanCount = 0;
+    uint32_t spanCount = 0;                                // spans only
     std::array<FragmentSpan, kMaxFragmentLanes> spans;
     uint32_t segmentCount = 0;
     std::array<FragmentSegment, kMaxFragmentLanes> segments;
-    // Slot planesCount - 1 belongs to the primitive being added.
-    uint32_t planesCount = 0;
-    std::array<TrianglePlanes, kMaxFragmentLanes + 1> planes;
+
+    FragmentBatch();
 };
+
+/// Where lane `lane` of a rectangle in `order` lies in it.
+constexpr uint32_t columnOf(LaneOrder order, uint32_t lane) {
+    return order == LaneOrder::rows ? lane % 8 : lane / 4 % 4 * 2 + lane % 2;
+}
+constexpr uint32_t rowOf(LaneOrder order, uint32_t lane) {
+    return order == LaneOrder::rows ? lane / 8 : lane / 16 * 2 + lane / 2 % 2;
+}
+static_assert(kBlockSize == 8);
 
 }  // namespace vernier

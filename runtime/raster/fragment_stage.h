@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "runtime/geometry/vertex_stage.h"
+#include "runtime/raster/color_block.h"
 #include "runtime/raster/color_output.h"
 #include "runtime/raster/coverage.h"
 #include "runtime/raster/depth_stencil.h"
@@ -44,17 +45,18 @@ class FragmentStage {
     void addPixels(const BlockCoverage& block, uint64_t any);
     void addQuads(const BlockCoverage& block, uint64_t any, uint32_t samples, uint32_t sample);
     void addSamples(const BlockCoverage& block, uint32_t sample);
+    void bindInputs();
+    void runBlock(const BlockCoverage& block);
 
-    void run();
-    void fillInputs();
-    void fillBuiltins();
-    void fillBuiltin(const BuiltinSlot& builtin, float* plane);
-    void fillVaryings();
-    void evaluateVarying(uint32_t index, const LaneWeights& weights, float* plane);
-    void centroidOffsets();
-    void reduceCoverage();
-    void testLate();
-    void writeColors();
+    void run(FragmentBatch& batch);
+    void fillInputs(const FragmentBatch& batch);
+    void fillBuiltins(const FragmentBatch& batch);
+    void fillBuiltin(const FragmentBatch& batch, const BuiltinSlot& builtin, float* plane);
+    void centroidOffsets(const FragmentBatch& batch);
+    void reduceCoverage(FragmentBatch& batch);
+    void testLate(FragmentBatch& batch);
+    void writeColors(const FragmentBatch& batch, bool full);
+    void writeColor(const ColorOutputInput& input, BlockColorFn block);
     const float* outputPlane(uint32_t slot, uint32_t component) const;
     static void interpolateAt(void* self, uint32_t slot, uint32_t where, uint32_t lanes, const float* a, const float* b,
                               float* result);
@@ -67,19 +69,26 @@ class FragmentStage {
     BatchContext* context_ = nullptr;
     uint32_t capacity_ = 0;
     uint32_t samples_ = 1;
-    std::vector<float*> varyingPlanes_;  // inputs of the program, by varying
-    Interpolation interpolation_{};
+    // Inputs of the program: those taken at the pixel (or sample), at the centroid, and from the provoking vertex.
+    std::vector<VaryingTarget> centreTargets_, centroidTargets_, flatTargets_;
+    InterpolateFn interpolate_ = nullptr;
+    PlaceLanesFn placeLanes_ = nullptr;
     BlendFn blend_ = nullptr;
+    std::array<BlockColorFn, kMaxColorAttachments> blockColors_{};  // by Plan::colors
     DepthStencilState depthState_;
 
-    FragmentBatch batch_;
-    LaneWeights weights_, centroidWeights_;
+    FragmentBatch batch_;                     // waiting, in spans
+    FragmentBatch block_;                     // a completely covered block, run at once
+    const FragmentBatch* current_ = nullptr;  // the one that runs
+    // Of the primitives in batch_; slot planesCount_ - 1 belongs to the primitive being added.
+    std::array<TrianglePlanes, kMaxFragmentLanes + 1> planes_;
+    uint32_t planesCount_ = 0;
     ColorScratch colors_;
     alignas(64) std::array<float, kLaneRoom> fragZ_, fragInverseW_;
     alignas(64) std::array<float, kLaneRoom> centroidX_, centroidY_;
     alignas(64) std::array<uint32_t, kLaneRoom> mask_;
     alignas(64) std::array<float, kLaneRoom> zeros_, ones_;
-    std::array<uint64_t, kBlocksPerTile> inBatch_{};  // pixels of the tile that the batch holds, when order matters
+    std::array<uint64_t, kBlocksPerTile> inBatch_{};  // pixels of the tile that wait in batch_
     bool outOfBudget_ = false;
     PassStatistics statistics_;
     ContextCache contexts_;

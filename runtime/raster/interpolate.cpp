@@ -17,99 +17,160 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using F = hn::CappedTag<float, 16>;
+using I = hn::RebindToSigned<F>;
 using VF = hn::Vec<F>;
+constexpr uint32_t kLanes = hn::MaxLanes(F());
 
-/// Weights of one segment in double, one lane at a time.
-void preciseWeights(const WeightsInput& in, const FragmentSegment& segment, LaneWeights& out) {
-    const TrianglePlanes& planes = in.batch->planes[segment.planes];
-    for (uint32_t lane = segment.first; lane < segment.first + segment.count; ++lane) {
-        const float ox = in.offsetX != nullptr ? in.offsetX[lane] : 0.5f;
-        const float oy = in.offsetY != nullptr ? in.offsetY[lane] : 0.5f;
-        const Barycentrics at = barycentricsAt(planes, in.batch->x[lane], in.batch->y[lane], ox, oy);
-        out.precise1[lane] = at.b1;
-        out.precise2[lane] = at.b2;
-        out.preciseLinear1[lane] = at.l1;
-        out.preciseLinear2[lane] = at.l2;
+/// Weights of the second and third vertex.
+struct Weights {
+    VF perspective1, perspective2, linear1, linear2;
+};
+
+/// What is the same for all lanes of a segment.
+struct SegmentPlanes {
+    SegmentPlanes(const InterpolationInput& in, const TrianglePlanes& p)
+        : planes(p),
+          divide(!p.affine && (in.perspective || in.fragInverseW != nullptr)),
+          centreX(hn::Set(F(), 0.5f - p.fractionX)),
+          centreY(hn::Set(F(), 0.5f - p.fractionY)) {}
+
+    const TrianglePlanes& planes;
+    bool divide;
+    VF centreX, centreY;
+};
+
+HWY_INLINE Weights weightsAt(const InterpolationInput& in, const SegmentPlanes& segment, uint32_t n) {
+    const F f;
+    const I i;
+    const TrianglePlanes& p = segment.planes;
+    const VF x = hn::ConvertTo(f, hn::Sub(hn::LoadU(i, in.batch->x.data() + n), hn::Set(i, p.anchorX)));
+    const VF y = hn::ConvertTo(f, hn::Sub(hn::LoadU(i, in.batch->y.data() + n), hn::Set(i, p.anchorY)));
+    VF ox = segment.centreX, oy = segment.centreY;
+    if (HWY_UNLIKELY(in.offsetX != nullptr)) {
+        ox = hn::Sub(hn::LoadU(f, in.offsetX + n), hn::Set(f, p.fractionX));
+        oy = hn::Sub(hn::LoadU(f, in.offsetY + n), hn::Set(f, p.fractionY));
+    }
+    Weights w;
+    if (HWY_UNLIKELY(p.precise)) {
+        w.linear1 = planeInDouble(f, x, y, ox, oy, 0, p.d.l1x, p.d.l1y);
+        w.linear2 = planeInDouble(f, x, y, ox, oy, 0, p.d.l2x, p.d.l2y);
+    } else {
+        const VF dx = hn::Add(x, ox), dy = hn::Add(y, oy);
+        w.linear1 = hn::Add(hn::Mul(hn::Set(f, p.l1x), dx), hn::Mul(hn::Set(f, p.l1y), dy));
+        w.linear2 = hn::Add(hn::Mul(hn::Set(f, p.l2x), dx), hn::Mul(hn::Set(f, p.l2y), dy));
+    }
+    if (in.fragZ != nullptr) hn::StoreU(depthOf(f, p, x, y, ox, oy), f, in.fragZ + n);
+    VF inverseW = hn::Set(f, p.w0);
+    w.perspective1 = w.linear1;
+    w.perspective2 = w.linear2;
+    if (segment.divide) {
+        // lambda_i / w_i, normalised by their sum, which is 1/w at this place: none is negative inside.
+        const VF one = hn::Set(f, 1.0f);
+        const VF q1 = hn::Mul(w.linear1, hn::Set(f, p.w1)), q2 = hn::Mul(w.linear2, hn::Set(f, p.w2));
+        const VF q0 = hn::Mul(hn::Sub(hn::Sub(one, w.linear1), w.linear2), inverseW);
+        inverseW = hn::Add(hn::Add(q0, q1), q2);
+        const VF reciprocal = hn::Div(one, inverseW);
+        w.perspective1 = hn::Mul(q1, reciprocal);
+        w.perspective2 = hn::Mul(q2, reciprocal);
+    }
+    if (in.fragInverseW != nullptr) hn::StoreU(hn::Mul(inverseW, hn::Set(f, p.wScale)), f, in.fragInverseW + n);
+    return w;
+}
+
+/// The attribute of a segment as a function of the weights.
+struct AttributePlane {
+    AttributePlane(const TrianglePlanes& p, uint32_t varying) {
+        const float first = p.attributes[0][varying];
+        base = hn::Set(F(), first);
+        d1 = hn::Set(F(), p.attributes[1][varying] - first);
+        d2 = hn::Set(F(), p.attributes[2][varying] - first);
+    }
+    HWY_INLINE VF at(VF w1, VF w2) const { return hn::Add(base, hn::Add(hn::Mul(w1, d1), hn::Mul(w2, d2))); }
+
+    VF base, d1, d2;
+};
+
+/// Lanes past the segment are overwritten by the next one; lanes past the plane must not be.
+HWY_INLINE void storeLanes(VF value, float* plane, uint32_t n, uint32_t capacity) {
+    if (HWY_LIKELY(n + kLanes <= capacity)) {
+        hn::StoreU(value, F(), plane + n);
+    } else {
+        alignas(64) float last[kLanes];
+        hn::Store(value, F(), last);
+        std::memcpy(plane + n, last, (capacity - n) * sizeof(float));
     }
 }
 
-uint32_t weights(const WeightsInput& in, LaneWeights& out, const FragCoordOutput& fragCoord) {
+/// A segment that one vector holds: the weights stay in registers.
+HWY_INLINE void shortSegment(const InterpolationInput& in, const SegmentPlanes& planes, uint32_t first) {
+    const Weights w = weightsAt(in, planes, first);
+    for (const VaryingTarget& target : in.targets) {
+        const AttributePlane plane(planes.planes, target.varying);
+        storeLanes(plane.at(target.linear ? w.linear1 : w.perspective1, target.linear ? w.linear2 : w.perspective2),
+                   target.plane, first, in.capacity);
+    }
+}
+
+void longSegment(const InterpolationInput& in, const SegmentPlanes& planes, uint32_t first, uint32_t count) {
     const F f;
-    const hn::RebindToSigned<F> i;
-    const FragmentBatch& batch = *in.batch;
-    const VF one = hn::Set(f, 1.0f);
+    alignas(64) float perspective[2][kLaneRoom], linear[2][kLaneRoom];
+    const bool linearToo = !in.targets.empty() && in.targets.back().linear;
+    for (uint32_t n = 0; n < count; n += kLanes) {
+        const Weights w = weightsAt(in, planes, first + n);
+        hn::Store(w.perspective1, f, perspective[0] + n);
+        hn::Store(w.perspective2, f, perspective[1] + n);
+        if (!linearToo) continue;
+        hn::Store(w.linear1, f, linear[0] + n);
+        hn::Store(w.linear2, f, linear[1] + n);
+    }
+    for (const VaryingTarget& target : in.targets) {
+        const AttributePlane plane(planes.planes, target.varying);
+        const float(&weights)[2][kLaneRoom] = target.linear ? linear : perspective;
+        for (uint32_t n = 0; n < count; n += kLanes)
+            storeLanes(plane.at(hn::Load(f, weights[0] + n), hn::Load(f, weights[1] + n)), target.plane, first + n,
+                       in.capacity);
+    }
+}
+
+uint32_t interpolate(const InterpolationInput& in) {
     uint32_t divides = 0;
-    for (uint32_t s = 0; s < batch.segmentCount; ++s) {
-        const FragmentSegment segment = batch.segments[s];
-        const TrianglePlanes& p = batch.planes[segment.planes];
-        if (in.inDouble) preciseWeights(in, segment, out);
-        const bool divide = !p.affine && (in.perspective || fragCoord.inverseW != nullptr);
-        if (divide && in.perspective) divides += segment.count;
-        const VF w0 = hn::Set(f, p.w0), w1 = hn::Set(f, p.w1), w2 = hn::Set(f, p.w2);
-        const VF centreX = hn::Set(f, 0.5f - p.fractionX), centreY = hn::Set(f, 0.5f - p.fractionY);
-        for (uint32_t n = segment.first; n < segment.first + segment.count; n += hn::Lanes(f)) {
-            const VF x = hn::ConvertTo(f, hn::Sub(hn::LoadU(i, batch.x.data() + n), hn::Set(i, p.anchorX)));
-            const VF y = hn::ConvertTo(f, hn::Sub(hn::LoadU(i, batch.y.data() + n), hn::Set(i, p.anchorY)));
-            VF ox = centreX, oy = centreY;
-            if (in.offsetX != nullptr) {
-                ox = hn::Sub(hn::LoadU(f, in.offsetX + n), hn::Set(f, p.fractionX));
-                oy = hn::Sub(hn::LoadU(f, in.offsetY + n), hn::Set(f, p.fractionY));
-            }
-            VF l1, l2;
-            if (HWY_UNLIKELY(p.precise)) {
-                l1 = planeInDouble(f, x, y, ox, oy, 0, p.d.l1x, p.d.l1y);
-                l2 = planeInDouble(f, x, y, ox, oy, 0, p.d.l2x, p.d.l2y);
-            } else {
-                const VF dx = hn::Add(x, ox), dy = hn::Add(y, oy);
-                l1 = hn::Add(hn::Mul(hn::Set(f, p.l1x), dx), hn::Mul(hn::Set(f, p.l1y), dy));
-                l2 = hn::Add(hn::Mul(hn::Set(f, p.l2x), dx), hn::Mul(hn::Set(f, p.l2y), dy));
-            }
-            hn::StoreU(l1, f, out.linear1.data() + n);
-            hn::StoreU(l2, f, out.linear2.data() + n);
-            if (fragCoord.z != nullptr) hn::StoreU(depthOf(f, p, x, y, ox, oy), f, fragCoord.z + n);
-            VF inverseW = w0;
-            if (divide) {
-                // lambda_i / w_i, normalised by their sum, which is 1/w at this place: none is negative
-                // inside.
-                const VF q1 = hn::Mul(l1, w1), q2 = hn::Mul(l2, w2);
-                const VF q0 = hn::Mul(hn::Sub(hn::Sub(one, l1), l2), w0);
-                inverseW = hn::Add(hn::Add(q0, q1), q2);
-                const VF reciprocal = hn::Div(one, inverseW);
-                l1 = hn::Mul(q1, reciprocal);
-                l2 = hn::Mul(q2, reciprocal);
-            }
-            hn::StoreU(l1, f, out.perspective1.data() + n);
-            hn::StoreU(l2, f, out.perspective2.data() + n);
-            if (fragCoord.inverseW != nullptr)
-                hn::StoreU(hn::Mul(inverseW, hn::Set(f, p.wScale)), f, fragCoord.inverseW + n);
+    for (uint32_t s = 0; s < in.batch->segmentCount; ++s) {
+        const FragmentSegment& segment = in.batch->segments[s];
+        const SegmentPlanes planes(in, *segment.planes);
+        if (planes.divide && in.perspective) divides += segment.count;
+        if (segment.count <= kLanes) {
+            shortSegment(in, planes, segment.first);
+        } else {
+            longSegment(in, planes, segment.first, segment.count);
         }
     }
     return divides;
 }
 
-void attribute(const AttributeInput& in) {
-    const F f;
-    constexpr uint32_t kLanes = hn::MaxLanes(F());
-    const FragmentBatch& batch = *in.batch;
-    for (uint32_t s = 0; s < batch.segmentCount; ++s) {
-        const FragmentSegment segment = batch.segments[s];
-        const TrianglePlanes& p = batch.planes[segment.planes];
-        const float base = p.attributes[0][in.attribute];
-        const VF a = hn::Set(f, base);
-        const VF d1 = hn::Set(f, p.attributes[1][in.attribute] - base);
-        const VF d2 = hn::Set(f, p.attributes[2][in.attribute] - base);
-        for (uint32_t n = segment.first; n < segment.first + segment.count; n += kLanes) {
-            const VF w1 = hn::LoadU(f, in.weight1 + n), w2 = hn::LoadU(f, in.weight2 + n);
-            const VF value = hn::Add(a, hn::Add(hn::Mul(w1, d1), hn::Mul(w2, d2)));
-            // Lanes past the segment are overwritten by the next one.
-            if (HWY_LIKELY(n + kLanes <= in.capacity)) {
-                hn::StoreU(value, f, in.result + n);
-            } else {
-                alignas(64) float last[kLanes];
-                hn::Store(value, f, last);
-                std::memcpy(in.result + n, last, (in.capacity - n) * sizeof(float));
-            }
+struct LaneTables {
+    alignas(64) int32_t column[2][64], row[2][64];
+};
+
+constexpr LaneTables laneTables() {
+    LaneTables tables{};
+    for (uint32_t lane = 0; lane < 64; ++lane) {
+        for (const LaneOrder order : {LaneOrder::rows, LaneOrder::quads}) {
+            const int k = order == LaneOrder::quads ? 1 : 0;
+            tables.column[k][lane] = static_cast<int32_t>(columnOf(order, lane));
+            tables.row[k][lane] = static_cast<int32_t>(rowOf(order, lane));
         }
+    }
+    return tables;
+}
+
+void placeLanes(FragmentBatch& batch) {
+    static constexpr LaneTables kTables = laneTables();
+    const I i;
+    const int k = batch.order == LaneOrder::quads ? 1 : 0;
+    const auto x = hn::Set(i, batch.originX), y = hn::Set(i, batch.originY);
+    for (uint32_t n = 0; n < batch.count; n += kLanes) {
+        hn::StoreU(hn::Add(hn::Load(i, kTables.column[k] + n), x), i, batch.x.data() + n);
+        hn::StoreU(hn::Add(hn::Load(i, kTables.row[k] + n), y), i, batch.y.data() + n);
     }
 }
 
@@ -119,39 +180,40 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace vernier {
-namespace {
 
-using WeightsFn = uint32_t (*)(const WeightsInput&, LaneWeights&, const FragCoordOutput&);
-using AttributeFn = void (*)(const AttributeInput&);
+InterpolateFn interpolateFunction(Isa isa){VERNIER_SELECT_ISA(isa, interpolate)}
 
-WeightsFn weightsFunction(Isa isa){VERNIER_SELECT_ISA(isa, weights)} AttributeFn attributeFunction(Isa isa) {
-    VERNIER_SELECT_ISA(isa, attribute)
+PlaceLanesFn placeLanesFunction(Isa isa) {
+    VERNIER_SELECT_ISA(isa, placeLanes)
 }
 
-}  // namespace
-
-Interpolation interpolationFunctions(Isa isa) {
-    return {weightsFunction(isa), attributeFunction(isa)};
-}
-
-void interpolatePrecise(const FragmentBatch& batch, const double* weight1, const double* weight2, uint32_t attribute,
-                        float* result) {
+void interpolatePrecise(const InterpolationInput& in) {
+    const FragmentBatch& batch = *in.batch;
     for (uint32_t s = 0; s < batch.segmentCount; ++s) {
         const FragmentSegment& segment = batch.segments[s];
-        const TrianglePlanes& p = batch.planes[segment.planes];
-        const double a = double{p.attributes[0][attribute]};
-        const double d1 = double{p.attributes[1][attribute]} - a, d2 = double{p.attributes[2][attribute]} - a;
-        for (uint32_t n = segment.first; n < segment.first + segment.count; ++n)
-            result[n] = static_cast<float>(a + (weight1[n] * d1 + weight2[n] * d2));
+        const TrianglePlanes& p = *segment.planes;
+        for (uint32_t n = segment.first; n < segment.first + segment.count; ++n) {
+            const float ox = in.offsetX != nullptr ? in.offsetX[n] : 0.5f;
+            const float oy = in.offsetY != nullptr ? in.offsetY[n] : 0.5f;
+            const Barycentrics at = barycentricsAt(p, batch.x[n], batch.y[n], ox, oy);
+            for (const VaryingTarget& target : in.targets) {
+                const double a = double{p.attributes[0][target.varying]};
+                const double d1 = double{p.attributes[1][target.varying]} - a;
+                const double d2 = double{p.attributes[2][target.varying]} - a;
+                const double w1 = target.linear ? at.l1 : at.b1, w2 = target.linear ? at.l2 : at.b2;
+                target.plane[n] = static_cast<float>(a + (w1 * d1 + w2 * d2));
+            }
+        }
     }
 }
 
-void copyFlat(const FragmentBatch& batch, uint32_t attribute, float* result) {
+void copyFlat(const FragmentBatch& batch, const VaryingTarget& target) {
     for (uint32_t s = 0; s < batch.segmentCount; ++s) {
         const FragmentSegment& segment = batch.segments[s];
         uint32_t bits;  // a float move could quieten a NaN that is really an integer
-        std::memcpy(&bits, batch.planes[segment.planes].flat + attribute, 4);
-        for (uint32_t n = segment.first; n < segment.first + segment.count; ++n) std::memcpy(result + n, &bits, 4);
+        std::memcpy(&bits, segment.planes->flat + target.varying, 4);
+        for (uint32_t n = segment.first; n < segment.first + segment.count; ++n)
+            std::memcpy(target.plane + n, &bits, 4);
     }
 }
 

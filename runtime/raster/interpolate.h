@@ -3,54 +3,43 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "base/simd.h"
 #include "runtime/raster/fragment_batch.h"
 
 namespace vernier {
 
-/// Weights of the second and third vertex of each lane's primitive. Single precision, and double where the
-/// plan asks.
-struct LaneWeights {
-    alignas(64) std::array<float, kLaneRoom> perspective1, perspective2, linear1, linear2;
-    alignas(64) std::array<double, kLaneRoom> precise1, precise2, preciseLinear1, preciseLinear2;
+/// A varying that the fragment program reads, and where its lanes go.
+struct VaryingTarget {
+    uint32_t varying = 0;  // index into Plan::varyings
+    bool linear = false;   // noperspective
+    float* plane = nullptr;
 };
 
-struct WeightsInput {
+struct InterpolationInput {
     const FragmentBatch* batch;
     const float* offsetX;  // per lane; nullptr: the pixel's centre
     const float* offsetY;
-    bool perspective;  // some attribute is interpolated with perspective
-    bool inDouble;     // fill the precise weights too
+    std::span<const VaryingTarget> targets;
+    uint32_t capacity;  // lanes that the planes have room for
+    bool perspective;   // some attribute of the plan is interpolated with perspective
+    // What else the fragment program wants; nullptr: not wanted. Room for kLaneRoom lanes.
+    float* fragZ;
+    float* fragInverseW;
 };
 
-/// Results other than the weights that the fragment program wants; nullptr: not wanted. Room for kLaneRoom
-/// lanes.
-struct FragCoordOutput {
-    float* z;
-    float* inverseW;
-};
+/// Returns the number of lanes for which 1/w was divided.
+using InterpolateFn = uint32_t (*)(const InterpolationInput& input);
+InterpolateFn interpolateFunction(Isa isa);
 
-struct AttributeInput {
-    const FragmentBatch* batch;
-    const float* weight1;
-    const float* weight2;
-    uint32_t attribute;  // index among the varyings
-    uint32_t capacity;   // lanes that `result` has room for
-    float* result;
-};
-
-struct Interpolation {
-    /// Returns the number of lanes for which 1/w was divided.
-    uint32_t (*weights)(const WeightsInput& input, LaneWeights& weights, const FragCoordOutput& fragCoord);
-    void (*attribute)(const AttributeInput& input);
-};
-Interpolation interpolationFunctions(Isa isa);
-
-/// The attribute in double, rounded once.
-void interpolatePrecise(const FragmentBatch& batch, const double* weight1, const double* weight2, uint32_t attribute,
-                        float* result);
+/// The targets in double, rounded once.
+void interpolatePrecise(const InterpolationInput& input);
 /// Copies the bits of the provoking vertex.
-void copyFlat(const FragmentBatch& batch, uint32_t attribute, float* result);
+void copyFlat(const FragmentBatch& batch, const VaryingTarget& target);
+
+/// The pixels of a batch in rows or quads: x and y from count, order and origin.
+using PlaceLanesFn = void (*)(FragmentBatch& batch);
+PlaceLanesFn placeLanesFunction(Isa isa);
 
 }  // namespace vernier

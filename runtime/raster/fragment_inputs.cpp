@@ -1,0 +1,188 @@
+// The inputs of a batch of fragments: varyings and built-ins.
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "runtime/raster/fragment_stage.h"
+#include "runtime/raster/sample_positions.h"
+
+namespace vernier {
+
+/// Sorts the varyings that the program reads by how they get their values.
+void FragmentStage::bindInputs() {
+    centreTargets_.clear();
+    centroidTargets_.clear();
+    flatTargets_.clear();
+    for (uint32_t k = 0; k < plan_->varyings.size(); ++k) {
+        const Varying& varying = plan_->varyings[k];
+        const VaryingTarget target{k, varying.interpolation == ir::Interpolation::noPerspective,
+                                   context_->input(varying.fragmentSlot)};
+        if (target.plane == nullptr) continue;
+        const bool centroid = varying.sampling == ir::Sampling::centroid && plan_->needsCentroid && !plan_->perSample;
+        if (varying.interpolation == ir::Interpolation::flat) {
+            flatTargets_.push_back(target);
+        } else {
+            (centroid ? centroidTargets_ : centreTargets_).push_back(target);
+        }
+    }
+}
+
+void FragmentStage::fillInputs(const FragmentBatch& batch) {
+    const auto evaluate = [&](InterpolationInput& input, std::span<const VaryingTarget> targets) {
+        // In double, the weights in float serve gl_FragCoord alone.
+        if (!plan_->preciseInterpolation) input.targets = targets;
+        statistics_.perspectiveDivides += interpolate_(input);
+        if (!plan_->preciseInterpolation) return;
+        input.targets = targets;
+        interpolatePrecise(input);
+    };
+    if (plan_->needsBarycentrics || plan_->usesFragCoord) {
+        InterpolationInput input{};
+        input.batch = &batch;
+        input.capacity = capacity_;
+        input.perspective = plan_->smoothCount > 0;
+        if (plan_->perSample) {
+            input.offsetX = batch.offsetX.data();
+            input.offsetY = batch.offsetY.data();
+        }
+        if (plan_->usesFragCoord) {
+            input.fragZ = fragZ_.data();
+            input.fragInverseW = fragInverseW_.data();
+        }
+        evaluate(input, centreTargets_);
+        if (!centroidTargets_.empty()) {
+            centroidOffsets(batch);
+            input.offsetX = centroidX_.data();
+            input.offsetY = centroidY_.data();
+            input.fragZ = input.fragInverseW = nullptr;
+            evaluate(input, centroidTargets_);
+        }
+    }
+    for (const VaryingTarget& target : flatTargets_) copyFlat(batch, target);
+    fillBuiltins(batch);
+}
+
+/// Where centroid inputs are evaluated: the centre when the pixel is fully covered, else its first covered
+/// sample.
+void FragmentStage::centroidOffsets(const FragmentBatch& batch) {
+    const SamplePosition* positions = samplePositions(samples_);
+    const uint32_t full = (1u << samples_) - 1;
+    for (uint32_t lane = 0; lane < batch.count; ++lane) {
+        const uint32_t coverage = batch.coverage[lane];
+        const bool centre = coverage == full || coverage == 0;
+        const SamplePosition position = centre ? SamplePosition{8, 8} : positions[std::countr_zero(coverage)];
+        centroidX_[lane] = position.x();
+        centroidY_[lane] = position.y();
+    }
+}
+
+void FragmentStage::fillBuiltins(const FragmentBatch& batch) {
+    for (const BuiltinSlot& builtin : plan_->fragmentBuiltins)
+        if (float* plane = context_->input(builtin.slot); plane != nullptr) fillBuiltin(batch, builtin, plane);
+}
+
+void FragmentStage::fillBuiltin(const FragmentBatch& batch, const BuiltinSlot& builtin, float* plane) {
+    const uint32_t c = builtin.component;
+    const auto eachLane = [&](const auto& value) {
+        for (uint32_t lane = 0; lane < batch.count; ++lane) {
+            const auto v = value(lane);
+            static_assert(sizeof(v) == 4);
+            std::memcpy(plane + lane, &v, 4);
+        }
+    };
+    const auto eachSegment = [&](const auto& value) {
+        for (uint32_t s = 0; s < batch.segmentCount; ++s) {
+            const FragmentSegment& part = batch.segments[s];
+            const uint32_t bits = value(*part.planes->primitive);
+            for (uint32_t lane = part.first; lane < part.first + part.count; ++lane)
+                std::memcpy(plane + lane, &bits, 4);
+        }
+    };
+    const bool perSample = plan_->perSample;
+    switch (builtin.builtin) {
+        case ir::Builtin::fragCoord:
+            if (c == 0)
+                eachLane(
+                    [&](uint32_t n) { return static_cast<float>(batch.x[n]) + (perSample ? batch.offsetX[n] : 0.5f); });
+            if (c == 1)
+                eachLane(
+                    [&](uint32_t n) { return static_cast<float>(batch.y[n]) + (perSample ? batch.offsetY[n] : 0.5f); });
+            if (c == 2) eachLane([&](uint32_t n) { return fragZ_[n]; });
+            if (c == 3) eachLane([&](uint32_t n) { return fragInverseW_[n]; });
+            return;
+        case ir::Builtin::frontFacing:
+            eachSegment([](const Primitive& p) { return p.front ? ~0u : 0u; });
+            return;
+        case ir::Builtin::primitiveId:
+            eachSegment([](const Primitive& p) { return p.primitiveId; });
+            return;
+        case ir::Builtin::sampleId:
+            eachLane([&](uint32_t n) { return batch.sample[n]; });
+            return;
+        case ir::Builtin::samplePosition:
+            eachLane([&](uint32_t n) { return c == 0 ? batch.offsetX[n] : batch.offsetY[n]; });
+            return;
+        case ir::Builtin::sampleMaskIn:
+            eachLane([&](uint32_t n) { return c == 0 ? batch.coverage[n] : 0u; });
+            return;
+        case ir::Builtin::helperInvocation:
+            eachLane([&](uint32_t n) { return ~batch.store[n]; });
+            return;
+        case ir::Builtin::pointCoord:
+            // s = 1/2 + (x_f - x_p) / size (specification, "Basic Point Rasterization").
+            for (uint32_t s = 0; s < batch.segmentCount; ++s) {
+                const FragmentSegment& part = batch.segments[s];
+                const Primitive& p = *part.planes->primitive;
+                for (uint32_t n = part.first; n < part.first + part.count; ++n) {
+                    const float at = c == 0 ? static_cast<float>(batch.x[n]) + (perSample ? batch.offsetX[n] : 0.5f)
+                                            : static_cast<float>(batch.y[n]) + (perSample ? batch.offsetY[n] : 0.5f);
+                    plane[n] = p.isPoint ? 0.5f + (at - p.point[c == 0 ? 0 : 1]) * p.point[2] : 0.0f;
+                }
+            }
+            return;
+        default:
+            eachLane([](uint32_t) { return 0u; });
+    }
+}
+
+/// interpolateAtCentroid, -Sample, -Offset: one lane at a time.
+void FragmentStage::interpolateAt(void* self, uint32_t slot, uint32_t where, uint32_t lanes, const float* a,
+                                  const float* b, float* result) {
+    auto& stage = *static_cast<FragmentStage*>(self);
+    const FragmentBatch& batch = *stage.current_;
+    const std::vector<Varying>& varyings = stage.plan_->varyings;
+    const auto found =
+        std::find_if(varyings.begin(), varyings.end(), [&](const Varying& v) { return v.fragmentSlot == slot; });
+    std::fill_n(result, lanes, 0.0f);
+    if (found == varyings.end()) return;
+    const auto k = static_cast<size_t>(found - varyings.begin());
+    const SamplePosition* positions = samplePositions(stage.samples_);
+    const uint32_t full = (1u << stage.samples_) - 1;
+    for (uint32_t s = 0; s < batch.segmentCount; ++s) {
+        const FragmentSegment& part = batch.segments[s];
+        const TrianglePlanes& planes = *part.planes;
+        for (uint32_t n = part.first; n < std::min(part.first + part.count, lanes); ++n) {
+            if (found->interpolation == ir::Interpolation::flat) {
+                std::memcpy(result + n, planes.flat + k, 4);
+                continue;
+            }
+            SamplePosition position{8, 8};
+            float ox = 0, oy = 0;
+            if (where == 0 && batch.coverage[n] != full && batch.coverage[n] != 0)
+                position = positions[std::countr_zero(batch.coverage[n])];
+            if (where == 1) position = positions[std::min(std::bit_cast<uint32_t>(a[n]), stage.samples_ - 1)];
+            if (where == 2) {
+                ox = a[n];
+                oy = b[n];
+            }
+            const Barycentrics at =
+                barycentricsAt(planes, batch.x[n], batch.y[n], position.x() + ox, position.y() + oy);
+            const bool linear = found->interpolation == ir::Interpolation::noPerspective;
+            const double a0 = double{planes.attributes[0][k]};
+            const double d1 = double{planes.attributes[1][k]} - a0, d2 = double{planes.attributes[2][k]} - a0;
+            result[n] = static_cast<float>(a0 + ((linear ? at.l1 : at.b1) * d1 + (linear ? at.l2 : at.b2) * d2));
+        }
+    }
+}
+
+}  // namespace vernier
