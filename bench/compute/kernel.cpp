@@ -9,6 +9,8 @@ namespace {
 
 constexpr uint32_t kBodies = 2048, kSignals = 512, kPoints = 512, kMatrix = 256, kBlocks = 1024, kBlock = 1024;
 // image.comp writes one pixel per invocation in groups of 16 x 8.
+// blur.comp handles rows of 256 pixels; a second pass of the same over the transposed image handles the columns.
+constexpr uint32_t kBlurSide = 768;
 constexpr uint32_t kWidth = 512, kHeight = 384;
 
 Kernel imageKernel(std::string_view name, std::string_view description, std::string_view file, double share) {
@@ -43,6 +45,18 @@ std::vector<Kernel> makeKernels() {
     fft.output = 1;
     fft.tolerance = 0.02;
     list.push_back(fft);
+
+    Kernel blur;
+    blur.name = "blur";
+    blur.description = "A 33-tap Gaussian blur of 768 x 768 floats, rows then columns, through shared memory.";
+    blur.buffers = {{kBlurSide * kBlurSide, BufferFill::signedFloats},
+                    {kBlurSide * kBlurSide, BufferFill::zero},
+                    {kBlurSide * kBlurSide, BufferFill::zero}};
+    blur.passes = {{{"blur_rows.glsl", "blur.comp"}, {kBlurSide / 256, kBlurSide, 1}},
+                   {{"blur_columns.glsl", "blur.comp"}, {kBlurSide / 256, kBlurSide, 1}}};
+    blur.output = 2;
+    blur.tolerance = 1e-5;
+    list.push_back(blur);
 
     Kernel matrix;
     matrix.name = "matrix";

@@ -10,6 +10,7 @@
 #include "conformance/drivers/stopwatch.h"
 #include "conformance/drivers/vulkan_context.h"
 #include "conformance/drivers/vulkan_resources.h"
+#include "conformance/tool/render_scene.h"
 
 namespace vernier::bench {
 namespace {
@@ -234,6 +235,8 @@ Result<Rendering> runKernel(const DriverPaths& paths, const std::string& driver,
         std::find_if(choices.begin(), choices.end(), [&](const DriverChoice& each) { return each.name == driver; });
     if (choice == choices.end()) return invalidArgument("--driver: no driver is called '" + driver + "'");
     VERNIER_TRY(selectVulkanDriver(*choice));
+    VERNIER_TRY(limitCpus(paths.cpus));
+    const uint64_t librariesBefore = loadedLibraryBytes();
     const Stopwatch watch;
     VulkanContext context;
     VERNIER_TRY(context.create({}));
@@ -241,6 +244,7 @@ Result<Rendering> runKernel(const DriverPaths& paths, const std::string& driver,
     Rendering rendering;
     rendering.scene = kernel.name;
     rendering.driver = context.properties().deviceName;
+    rendering.version = versionText(context.properties());
     rendering.timing.startUp = watch.milliseconds();
     KernelRun run(context, kernel);
     VERNIER_TRY(run.prepare());
@@ -257,6 +261,7 @@ Result<Rendering> runKernel(const DriverPaths& paths, const std::string& driver,
     rendering.timing.pipelines = run.pipelineTime();
     rendering.timing.frame = frames->median;
     rendering.timing.frames = frames->count;
+    rendering.libraries = loadedLibraryBytes() - librariesBefore;
     rendering.images.push_back(run.output());
     return rendering;
 }

@@ -6,20 +6,54 @@
 
 #include "conformance/scenes/scenes.h"
 
+// X(function), in the order of the table; the function's name is the scene's name.
+#define VERNIER_SPEED_SCENES(X) \
+    /* fill_scenes.cpp */       \
+    X(fill)                     \
+    X(overdraw)                 \
+    X(overdraw_front_to_back)   \
+    X(overdraw_back_to_front)   \
+    X(blending)                 \
+    X(particles)                \
+    X(stencil)                  \
+    /* geometry_scenes.cpp */   \
+    X(small_triangles)          \
+    X(tiny_draws)               \
+    X(lines)                    \
+    X(points)                   \
+    /* texture_scenes.cpp */    \
+    X(texture_nearest)          \
+    X(texture_bilinear)         \
+    X(texture_trilinear)        \
+    X(textured)                 \
+    /* shading_scenes.cpp */    \
+    X(lighting)                 \
+    X(arithmetic)               \
+    X(divergent)                \
+    /* procedural_scenes.cpp */ \
+    X(raymarch_fragment)        \
+    X(noise_fragment)           \
+    X(uniform_fragment)         \
+    /* pass_scenes.cpp */       \
+    X(shadow_map)               \
+    X(deferred)                 \
+    X(msaa4)
+
 namespace vernier::bench {
 
 /// 1024 x 768 (procedural ones 512 x 384); each bound by one thing: fill, small triangles, textures, arithmetic, ...
 std::span<const conformance::SceneEntry> speedScenes();
 
-/// Procedural pictures of 512 x 384, whose arithmetic is also measured as compute kernels.
-Result<conformance::Scene> raymarchScene();
-Result<conformance::Scene> noiseScene();
-Result<conformance::Scene> uniformScene();
-
 /// Small enough for the exact oracle; each sensitive to one axis of accuracy.
 std::span<const conformance::SceneEntry> accuracyScenes();
 
-/// The entry called `name` in either list, or nullptr.
-const conformance::SceneEntry* findBenchScene(std::string_view name);
+/// The scene called `name`: of either list, or of a measurement of growth ("triangles:4096").
+Result<conformance::Scene> buildBenchScene(std::string_view name);
+
+namespace speed {
+#define VERNIER_DECLARE_SCENE(name) Result<conformance::Scene> name();
+VERNIER_SPEED_SCENES(VERNIER_DECLARE_SCENE)
+#undef VERNIER_DECLARE_SCENE
+}  // namespace speed
 
 }  // namespace vernier::bench

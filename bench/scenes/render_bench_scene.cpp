@@ -11,10 +11,9 @@ using namespace conformance;
 
 int renderBenchScene(const DriverPaths& paths, const std::string& driver, const std::string& scene,
                      const std::filesystem::path& out) {
-    const SceneEntry* entry = findBenchScene(scene);
+    const Result<Scene> built = buildBenchScene(scene);
     const Result<Rendering> rendering =
-        entry ? renderScene(paths, driver, *entry, false)
-              : Result<Rendering>(invalidArgument("--scene: no scene is called '" + scene + "'"));
+        built ? renderScene(paths, driver, *built, false) : Result<Rendering>(built.error());
     const Status status = rendering ? saveRendering(*rendering, out) : Status(rendering.error());
     if (!status) std::fprintf(stderr, "%s\n", status.error().message.c_str());
     return status ? 0 : 2;

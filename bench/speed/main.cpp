@@ -1,47 +1,23 @@
 // vernier-bench: every driver on every speed scene or compute kernel, in turn A B C A B C, each in a process of its
-// own; medians and ratios.
+// own; medians, ratios and growth.
 #include <algorithm>
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "base/cpu_budget.h"
-#include "base/simd.h"
 #include "bench/compute/run_kernel.h"
 #include "bench/scenes/bench_scenes.h"
 #include "bench/scenes/render_bench_scene.h"
-#include "bench/speed/table.h"
+#include "bench/speed/growth.h"
+#include "bench/speed/measure.h"
 #include "conformance/tool/render_scene.h"
 
 namespace vernier::bench {
 namespace {
 
 using namespace conformance;
-
-struct RunOptions {
-    std::vector<std::string> drivers, names;
-    uint32_t rounds = 3;
-    std::filesystem::path out = "out/bench";
-    std::string json;
-};
-
-/// The drivers that were asked for and are present; `needsVulkan` leaves out Vernier's own API.
-std::vector<std::string> presentDrivers(const DriverPaths& paths, const RunOptions& options, bool needsVulkan) {
-    std::vector<std::string> drivers;
-    for (const DriverChoice& choice : driverChoices(paths)) {
-        const bool wanted =
-            options.drivers.empty() || std::count(options.drivers.begin(), options.drivers.end(), choice.name);
-        if (!wanted || (needsVulkan && choice.name == "api")) continue;
-        if (choice.present())
-            drivers.push_back(choice.name);
-        else
-            std::printf("left out: %s (%s)\n", choice.name.c_str(), choice.absence.c_str());
-    }
-    return drivers;
-}
 
 /// What the drivers made of a kernel, compared with the reference's; one line each.
 nlohmann::json compareKernel(const Kernel& kernel, const std::map<std::string, Rendering>& last,
@@ -65,8 +41,7 @@ int run(const DriverPaths& paths, const RunOptions& options, const std::vector<s
     if (drivers.empty()) return std::fprintf(stderr, "no driver to run\n"), 2;
     const std::string reference =
         std::count(drivers.begin(), drivers.end(), "lavapipe") ? std::string("lavapipe") : drivers.back();
-    std::printf("%u usable CPUs, %s, %u rounds, medians\n", usableCpuCount(), std::string(isaName(bestIsa())).c_str(),
-                options.rounds);
+    std::printf("%s, %u rounds, medians\n", machineText().c_str(), options.rounds);
     std::printf(
         "start-up: creating pipelines and the first run%s, less a steady run; modules: creating shader modules\n",
         compute ? " (of one work-group)" : "");
@@ -76,34 +51,13 @@ int run(const DriverPaths& paths, const RunOptions& options, const std::vector<s
     bool agree = true;
     for (const std::string& name : names) {
         if (!options.names.empty() && !std::count(options.names.begin(), options.names.end(), name)) continue;
-        std::map<std::string, Measured> row;
-        std::map<std::string, Rendering> last;
-        for (uint32_t round = 0; round < options.rounds; ++round)
-            for (const std::string& driver : drivers) {
-                Measured& measured = row[driver];
-                Result<Rendering> rendering = renderInChild(paths, driver, name, options.out / driver, 120);
-                if (!rendering) {
-                    measured.failure = rendering.error().message;
-                    continue;
-                }
-                const Timing& timing = rendering->timing;
-                measured.driver = rendering->driver + " " + rendering->version;
-                measured.frame.push_back(timing.frame);
-                measured.startUp.push_back(timing.toFirstResult());
-                measured.modules.push_back(timing.modules);
-                last.insert_or_assign(driver, std::move(rendering).value());
-            }
-        table.printRow(name, row);
-        for (const auto& [driver, measured] : row) {
+        const Row row = measureRow(paths, options, drivers, name);
+        table.printRow(name, row.measured);
+        for (const auto& [driver, measured] : row.measured)
             if (!measured.failure.empty()) std::printf("  %s: %s\n", driver.c_str(), measured.failure.c_str());
-            report[name][driver] = {{"driver", measured.driver},
-                                    {"frame_ms", measured.frame},
-                                    {"start_up_ms", measured.startUp},
-                                    {"modules_ms", measured.modules},
-                                    {"failure", measured.failure}};
-        }
+        report[name] = rowReport(row);
         if (!compute) continue;
-        const nlohmann::json comparison = compareKernel(*findKernel(name), last, reference);
+        const nlohmann::json comparison = compareKernel(*findKernel(name), row.last, reference);
         for (const auto& [driver, entry] : comparison.items()) {
             report[name][driver]["against_" + reference] = entry;
             agree = agree && entry["agrees"].get<bool>();
@@ -151,8 +105,14 @@ int main(int argc, char** argv) {
     CLI::App* computeCommand =
         app.add_subcommand("compute", "Time all compute kernels on all Vulkan drivers and compare what they compute");
     addRunOptions(*computeCommand, options, "--kernel");
+    CLI::App* growthCommand =
+        app.add_subcommand("growth", "Time all Vulkan drivers as triangles, pixels, overdraw, lights and CPUs grow");
+    addRunOptions(*growthCommand, options, "--axis");
+    std::filesystem::path plots = "out/bench";
+    growthCommand->add_option("--plots", plots, "Folder for the plots (SVG)");
     CLI11_PARSE(app, argc, argv);
     if (*renderCommand) return renderOne(paths, driver, scene, out);
+    if (*growthCommand) return runGrowth(paths, options, plots);
     std::vector<std::string> names;
     if (*computeCommand)
         for (const Kernel& kernel : kernels()) names.emplace_back(kernel.name);

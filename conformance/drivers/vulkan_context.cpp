@@ -36,6 +36,14 @@ std::string resultName(VkResult result) {
 
 }  // namespace
 
+std::string versionText(const VkPhysicalDeviceProperties& properties) {
+    const auto dotted = [](uint32_t version) {
+        return std::to_string(VK_API_VERSION_MAJOR(version)) + "." + std::to_string(VK_API_VERSION_MINOR(version)) +
+               "." + std::to_string(VK_API_VERSION_PATCH(version));
+    };
+    return "driver " + dotted(properties.driverVersion) + ", Vulkan " + dotted(properties.apiVersion);
+}
+
 Error vulkanError(std::string_view call, VkResult result) {
     ErrorCode code = ErrorCode::invalidArgument;
     switch (result) {

@@ -49,6 +49,9 @@ Error vulkanError(std::string_view call, VkResult result);
             return ::vernier::conformance::vulkanError(#call, tryResult); \
     } while (false)
 
+/// "driver 1.2.3, Vulkan 1.3.0".
+std::string versionText(const VkPhysicalDeviceProperties& properties);
+
 class VulkanContext {
   public:
     VulkanContext() = default;

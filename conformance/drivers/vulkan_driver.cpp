@@ -216,12 +216,7 @@ std::string VulkanDriver::name() const {
 }
 
 std::string VulkanDriver::version() const {
-    const VkPhysicalDeviceProperties& properties = context_.properties();
-    const auto dotted = [](uint32_t version) {
-        return std::to_string(VK_API_VERSION_MAJOR(version)) + "." + std::to_string(VK_API_VERSION_MINOR(version)) +
-               "." + std::to_string(VK_API_VERSION_PATCH(version));
-    };
-    return "driver " + dotted(properties.driverVersion) + ", Vulkan " + dotted(properties.apiVersion);
+    return versionText(context_.properties());
 }
 
 std::string VulkanDriver::limits() const {

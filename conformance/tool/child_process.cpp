@@ -5,6 +5,7 @@
 
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -56,8 +57,9 @@ ChildResult runChild(const std::vector<std::string>& arguments, const std::files
 
     const Stopwatch watch;
     int status = 0;
+    rusage usage{};
     while (true) {
-        const pid_t ended = waitpid(child, &status, WNOHANG);
+        const pid_t ended = wait4(child, &status, WNOHANG, &usage);
         if (ended == child) break;
         if (ended < 0 || watch.milliseconds() > timeoutSeconds * 1000) {
             kill(child, SIGKILL);
@@ -66,7 +68,7 @@ ChildResult runChild(const std::vector<std::string>& arguments, const std::files
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {true, {}};
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {true, {}, static_cast<uint64_t>(usage.ru_maxrss) * 1024};
     if (WIFSIGNALED(status)) {
         const int signal = WTERMSIG(status);
         return {false, "signal " + std::to_string(signal) + " (" + strsignal(signal) + ")" + lastWords(log)};

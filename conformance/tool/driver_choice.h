@@ -30,6 +30,7 @@ struct DriverPaths {
     std::filesystem::path lavapipe = "/usr/share/vulkan/icd.d/lvp_icd.x86_64.json";
     std::filesystem::path swiftShader = "/usr/lib/chromium/vk_swiftshader_icd.json";
     std::string profile = "standard";  // of Vernier's API: draft, fast, standard, fine, reference
+    uint32_t cpus = 0;                 // that a driver's process may use; 0: all
 
     DriverPaths();
 };

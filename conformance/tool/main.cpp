@@ -58,7 +58,9 @@ Status writePictures(const Rendering& rendering, const std::filesystem::path& di
 int render(const DriverPaths& paths, const RenderOptions& options) {
     const SceneEntry* entry = findScene(options.scene);
     if (entry == nullptr) return fail(invalidArgument("--scene: no scene is called '" + options.scene + "'"));
-    const Result<Rendering> rendering = renderScene(paths, options.driver, *entry, options.validate);
+    const Result<Scene> scene = entry->build();
+    if (!scene) return fail(scene.error());
+    const Result<Rendering> rendering = renderScene(paths, options.driver, *scene, options.validate);
     if (!rendering) return fail(rendering.error());
     if (const Status status = saveRendering(*rendering, options.out); !status) return fail(status.error());
     if (!options.png) return 0;

@@ -13,15 +13,20 @@
 
 namespace vernier::conformance {
 
-/// Adds --icd, --lavapipe, --swiftshader and --profile.
+/// Adds --icd, --lavapipe, --swiftshader, --profile and --cpus.
 void addDriverOptions(CLI::App& app, DriverPaths& paths);
 
 /// The same options as arguments for a child.
 std::vector<std::string> driverArguments(const DriverPaths& paths);
 
-/// Builds the scene and draws it on the driver of that name, with timings.
-Result<Rendering> renderScene(const DriverPaths& paths, const std::string& driver, const SceneEntry& entry,
-                              bool validate);
+/// Draws the scene on the driver of that name, with timings. Takes CPUs from the process if `paths` says so.
+Result<Rendering> renderScene(const DriverPaths& paths, const std::string& driver, const Scene& scene, bool validate);
+
+/// Bytes of all shared libraries in the process, by their files.
+uint64_t loadedLibraryBytes();
+
+/// Leaves the process `count` of its CPUs, for libraries that count them later; 0: all.
+Status limitCpus(uint32_t count);
 
 /// Runs this program again as "<driver arguments> render --driver D --scene S --out FOLDER", which must save a
 /// Rendering there, and loads it. FOLDER is created; the child's output goes to FOLDER/S.log.

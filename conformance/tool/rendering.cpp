@@ -57,6 +57,7 @@ Status saveRendering(const Rendering& rendering, const std::filesystem::path& di
                                        {"firstImage", timing.firstImage},
                                        {"frame", timing.frame}}},
                                      {"frames", timing.frames},
+                                     {"libraries", rendering.libraries},
                                      {"images", images}};
     const std::string text = document.dump(2) + "\n";
     return writeFile(directory / (rendering.scene + ".json"), text.data(), text.size());
@@ -73,6 +74,7 @@ Result<Rendering> loadRendering(const std::filesystem::path& directory, const st
         rendering.driver = document.at("driver").get<std::string>();
         rendering.version = document.at("version").get<std::string>();
         rendering.limits = document.at("limits").get<std::string>();
+        rendering.libraries = document.at("libraries").get<uint64_t>();
         const nlohmann::json& times = document.at("milliseconds");
         rendering.timing = {.startUp = times.at("startUp"),
                             .modules = times.at("modules"),

@@ -15,6 +15,8 @@ struct Rendering {
     std::string scene;
     std::string driver, version, limits;  // as the implementation names itself
     Timing timing;
+    uint64_t libraries = 0;   // bytes of the shared libraries that came with the driver: it, and what it needs
+    uint64_t peakMemory = 0;  // bytes resident at most in the process that drew; 0: not measured; not saved
     std::vector<RenderedImage> images;
 };
 
