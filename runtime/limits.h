@@ -17,7 +17,7 @@ inline constexpr uint32_t kMaxViewports = 16;
 inline constexpr uint32_t kMaxDescriptorSets = 8;
 inline constexpr uint32_t kMaxPushConstantBytes = 256;
 inline constexpr uint32_t kMaxInterfaceComponents = 128;  // between vertex and fragment stage
-inline constexpr uint32_t kMaxSamples = 4;
+inline constexpr uint32_t kMaxSamples = 16;               // and every power of two below
 inline constexpr uint32_t kMaxClipDistances = 8;
 
 // Compute. The memory is what the invocations of one work-group may share, in bytes.
@@ -25,6 +25,10 @@ inline constexpr uint32_t kMaxWorkGroupCount[3] = {65535, 65535, 65535};
 inline constexpr uint32_t kMaxWorkGroupSize[3] = {1024, 1024, 64};
 inline constexpr uint32_t kMaxWorkGroupInvocations = 1024;
 inline constexpr uint32_t kMaxWorkGroupMemory = 32768;
+
+constexpr bool isSampleCount(uint32_t samples) {
+    return samples != 0 && samples <= kMaxSamples && (samples & (samples - 1)) == 0;
+}
 
 /// Window coordinates that reach the rasteriser lie in [kGuardBandMin, kGuardBandMax] pixels; what lies outside is
 /// clipped.

@@ -154,4 +154,9 @@ VKAPI_ATTR void VKAPI_CALL CmdSetStencilReference(VkCommandBuffer commandBuffer,
     record(commandBuffer, command::SetStencil{faceMask, command::SetStencil::Field::reference, reference});
 }
 
+VKAPI_ATTR void VKAPI_CALL CmdSetSampleLocationsEXT(VkCommandBuffer commandBuffer,
+                                                    const VkSampleLocationsInfoEXT* pSampleLocationsInfo) {
+    record(commandBuffer, command::SetSampleLocations{sampleLocationsOf(*pSampleLocationsInfo)});
+}
+
 }  // namespace vernier::vulkan

@@ -50,7 +50,7 @@ VkSampleCountFlags sampleCounts(VkFormatFeatureFlags features, VkImageType type,
     const bool multisampled = tiling == VK_IMAGE_TILING_OPTIMAL && type == VK_IMAGE_TYPE_2D &&
                               (flags & VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT) == 0 && (features & kAttachment) != 0 &&
                               (usage & VK_IMAGE_USAGE_STORAGE_BIT) == 0;
-    return multisampled ? VK_SAMPLE_COUNT_1_BIT | VK_SAMPLE_COUNT_4_BIT : VK_SAMPLE_COUNT_1_BIT;
+    return multisampled ? kSampleCounts : VkSampleCountFlags{VK_SAMPLE_COUNT_1_BIT};
 }
 
 VkExtent3D maxExtent(VkImageType type) {

@@ -7,15 +7,13 @@
 #include "api/vulkan/resource_limits.h"
 #include "runtime/geometry/primitive_setup.h"
 #include "runtime/limits.h"
+#include "runtime/plan/sample_positions.h"
 #include "runtime/resource/buffer_view.h"
 #include "runtime/resource/memory.h"
 #include "runtime/texture/texture.h"
 
 namespace vernier::vulkan {
 namespace {
-
-static_assert(kMaxSamples == 4);
-constexpr VkSampleCountFlags kSampleCounts = VK_SAMPLE_COUNT_1_BIT | VK_SAMPLE_COUNT_4_BIT;
 
 /// Descriptors are structs in host memory: these bounds only keep requests sane.
 constexpr uint32_t kMaxDescriptors = 1u << 16;
@@ -169,6 +167,14 @@ void fillPropertyChain(void* chain) {
     if (auto* p = findInChain<VkPhysicalDeviceProvokingVertexPropertiesEXT>(chain)) {
         p->provokingVertexModePerPipeline = VK_TRUE;
         p->transformFeedbackPreservesTriangleFanProvokingVertex = VK_FALSE;
+    }
+    if (auto* p = findInChain<VkPhysicalDeviceSampleLocationsPropertiesEXT>(chain)) {
+        p->sampleLocationSampleCounts = kSampleCounts;
+        p->maxSampleLocationGridSize = {1, 1};
+        p->sampleLocationCoordinateRange[0] = 0;
+        p->sampleLocationCoordinateRange[1] = 1 - 1.0f / (1u << kSampleLocationBits);
+        p->sampleLocationSubPixelBits = kSampleLocationBits;
+        p->variableSampleLocations = VK_TRUE;
     }
     if (auto* p = findInChain<VkPhysicalDeviceFloatControlsProperties>(chain)) setFloatControls(*p);
     if (auto* p = findInChain<VkPhysicalDeviceShaderIntegerDotProductProperties>(chain)) {

@@ -11,6 +11,7 @@
 #include "api/vulkan/enumerate.h"
 #include "api/vulkan/extension.h"
 #include "api/vulkan/instance.h"
+#include "runtime/limits.h"
 
 namespace vernier::vulkan {
 namespace {
@@ -108,6 +109,13 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceMemoryProperties(VkPhysicalDevice ph
 VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceMemoryProperties2(VkPhysicalDevice physicalDevice,
                                                               VkPhysicalDeviceMemoryProperties2* pMemoryProperties) {
     pMemoryProperties->memoryProperties = object(physicalDevice)->memory;
+}
+
+VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceMultisamplePropertiesEXT(VkPhysicalDevice, VkSampleCountFlagBits samples,
+                                                                     VkMultisamplePropertiesEXT* pProperties) {
+    // All pixels have the same locations.
+    const bool supported = isSampleCount(static_cast<uint32_t>(samples));
+    pProperties->maxSampleLocationGridSize = supported ? VkExtent2D{1, 1} : VkExtent2D{0, 0};
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL EnumerateDeviceExtensionProperties(VkPhysicalDevice, const char* pLayerName,

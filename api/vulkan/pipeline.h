@@ -40,8 +40,10 @@ Result<ir::Program> loadStage(const VkPipelineShaderStageCreateInfo& stage, ir::
 struct PipelineState {
     GraphicsState state;
     DynamicState fixed;
-    uint32_t dynamicMask = 0;  // bit per VkDynamicState
+    uint32_t dynamicMask = 0;  // of dynamicStateBit()
 };
+/// The sample locations of a pixel in the runtime's terms; outside sampleLocationCoordinateRange they are clamped.
+std::array<SamplePosition, kMaxSamples> sampleLocationsOf(const VkSampleLocationsInfoEXT& info);
 Result<PipelineState> pipelineState(const VkGraphicsPipelineCreateInfo& info);
 
 /// Calls create(info, place) for each, which returns a VkResult; a pipeline that fails becomes VK_NULL_HANDLE and the

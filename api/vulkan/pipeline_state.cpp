@@ -18,16 +18,16 @@ Error aboveLimit(const char* field, uint32_t value, uint32_t limit) {
 }
 
 bool isDynamic(const PipelineState& result, VkDynamicState state) {
-    return (result.dynamicMask >> state & 1u) != 0;
+    return (result.dynamicMask & dynamicStateBit(state)) != 0;
 }
 
 Status readDynamicStates(const VkPipelineDynamicStateCreateInfo* info, PipelineState& result) {
     for (uint32_t i = 0; info != nullptr && i < info->dynamicStateCount; ++i) {
         const VkDynamicState state = info->pDynamicStates[i];
-        if (state > VK_DYNAMIC_STATE_STENCIL_REFERENCE) {
+        if (dynamicStateBit(state) == 0) {
             return unsupported("dynamic state " + std::to_string(state) + " is not supported");
         }
-        result.dynamicMask |= 1u << state;
+        result.dynamicMask |= dynamicStateBit(state);
     }
     return {};
 }
@@ -97,11 +97,13 @@ Status readViewports(const VkPipelineViewportStateCreateInfo* info, PipelineStat
     return {};
 }
 
-Status readMultisample(const VkPipelineMultisampleStateCreateInfo* info, GraphicsState& state) {
+Status readMultisample(const VkPipelineMultisampleStateCreateInfo* info, PipelineState& result) {
     if (info == nullptr) return invalidArgument("pMultisampleState must be given");
+    GraphicsState& state = result.state;
     state.samples = static_cast<uint32_t>(info->rasterizationSamples);
-    if (state.samples != 1 && state.samples != kMaxSamples) {
-        return unsupported("rasterizationSamples is " + std::to_string(state.samples) + "; supported are 1 and 4");
+    if (const auto* locations = findInChain<VkPipelineSampleLocationsStateCreateInfoEXT>(info->pNext)) {
+        state.sampleLocations = locations->sampleLocationsEnable != VK_FALSE;
+        if (state.sampleLocations) result.fixed.sampleLocations = sampleLocationsOf(locations->sampleLocationsInfo);
     }
     state.sampleMask = info->pSampleMask != nullptr ? info->pSampleMask[0] : ~0u;
     state.sampleShading = info->sampleShadingEnable != VK_FALSE;
@@ -154,6 +156,20 @@ void setFormats(const SubpassFormats& formats, GraphicsState& state) {
 
 }  // namespace
 
+std::array<SamplePosition, kMaxSamples> sampleLocationsOf(const VkSampleLocationsInfoEXT& info) {
+    std::array<SamplePosition, kMaxSamples> locations{};
+    constexpr float kUnits = 1u << kSampleLocationBits;
+    const auto snap = [](float place) {
+        return static_cast<uint8_t>(place > 0 ? std::min(place * kUnits + 0.5f, kUnits - 1) : 0.0f);  // NaN: 0
+    };
+    const uint32_t count = std::min(info.sampleLocationsCount, kMaxSamples);
+    for (uint32_t s = 0; s < count; ++s) {
+        const VkSampleLocationEXT& from = info.pSampleLocations[s];
+        locations[s] = {snap(from.x), snap(from.y)};
+    }
+    return locations;
+}
+
 Result<PipelineState> pipelineState(const VkGraphicsPipelineCreateInfo& info) {
     PipelineState result;
     if (info.renderPass == VK_NULL_HANDLE || info.subpass >= object(info.renderPass)->subpasses.size()) {
@@ -170,7 +186,7 @@ Result<PipelineState> pipelineState(const VkGraphicsPipelineCreateInfo& info) {
         return result;
     }
     if (Status s = readViewports(info.pViewportState, result); !s) return s.error();
-    if (Status s = readMultisample(info.pMultisampleState, result.state); !s) return s.error();
+    if (Status s = readMultisample(info.pMultisampleState, result); !s) return s.error();
     if (formats.samples != 0 && formats.samples != result.state.samples) {
         return invalidArgument("rasterizationSamples is " + std::to_string(result.state.samples) +
                                "; the attachments have " + std::to_string(formats.samples));

@@ -5,8 +5,12 @@
 
 #include <cstdint>
 
+#include "runtime/limits.h"
+
 namespace vernier::vulkan {
 
+/// 1, 2, 4, 8, 16: VkSampleCountFlagBits are the counts themselves.
+inline constexpr VkSampleCountFlags kSampleCounts = 2 * kMaxSamples - 1;
 inline constexpr uint32_t kMaxDescriptorsPerSet = 1u << 20;
 inline constexpr uint32_t kMaxVertexAttributeOffset = 2047;
 inline constexpr uint32_t kMaxVertexBindingStride = 2048;

@@ -55,7 +55,7 @@ struct BindPipeline {
     const GraphicsPipeline* pipeline = nullptr;
     // Values the pipeline fixes; applied to the dynamic state for the bits not set in `dynamicMask`.
     const DynamicState* fixed = nullptr;
-    uint32_t dynamicMask = 0;  // bit per VkDynamicState value below 32: left as set by commands
+    uint32_t dynamicMask = 0;  // of dynamicStateBit(): left as set by commands
 };
 struct BindComputePipeline {
     const ComputePipeline* pipeline = nullptr;
@@ -109,6 +109,9 @@ struct SetStencil {
     VkStencilFaceFlags faces = VK_STENCIL_FACE_FRONT_AND_BACK;
     enum class Field : uint8_t { compareMask, writeMask, reference } field = Field::reference;
     uint32_t value = 0;
+};
+struct SetSampleLocations {
+    std::array<SamplePosition, kMaxSamples> locations{};
 };
 struct Draw {
     bool indexed = false;

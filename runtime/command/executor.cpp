@@ -9,7 +9,7 @@ namespace {
 
 /// Applies what a pipeline fixes for every state the dynamic mask leaves out.
 void applyFixedState(const DynamicState& fixed, uint32_t dynamicMask, DynamicState& state) {
-    const auto isFixed = [&](VkDynamicState name) { return (dynamicMask >> name & 1u) == 0; };
+    const auto isFixed = [&](VkDynamicState name) { return (dynamicMask & dynamicStateBit(name)) == 0; };
     if (isFixed(VK_DYNAMIC_STATE_VIEWPORT)) {
         state.viewports = fixed.viewports;
         state.viewportCount = fixed.viewportCount;
@@ -26,6 +26,7 @@ void applyFixedState(const DynamicState& fixed, uint32_t dynamicMask, DynamicSta
         state.minDepthBounds = fixed.minDepthBounds;
         state.maxDepthBounds = fixed.maxDepthBounds;
     }
+    if (isFixed(VK_DYNAMIC_STATE_SAMPLE_LOCATIONS_EXT)) state.sampleLocations = fixed.sampleLocations;
     const auto stencil = [&](VkDynamicState name, uint32_t DynamicState::StencilFace::*field) {
         if (!isFixed(name)) return;
         state.stencilFront.*field = fixed.stencilFront.*field;
@@ -158,6 +159,11 @@ void Executor::run(const command::SetBlendConstants& command) {
 void Executor::run(const command::SetDepthBounds& command) {
     dynamic_.minDepthBounds = command.min;
     dynamic_.maxDepthBounds = command.max;
+    dynamicSnapshot_ = nullptr;
+}
+
+void Executor::run(const command::SetSampleLocations& command) {
+    dynamic_.sampleLocations = command.locations;
     dynamicSnapshot_ = nullptr;
 }
 

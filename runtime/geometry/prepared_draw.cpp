@@ -11,15 +11,32 @@ int32_t clampPixel(double value) {
     return static_cast<int32_t>(std::min(value, double{kGuardBandMax}));
 }
 
-/// The pixels whose centres lie in [low, high): clipping to the view volume leaves exactly those of a shape
+/// The pixels whose samples at `place` lie in [low, high): clipping to the view volume leaves exactly those of a shape
 /// that covers them, since its right and bottom edges are no top-left edges.
-void pixelRange(double low, double high, int32_t& first, int32_t& end) {
-    first = clampPixel(std::ceil(low - 0.5));
-    end = clampPixel(std::ceil(high - 0.5));
+void pixelRange(double low, double high, float place, int32_t& first, int32_t& end) {
+    first = clampPixel(std::ceil(low - double{place}));
+    end = clampPixel(std::ceil(high - double{place}));
+}
+
+PixelRect viewportPixels(const VkViewport& v, SamplePosition sample) {
+    PixelRect rect;
+    pixelRange(double{v.x}, double{v.x} + double{v.width}, sample.x(), rect.x0, rect.x1);
+    const double y0 = double{v.y}, y1 = double{v.y} + double{v.height};
+    pixelRange(std::min(y0, y1), std::max(y0, y1), sample.y(), rect.y0, rect.y1);
+    return rect;
+}
+
+bool hasWholeEdges(const VkViewport& v) {
+    const auto whole = [](float value) { return value == std::floor(value); };
+    return whole(v.x) && whole(v.y) && whole(v.width) && whole(v.height);
 }
 
 PixelRect intersect(const PixelRect& a, const PixelRect& b) {
     return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+}
+
+PixelRect unite(const PixelRect& a, const PixelRect& b) {
+    return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
 }
 
 PixelRect rectOf(const VkRect2D& rect) {
@@ -44,11 +61,18 @@ PreparedDraw prepareDraw(const DrawCall& call, const VkRect2D& renderArea) {
     draw.viewport = {{halfWidth, halfHeight, double{v.maxDepth} - double{v.minDepth}},
                      {double{v.x} + halfWidth, double{v.y} + halfHeight, double{v.minDepth}}};
     draw.area = intersect(rectOf(call.dynamic->scissors[0]), rectOf(renderArea));
-    PixelRect viewport;
-    pixelRange(double{v.x}, double{v.x} + double{v.width}, viewport.x0, viewport.x1);
-    const double y0 = double{v.y}, y1 = double{v.y} + double{v.height};
-    pixelRange(std::min(y0, y1), std::max(y0, y1), viewport.y0, viewport.y1);
-    draw.triangleArea = intersect(draw.area, viewport);
+    draw.positions =
+        draw.state->sampleLocations ? call.dynamic->sampleLocations.data() : samplePositions(draw.plan->samples);
+    draw.samplesAtCentre = draw.plan->samples == 1 && draw.positions[0].x16 == 8 && draw.positions[0].y16 == 8;
+    // Edges on pixel boundaries leave the same pixels to every sample.
+    draw.triangleArea = viewportPixels(v, draw.positions[0]);
+    if (!draw.samplesAtCentre && !hasWholeEdges(v)) {
+        for (uint32_t s = 0; s < draw.plan->samples; ++s) {
+            draw.sampleAreas.push_back(viewportPixels(v, draw.positions[s]));
+            draw.triangleArea = unite(draw.triangleArea, draw.sampleAreas.back());
+        }
+    }
+    draw.triangleArea = intersect(draw.area, draw.triangleArea);
 
     // Depths outside [0, 1] have no place in a fixed-point attachment, and without
     // VK_EXT_depth_range_unrestricted none in a float one.

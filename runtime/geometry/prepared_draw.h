@@ -31,6 +31,9 @@ struct PreparedDraw {
     PixelRect area;          // scissor and render area, for points and lines
     float depthLow = 0, depthHigh = 1;  // what depths are clamped to
     uint32_t subPixelBits = 8;
+    const SamplePosition* positions = nullptr;  // of all samples of a pixel
+    bool samplesAtCentre = true;                // one sample, in the middle
+    std::vector<PixelRect> sampleAreas;  // by sample, what of triangleArea is inside the viewport; empty: all of it
     std::vector<VertexRun> runs;
     uint32_t primitivesPerInstance = 0;
     uint32_t fragmentState = 0;  // draws with the same number may share fragment batches

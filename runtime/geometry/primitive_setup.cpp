@@ -20,10 +20,10 @@ double powerOfTwo(int exponent) {
     return std::bit_cast<double>(static_cast<uint64_t>(exponent + 1023) << 52);
 }
 
-/// Pixels whose centres (one sample) or any part (several samples) lie between two coordinates in sub-units.
-void pixelBounds(int32_t low, int32_t high, uint32_t bits, uint32_t samples, int32_t& first, int32_t& last) {
-    const int32_t half = samples > 1 ? 0 : 1 << (bits - 1);
-    first = samples > 1 ? low >> bits : (low - half + (1 << bits) - 1) >> bits;
+/// Pixels whose centres, or any part of which (`anywhere`), lie between two coordinates in sub-units.
+void pixelBounds(int32_t low, int32_t high, uint32_t bits, bool anywhere, int32_t& first, int32_t& last) {
+    const int32_t half = anywhere ? 0 : 1 << (bits - 1);
+    first = anywhere ? low >> bits : (low - half + (1 << bits) - 1) >> bits;
     last = (high - half) >> bits;
 }
 
@@ -158,8 +158,8 @@ void PrimitiveSetup::addTriangle(const PreparedDraw& draw, const PrimitiveInfo& 
     if (area == 0) return;
     const uint32_t bits = draw.subPixelBits;
     int32_t x0, x1, y0, y1;
-    pixelBounds(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), bits, draw.plan->samples, x0, x1);
-    pixelBounds(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), bits, draw.plan->samples, y0, y1);
+    pixelBounds(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), bits, !draw.samplesAtCentre, x0, x1);
+    pixelBounds(std::min({a.y, b.y, c.y}), std::max({a.y, b.y, c.y}), bits, !draw.samplesAtCentre, y0, y1);
     x0 = std::max(x0, style.area->x0);
     y0 = std::max(y0, style.area->y0);
     x1 = std::min(x1, style.area->x1 - 1);
@@ -196,10 +196,10 @@ void PrimitiveSetup::addTriangle(const PreparedDraw& draw, const PrimitiveInfo& 
         return int64_t{std::max({values[0], values[1], values[2]})} - std::min({values[0], values[1], values[2]});
     };
     p.smallEdges = std::max(span(p.x), span(p.y)) <= int64_t{1} << kSmallEdgeBits;
-    bin(p, index, bits);
+    bin(p, index, bits, draw.sampleAreas.empty());
 }
 
-void PrimitiveSetup::bin(const Primitive& p, uint32_t index, uint32_t subPixelBits) {
+void PrimitiveSetup::bin(const Primitive& p, uint32_t index, uint32_t subPixelBits, bool mayCoverTiles) {
     const auto column = [&](int32_t x) { return static_cast<uint32_t>((x - grid_.x0) / kTileSize); };
     const auto row = [&](int32_t y) { return static_cast<uint32_t>((y - grid_.y0) / kTileSize); };
     const uint32_t tx0 = column(p.bounds[0]), tx1 = column(p.bounds[2]);
@@ -239,7 +239,7 @@ void PrimitiveSetup::bin(const Primitive& p, uint32_t index, uint32_t subPixelBi
             const int32_t y = grid_.y0 + static_cast<int32_t>(ty) * kTileSize;
             inside &= p.bounds[0] <= x && p.bounds[1] <= y && p.bounds[2] >= x + kTileSize - 1 &&
                       p.bounds[3] >= y + kTileSize - 1;
-            add(ty * grid_.columns + tx, inside ? kCoversTile : 0);
+            add(ty * grid_.columns + tx, inside && mayCoverTiles ? kCoversTile : 0);
         }
     }
 }

@@ -69,7 +69,7 @@ class PrimitiveSetup {
                     const WindowVertex& b);
     void addSquare(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style, const WindowVertex& vertex,
                    double x, double y, float size);
-    void bin(const Primitive& primitive, uint32_t index, uint32_t subPixelBits);
+    void bin(const Primitive& primitive, uint32_t index, uint32_t subPixelBits, bool mayCoverTiles);
 
     Chunk* chunk_ = nullptr;
     TileGrid grid_;

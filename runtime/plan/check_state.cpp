@@ -4,6 +4,7 @@
 #include <string>
 
 #include "runtime/format/format.h"
+#include "runtime/plan/sample_positions.h"
 
 namespace vernier {
 namespace {
@@ -50,9 +51,9 @@ Status checkRasterization(const GraphicsState& state) {
     if (state.polygonMode > VK_POLYGON_MODE_POINT)
         return unsupported("GraphicsState::polygonMode: VkPolygonMode " + number(state.polygonMode) +
                            " is not supported");
-    if (state.samples != 1 && state.samples != 2 && state.samples != 4)
+    if (!isSampleCount(state.samples))
         return unsupported("GraphicsState::samples: " + number(state.samples) +
-                           " samples are not supported (1, 2, 4 are)");
+                           " samples are not supported (1, 2, 4, 8, 16 are)");
     return {};
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runtime/limits.h"
+#include "runtime/plan/sample_positions.h"
 
 namespace vernier {
 
@@ -29,6 +30,7 @@ struct GraphicsState {
 
     uint32_t samples = 1;
     uint32_t sampleMask = ~0u;
+    bool sampleLocations = false;  // DynamicState::sampleLocations instead of the standard ones
     bool sampleShading = false;
     float minSampleShading = 0;
     bool alphaToCoverage = false;
@@ -50,6 +52,17 @@ struct GraphicsState {
     VkFormat depthStencilFormat = VK_FORMAT_UNDEFINED;
 };
 
+/// A bit for each VkDynamicState that is supported; 0 for the others.
+constexpr uint32_t dynamicStateBit(VkDynamicState state) {
+    if (state <= VK_DYNAMIC_STATE_STENCIL_REFERENCE) return 1u << state;
+    switch (state) {
+        case VK_DYNAMIC_STATE_SAMPLE_LOCATIONS_EXT:
+            return 1u << 9;
+        default:
+            return 0;
+    }
+}
+
 /// State that a command may set between draws. A pipeline that fixes some of it copies its values in here when bound.
 struct DynamicState {
     std::array<VkViewport, kMaxViewports> viewports{};
@@ -59,6 +72,7 @@ struct DynamicState {
     float depthBiasConstant = 0, depthBiasClamp = 0, depthBiasSlope = 0;
     std::array<float, 4> blendConstants{};
     float minDepthBounds = 0, maxDepthBounds = 1;
+    std::array<SamplePosition, kMaxSamples> sampleLocations{};  // where GraphicsState::sampleLocations asks for them
     struct StencilFace {
         uint32_t compareMask = 0xFF, writeMask = 0xFF, reference = 0;
     };

@@ -60,7 +60,7 @@ void CoarseDepth::setCleared(DepthStorage storage, float depth) {
 }
 
 uint32_t CoarseDepth::reject(const DepthPlan& plan, const TrianglePlanes& planes, int32_t tileX, int32_t tileY,
-                             BlockCoverage* blocks, uint32_t count) const {
+                             uint32_t samples, BlockCoverage* blocks, uint32_t count) const {
     if (!known_ || plan.compare == 7 || plan.compare == 0 || plan.compare == (kLess | kGreater)) return count;
     uint32_t kept = 0;
     for (uint32_t b = 0; b < count; ++b) {
@@ -69,8 +69,7 @@ uint32_t CoarseDepth::reject(const DepthPlan& plan, const TrianglePlanes& planes
         const bool hidden = ((plan.compare & kGreater) == 0 && range.low > double{stored.high}) ||
                             ((plan.compare & kLess) == 0 && range.high < double{stored.low});
         if (hidden) continue;
-        if (kept != b) blocks[kept] = blocks[b];
-        ++kept;
+        moveBlock(blocks, b, kept++, samples);
     }
     return kept;
 }

@@ -18,7 +18,7 @@ class CoarseDepth {
     void setCleared(DepthStorage storage, float depth);
 
     /// Removes the blocks in which no sample of the primitive can pass; returns how many are left, in order.
-    uint32_t reject(const DepthPlan& plan, const TrianglePlanes& planes, int32_t tileX, int32_t tileY,
+    uint32_t reject(const DepthPlan& plan, const TrianglePlanes& planes, int32_t tileX, int32_t tileY, uint32_t samples,
                     BlockCoverage* blocks, uint32_t count) const;
     /// After a depth test that wrote where `blocks` have bits.
     void update(const DepthPlan& plan, const TrianglePlanes& planes, int32_t tileX, int32_t tileY, uint32_t samples,

@@ -13,9 +13,17 @@ inline constexpr uint32_t kBlocksPerTile = (kTileSize / kBlockSize) * (kTileSize
 
 /// Bit y * 8 + x of masks[s]: pixel (x, y) of the block at sample s.
 struct BlockCoverage {
-    int32_t x, y;  // first pixel of the block, relative to the tile
-    std::array<uint64_t, kMaxSamples> masks;
+    int32_t x, y;                             // first pixel of the block, relative to the tile
+    std::array<uint64_t, kMaxSamples> masks;  // of the samples that the draw has; the others are not set
 };
+
+/// Moves a block forward in its array.
+inline void moveBlock(BlockCoverage* blocks, uint32_t from, uint32_t to, uint32_t samples) {
+    if (from == to) return;
+    blocks[to].x = blocks[from].x;
+    blocks[to].y = blocks[from].y;
+    for (uint32_t s = 0; s < samples; ++s) blocks[to].masks[s] = blocks[from].masks[s];
+}
 
 /// Writes the blocks that have something covered, row by row; returns how many.
 using CoverTileFn = uint32_t (*)(const TileEdges& edges, BlockCoverage* blocks);

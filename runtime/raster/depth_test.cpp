@@ -2,8 +2,6 @@
 
 #include <cstring>
 
-#include "runtime/raster/sample_positions.h"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "runtime/raster/depth_test.cpp"
 #include "base/simd_targets.h"
@@ -98,7 +96,6 @@ uint32_t testBlocks(const DepthTestInput& in, BlockCoverage* blocks, uint32_t co
     const hn::DFromV<Value> dv;
     constexpr uint32_t kLanes = hn::MaxLanes(F8());
     const TrianglePlanes& planes = *in.planes;
-    const SamplePosition* positions = samplePositions(in.samples);
     // A compare operation as three masks: what it lets through when less, equal, greater.
     const auto enable = [&](uint32_t bit) HWY_ATTR {
         const Value zero = hn::Zero(dv);
@@ -115,8 +112,8 @@ uint32_t testBlocks(const DepthTestInput& in, BlockCoverage* blocks, uint32_t co
             const uint64_t covered = block.masks[s];
             uint64_t passed = 0;
             if (covered == 0) continue;
-            const VF ox = hn::Set(f, positions[s].x() - planes.fractionX);
-            const VF oy = hn::Set(f, positions[s].y() - planes.fractionY);
+            const VF ox = hn::Set(f, in.positions[s].x() - planes.fractionX);
+            const VF oy = hn::Set(f, in.positions[s].y() - planes.fractionY);
             const int32_t firstRow = static_cast<int32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(covered)) >> 3;
             const int32_t lastRow = static_cast<int32_t>(63 - hwy::Num0BitsAboveMS1Bit_Nonzero64(covered)) >> 3;
             for (int32_t row = firstRow; row <= lastRow; ++row) {
@@ -141,7 +138,7 @@ uint32_t testBlocks(const DepthTestInput& in, BlockCoverage* blocks, uint32_t co
             block.masks[s] = passed;
             any |= passed;
         }
-        if (any != 0) blocks[kept++] = block;
+        if (any != 0) moveBlock(blocks, b, kept++, in.samples);
     }
     return kept;
 }

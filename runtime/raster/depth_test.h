@@ -15,6 +15,7 @@ struct DepthTestInput {
     const TrianglePlanes* planes;
     int32_t tileX, tileY;
     uint32_t samples;
+    const SamplePosition* positions;
 };
 
 /// Tests the samples of the blocks and writes the depth of those that pass. Clears the bits of those that

@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "runtime/raster/fragment_stage.h"
-#include "runtime/raster/sample_positions.h"
 
 namespace vernier {
 
@@ -65,12 +64,11 @@ void FragmentStage::fillInputs(const FragmentBatch& batch) {
 /// Where centroid inputs are evaluated: the centre when the pixel is fully covered, else its first covered
 /// sample.
 void FragmentStage::centroidOffsets(const FragmentBatch& batch) {
-    const SamplePosition* positions = samplePositions(samples_);
     const uint32_t full = (1u << samples_) - 1;
     for (uint32_t lane = 0; lane < batch.count; ++lane) {
         const uint32_t coverage = batch.coverage[lane];
         const bool centre = coverage == full || coverage == 0;
-        const SamplePosition position = centre ? SamplePosition{8, 8} : positions[std::countr_zero(coverage)];
+        const SamplePosition position = centre ? SamplePosition{8, 8} : positions_[std::countr_zero(coverage)];
         centroidX_[lane] = position.x();
         centroidY_[lane] = position.y();
     }
@@ -156,7 +154,6 @@ void FragmentStage::interpolateAt(void* self, uint32_t slot, uint32_t where, uin
     std::fill_n(result, lanes, 0.0f);
     if (found == varyings.end()) return;
     const auto k = static_cast<size_t>(found - varyings.begin());
-    const SamplePosition* positions = samplePositions(stage.samples_);
     const uint32_t full = (1u << stage.samples_) - 1;
     for (uint32_t s = 0; s < batch.segmentCount; ++s) {
         const FragmentSegment& part = batch.segments[s];
@@ -169,8 +166,8 @@ void FragmentStage::interpolateAt(void* self, uint32_t slot, uint32_t where, uin
             SamplePosition position{8, 8};
             float ox = 0, oy = 0;
             if (where == 0 && batch.coverage[n] != full && batch.coverage[n] != 0)
-                position = positions[std::countr_zero(batch.coverage[n])];
-            if (where == 1) position = positions[std::min(std::bit_cast<uint32_t>(a[n]), stage.samples_ - 1)];
+                position = stage.positions_[std::countr_zero(batch.coverage[n])];
+            if (where == 1) position = stage.positions_[std::min(std::bit_cast<uint32_t>(a[n]), stage.samples_ - 1)];
             if (where == 2) {
                 ox = a[n];
                 oy = b[n];

@@ -4,8 +4,6 @@
 #include <bit>
 #include <cstring>
 
-#include "runtime/raster/sample_positions.h"
-
 namespace vernier {
 
 namespace {
@@ -62,6 +60,7 @@ void FragmentStage::bind(const PreparedDraw& draw, uint64_t token) {
     plan_ = draw.plan;
     token_ = token;
     samples_ = plan_->samples;
+    positions_ = draw.positions;
     const Isa isa = draw.call.pipeline->isa();
     interpolate_ = interpolateFunction(isa);
     placeLanes_ = placeLanesFunction(isa);
@@ -188,7 +187,7 @@ void FragmentStage::addPixels(const BlockCoverage& block, uint64_t any) {
 }
 
 void FragmentStage::addSamples(const BlockCoverage& block, uint32_t sample) {
-    const SamplePosition position = samplePositions(samples_)[sample];
+    const SamplePosition position = positions_[sample];
     for (uint64_t mask = block.masks[sample]; mask != 0; mask &= mask - 1) {
         reserve(1);
         const int bit = std::countr_zero(mask);
@@ -205,7 +204,7 @@ void FragmentStage::addQuads(const BlockCoverage& block, uint64_t any, uint32_t 
     constexpr uint64_t kQuadOrigins = 0x0055005500550055;
     uint64_t quads = any | any >> 1;
     quads = (quads | quads >> 8) & kQuadOrigins;
-    const SamplePosition position = samplePositions(samples_)[sample];
+    const SamplePosition position = positions_[sample];
     const uint32_t wanted = ((1u << samples) - 1) << sample;
     for (; quads != 0; quads &= quads - 1) {
         reserve(4);
@@ -289,7 +288,6 @@ void FragmentStage::reduceCoverage(FragmentBatch& batch) {
 
 void FragmentStage::testLate(FragmentBatch& batch) {
     const float* fragDepth = plan_->fragDepthSlot != kNoSlot ? context_->output(plan_->fragDepthSlot) : nullptr;
-    const SamplePosition* positions = samplePositions(samples_);
     for (uint32_t s = 0; s < batch.segmentCount; ++s) {
         const FragmentSegment& part = batch.segments[s];
         const TrianglePlanes& planes = *part.planes;
@@ -301,7 +299,7 @@ void FragmentStage::testLate(FragmentBatch& batch) {
                 const float z =
                     fragDepth != nullptr
                         ? (fragDepth[lane] > planes.zLow ? std::min(fragDepth[lane], planes.zHigh) : planes.zLow)
-                        : depthAt(planes, batch.x[lane], batch.y[lane], positions[sample].x(), positions[sample].y());
+                        : depthAt(planes, batch.x[lane], batch.y[lane], positions_[sample].x(), positions_[sample].y());
                 std::byte* texel = depthState_.target.texel(batch.x[lane], batch.y[lane], sample);
                 ++statistics_.depthReads;
                 if (testSample(depthState_, texel, z, planes.primitive->front)) passed |= 1u << sample;

@@ -69,6 +69,7 @@ class FragmentStage {
     BatchContext* context_ = nullptr;
     uint32_t capacity_ = 0;
     uint32_t samples_ = 1;
+    const SamplePosition* positions_ = nullptr;
     // Inputs of the program: those taken at the pixel (or sample), at the centroid, and from the provoking vertex.
     std::vector<VaryingTarget> centreTargets_, centroidTargets_, flatTargets_;
     InterpolateFn interpolate_ = nullptr;

@@ -6,15 +6,13 @@
 #include "runtime/raster/attachment_ops.h"
 #include "runtime/raster/bits.h"
 #include "runtime/raster/depth_test.h"
-#include "runtime/raster/sample_positions.h"
 
 namespace vernier {
 namespace {
 
 /// Early tests one sample at a time, where stencil or depth bounds take part.
 uint32_t testSamples(const DepthStencilState& state, const TrianglePlanes& planes, int32_t tileX, int32_t tileY,
-                     uint32_t samples, BlockCoverage* blocks, uint32_t count) {
-    const SamplePosition* positions = samplePositions(samples);
+                     uint32_t samples, const SamplePosition* positions, BlockCoverage* blocks, uint32_t count) {
     uint32_t kept = 0;
     for (uint32_t b = 0; b < count; ++b) {
         BlockCoverage& block = blocks[b];
@@ -31,7 +29,7 @@ uint32_t testSamples(const DepthStencilState& state, const TrianglePlanes& plane
             block.masks[s] = passed;
             any |= passed;
         }
-        if (any != 0) blocks[kept++] = block;
+        if (any != 0) moveBlock(blocks, b, kept++, samples);
     }
     return kept;
 }
@@ -45,7 +43,28 @@ uint32_t maskSamples(uint32_t mask, uint32_t samples, BlockCoverage* blocks, uin
             if ((mask >> s & 1) == 0) blocks[b].masks[s] = 0;
             any |= blocks[b].masks[s];
         }
-        if (any != 0) blocks[kept++] = blocks[b];
+        if (any != 0) moveBlock(blocks, b, kept++, samples);
+    }
+    return kept;
+}
+
+/// Keeps of each sample the pixels inside its rectangle; drops blocks that have nothing left.
+uint32_t cutSamples(const std::vector<PixelRect>& areas, int32_t tileX, int32_t tileY, BlockCoverage* blocks,
+                    uint32_t count) {
+    const auto samples = static_cast<uint32_t>(areas.size());
+    uint32_t kept = 0;
+    for (uint32_t b = 0; b < count; ++b) {
+        uint64_t any = 0;
+        for (uint32_t s = 0; s < samples; ++s) {
+            const PixelRect& area = areas[s];
+            const int32_t x = tileX + blocks[b].x, y = tileY + blocks[b].y;
+            uint64_t inside = 0;
+            for (int32_t row = std::max(area.y0 - y, 0); row < std::min(area.y1 - y, kBlockSize); ++row)
+                for (int32_t column = std::max(area.x0 - x, 0); column < std::min(area.x1 - x, kBlockSize); ++column)
+                    inside |= uint64_t{1} << (row * kBlockSize + column);
+            any |= blocks[b].masks[s] &= inside;
+        }
+        if (any != 0) moveBlock(blocks, b, kept++, samples);
     }
     return kept;
 }
@@ -84,15 +103,15 @@ uint32_t TileRenderer::testEarly(const PreparedDraw& draw, const TrianglePlanes&
     // Stencil operations happen for hidden samples, too.
     const bool coarse = plan.depth.test && !plan.depth.stencil;
     if (coarse) {
-        const uint32_t left = coarse_.reject(plan.depth, planes, tileX_, tileY_, blocks_.data(), count);
+        const uint32_t left = coarse_.reject(plan.depth, planes, tileX_, tileY_, plan.samples, blocks_.data(), count);
         statistics.coarseDepthRejects += count - left;
         count = left;
     }
     statistics.depthReads += countSamples(blocks_.data(), count, plan.samples);
     if (plan.depth.stencil || plan.depth.bounds) {
-        count = testSamples(state, planes, tileX_, tileY_, plan.samples, blocks_.data(), count);
+        count = testSamples(state, planes, tileX_, tileY_, plan.samples, draw.positions, blocks_.data(), count);
     } else {
-        const DepthTestInput input{&plan.depth, state.target, &planes, tileX_, tileY_, plan.samples};
+        const DepthTestInput input{&plan.depth, state.target, &planes, tileX_, tileY_, plan.samples, draw.positions};
         count = depthTestFunction(draw.call.pipeline->isa())(input, blocks_.data(), count);
     }
     if (plan.depth.write) coarse_.update(plan.depth, planes, tileX_, tileY_, plan.samples, blocks_.data(), count);
@@ -105,12 +124,13 @@ void TileRenderer::draw(const Primitive& primitive, const Chunk& chunk, const Pr
     if (coversTile) {
         count = coverWholeTile(plan.samples, blocks_.data());
     } else {
-        const TileEdges edges = tileEdges(primitive, tileX_, tileY_, draw.subPixelBits, plan.samples);
+        const TileEdges edges = tileEdges(primitive, tileX_, tileY_, draw.subPixelBits, plan.samples, draw.positions);
         count = coverTileFunction(draw.call.pipeline->isa())(edges, blocks_.data());
     }
     const uint32_t allSamples = (1u << plan.samples) - 1;
     if ((plan.sampleMask & allSamples) != allSamples)
         count = maskSamples(plan.sampleMask, plan.samples, blocks_.data(), count);
+    if (!draw.sampleAreas.empty()) count = cutSamples(draw.sampleAreas, tileX_, tileY_, blocks_.data(), count);
     if (count == 0) return;
 
     TrianglePlanes& planes = fragments_.startPrimitive();

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runtime/raster/sample_positions.h"
-
 namespace vernier {
 namespace {
 
@@ -20,7 +18,8 @@ constexpr double kThin = 16;
 
 }  // namespace
 
-TileEdges tileEdges(const Primitive& p, int32_t tileX, int32_t tileY, uint32_t subPixelBits, uint32_t samples) {
+TileEdges tileEdges(const Primitive& p, int32_t tileX, int32_t tileY, uint32_t subPixelBits, uint32_t samples,
+                    const SamplePosition* positions) {
     TileEdges edges;
     edges.samples = samples;
     edges.smallEdges = p.smallEdges;
@@ -28,7 +27,6 @@ TileEdges tileEdges(const Primitive& p, int32_t tileX, int32_t tileY, uint32_t s
     edges.y0 = std::max(p.bounds[1] - tileY, 0);
     edges.x1 = std::min(p.bounds[2] - tileX, kTileSize - 1);
     edges.y1 = std::min(p.bounds[3] - tileY, kTileSize - 1);
-    const SamplePosition* positions = samplePositions(samples);
     const int64_t originX = int64_t{tileX} << subPixelBits, originY = int64_t{tileY} << subPixelBits;
     const uint32_t sixteenth = subPixelBits - 4;
     for (int e = 0; e < 3; ++e) {

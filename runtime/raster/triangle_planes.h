@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "runtime/geometry/chunk.h"
+#include "runtime/plan/sample_positions.h"
 
 namespace vernier {
 
@@ -21,7 +22,8 @@ struct TileEdges {
     bool smallEdges;  // a and b below 2^kSmallEdgeBits
 };
 
-TileEdges tileEdges(const Primitive& primitive, int32_t tileX, int32_t tileY, uint32_t subPixelBits, uint32_t samples);
+TileEdges tileEdges(const Primitive& primitive, int32_t tileX, int32_t tileY, uint32_t subPixelBits, uint32_t samples,
+                    const SamplePosition* positions);
 
 /// Barycentric coordinates and depth as functions of the position. All of them are taken relative to the
 /// primitive's own first vertex (its anchor), so that the error does not grow with the distance from the

@@ -41,8 +41,9 @@ Status checkInfo(const ImageInfo& info) {
     const uint32_t mips = fullMipCount(info.extent);
     if (info.mipLevels == 0 || info.mipLevels > mips)
         return wrong("the number of mip levels", info.mipLevels, "but must be 1 to " + std::to_string(mips));
-    if (info.samples != 1 && info.samples != kMaxSamples)
-        return wrong("the sample count", info.samples, "but must be 1 or " + std::to_string(kMaxSamples));
+    if (!isSampleCount(info.samples))
+        return wrong("the sample count", info.samples,
+                     "but must be a power of two up to " + std::to_string(kMaxSamples));
     if (info.samples > 1 && (info.mipLevels > 1 || info.type != VK_IMAGE_TYPE_2D))
         return wrong("the sample count", info.samples, "but only 2D images of one mip level can be multisampled");
     return {};

@@ -5,8 +5,8 @@
 #include <random>
 #include <set>
 
+#include "runtime/plan/sample_positions.h"
 #include "runtime/raster/coverage.h"
-#include "runtime/raster/sample_positions.h"
 
 namespace vernier {
 namespace {
@@ -55,7 +55,7 @@ Primitive primitiveOf(Point a, Point b, Point c, int32_t tileX, int32_t tileY) {
 void expectExact(Isa isa, Point a, Point b, Point c, int32_t tileX, int32_t tileY, uint32_t bits, uint32_t samples) {
     const Primitive primitive = primitiveOf(a, b, c, tileX, tileY);
     BlockCoverage blocks[kBlocksPerTile];
-    const TileEdges edges = tileEdges(primitive, tileX, tileY, bits, samples);
+    const TileEdges edges = tileEdges(primitive, tileX, tileY, bits, samples, samplePositions(samples));
     const uint32_t count = coverTileFunction(isa)(edges, blocks);
     std::set<std::array<int32_t, 3>> covered;
     for (uint32_t n = 0; n < count; ++n)
@@ -127,7 +127,8 @@ TEST_P(CoverageTest, SliverWhoseFloatAreaIsZero) {
     for (int32_t tileY = 0; tileY < 6000; tileY += kTileSize) {
         for (int32_t tileX = 3712; tileX < 7296; tileX += kTileSize) {
             BlockCoverage blocks[kBlocksPerTile];
-            const TileEdges edges = tileEdges(primitiveOf(v[0], v[1], v[2], tileX, tileY), tileX, tileY, 8, 1);
+            const TileEdges edges =
+                tileEdges(primitiveOf(v[0], v[1], v[2], tileX, tileY), tileX, tileY, 8, 1, samplePositions(1));
             const uint32_t count = coverTileFunction(GetParam())(edges, blocks);
             for (uint32_t n = 0; n < count; ++n)
                 total += static_cast<uint32_t>(__builtin_popcountll(blocks[n].masks[0]));

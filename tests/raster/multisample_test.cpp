@@ -2,7 +2,7 @@
 #include <cmath>
 #include <random>
 
-#include "runtime/raster/sample_positions.h"
+#include "runtime/plan/sample_positions.h"
 #include "tests/raster/harness.h"
 
 namespace vernier::raster_test {
@@ -43,7 +43,7 @@ class Multisample : public testing::Test {
 const std::vector<Vertex> kWhole{at(-5, -5, kSize, kSize), at(200, -5, kSize, kSize), at(-5, 200, kSize, kSize)};
 
 TEST_F(Multisample, PartitionPerSample) {
-    for (const uint32_t samples : {2u, 4u}) {
+    for (const uint32_t samples : {2u, 4u, 8u, 16u}) {
         // A fan whose hub and edges go through standard sample positions.
         std::vector<Vertex> v;
         const double cx = 16 + 6.0 / 16, cy = 16 + 2.0 / 16;
@@ -76,19 +76,19 @@ TEST_F(Multisample, PartitionPerSample) {
 }
 
 TEST_F(Multisample, SamplesEqualSupersampling) {
-    // Sample s of a pixel is the centre of a pixel in an image 16 times as large, up to half a sixteenth.
+    // Sample s of a pixel is the centre of a pixel in an image 16 times as large that is moved by half of its pixels.
     std::mt19937 random(16);
-    constexpr uint32_t kScale = 8;
-    for (int n = 0; n < 10; ++n) {
+    constexpr uint32_t kScale = 16;
+    for (uint32_t n = 0; n < 12; ++n) {
+        const uint32_t samples = 2u << n % 4;
         std::vector<Vertex> v, big;
         for (int k = 0; k < 3; ++k) {
             const double x = static_cast<double>(random() % (kSize * 16)) / 16,
                          y = static_cast<double>(random() % (kSize * 16)) / 16;
             v.push_back(at(x, y, kSize, kSize));
-            // Moved so that sample positions in sixteenths fall on centres: by 1/16 of a pixel.
-            big.push_back(at((x + 1.0 / 16) * kScale, (y + 1.0 / 16) * kScale, kSize * kScale, kSize * kScale));
+            big.push_back(at(x * kScale + 0.5, y * kScale + 0.5, kSize * kScale, kSize * kScale));
         }
-        const Result result = draw(VK_FORMAT_R32_SFLOAT, 4, v);
+        const Result result = draw(VK_FORMAT_R32_SFLOAT, samples, v);
         PipelineOptions options;
         options.fragment = "one_frag";
         options.state = plainState(VK_FORMAT_R32_SFLOAT);
@@ -97,12 +97,67 @@ TEST_F(Multisample, SamplesEqualSupersampling) {
         pass.begin();
         pass.draw(makePipeline(options), dynamicFor(kSize * kScale, kSize * kScale), big);
         pass.end();
-        for (uint32_t s = 0; s < 4; ++s) {
-            const SamplePosition p = kSamplePositions4[s];
+        for (uint32_t s = 0; s < samples; ++s) {
+            const SamplePosition p = samplePositions(samples)[s];
             for (uint32_t y = 0; y < kSize; ++y)
                 for (uint32_t x = 0; x < kSize; ++x)
-                    ASSERT_EQ(result.color->red(x, y, s), surface.red(x * kScale + p.x16 / 2u, y * kScale + p.y16 / 2u))
-                        << x << "," << y << " sample " << s;
+                    ASSERT_EQ(result.color->red(x, y, s), surface.red(x * kScale + p.x16, y * kScale + p.y16))
+                        << x << "," << y << " sample " << s << " of " << samples;
+        }
+    }
+}
+
+TEST_F(Multisample, FractionalViewportsCutSamples) {
+    for (const uint32_t samples : {1u, 4u, 16u}) {
+        PipelineOptions options;
+        options.fragment = "one_frag";
+        options.state = plainState(VK_FORMAT_R32_SFLOAT);
+        options.state.samples = samples;
+        Surface surface(VK_FORMAT_R32_SFLOAT, kSize, kSize, samples);
+        DynamicState dynamic = dynamicFor(kSize, kSize);
+        dynamic.viewports[0] = {3.3f, 30.2f, 10.4f, -20.7f, 0, 1};
+        Pass pass(pool_, {surface.cleared({})}, {}, kSize, kSize, samples);
+        pass.begin();
+        pass.draw(makePipeline(options), dynamic, kWhole);
+        pass.end();
+        const auto inside = [](double place, float low, float size) {
+            return place >= double{low} && place < double{low} + double{size};
+        };
+        for (uint32_t s = 0; s < samples; ++s) {
+            const SamplePosition p = samplePositions(samples)[s];
+            for (uint32_t y = 0; y < kSize; ++y)
+                for (uint32_t x = 0; x < kSize; ++x)
+                    ASSERT_EQ(surface.red(x, y, s),
+                              inside(x + p.x(), 3.3f, 10.4f) && inside(y + p.y(), 30.2f - 20.7f, 20.7f) ? 1 : 0)
+                        << x << "," << y << " sample " << s << " of " << samples;
+        }
+    }
+}
+
+TEST_F(Multisample, ProgrammedPositions) {
+    std::mt19937 random(5);
+    PipelineOptions options;
+    options.fragment = "one_frag";
+    options.state = plainState(VK_FORMAT_R32_SFLOAT);
+    options.state.sampleLocations = true;
+    DynamicState dynamic = dynamicFor(kSize, kSize);
+    for (const uint32_t samples : {1u, 2u, 8u}) {
+        options.state.samples = samples;
+        for (auto& place : dynamic.sampleLocations)
+            place = {static_cast<uint8_t>(random() % 16), static_cast<uint8_t>(random() % 16)};
+        Surface surface(VK_FORMAT_R32_SFLOAT, kSize, kSize, samples);
+        Pass pass(pool_, {surface.cleared({})}, {}, kSize, kSize, samples);
+        pass.begin();
+        // The half plane x + y < 31.
+        pass.draw(makePipeline(options), dynamic,
+                  {at(-50, -50, kSize, kSize), at(81, -50, kSize, kSize), at(-50, 81, kSize, kSize)});
+        pass.end();
+        for (uint32_t s = 0; s < samples; ++s) {
+            const SamplePosition p = dynamic.sampleLocations[s];
+            for (uint32_t y = 0; y < kSize; ++y)
+                for (uint32_t x = 0; x < kSize; ++x)
+                    ASSERT_EQ(surface.red(x, y, s), x + y + p.x() + p.y() < 31 ? 1 : 0)
+                        << x << "," << y << " sample " << s << " of " << samples;
         }
     }
 }

@@ -212,7 +212,7 @@ TEST_F(Topology, RefusedStates) {
     };
     refused([](GraphicsState& s) { s.topology = VK_PRIMITIVE_TOPOLOGY_PATCH_LIST; }, ErrorCode::unsupported,
             "topology");
-    refused([](GraphicsState& s) { s.samples = 16; }, ErrorCode::unsupported, "16 samples");
+    refused([](GraphicsState& s) { s.samples = 32; }, ErrorCode::unsupported, "32 samples");
     refused([](GraphicsState& s) { s.colorFormats[0] = VK_FORMAT_D16_UNORM; }, ErrorCode::unsupported, "D16_UNORM");
     refused([](GraphicsState& s) { s.vertexAttributes[0].binding = 3; }, ErrorCode::invalidArgument, "binding 3");
     refused([](GraphicsState& s) { s.vertexAttributes.pop_back(); }, ErrorCode::invalidArgument, "location 1");

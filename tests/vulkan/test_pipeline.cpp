@@ -8,8 +8,9 @@ uint32_t pixelAt(const std::vector<uint8_t>& texels, const TestImage& image, uin
     return value;
 }
 
-DrawTest::Pass DrawTest::makePass(const TestImage& color, const TestImage* depth, const TestImage* resolve) {
-    const VkSampleCountFlagBits samples = resolve != nullptr ? VK_SAMPLE_COUNT_4_BIT : VK_SAMPLE_COUNT_1_BIT;
+DrawTest::Pass DrawTest::makePass(const TestImage& color, const TestImage* depth, const TestImage* resolve,
+                                  VkSampleCountFlagBits samples) {
+    if (resolve == nullptr) samples = VK_SAMPLE_COUNT_1_BIT;
     std::vector<VkAttachmentDescription> attachments;
     std::vector<VkImageView> views;
     const auto add = [&](const TestImage& image, VkSampleCountFlagBits count, VkImageLayout final) {
@@ -108,6 +109,7 @@ VkPipeline DrawTest::makePipeline(VkRenderPass pass, const PipelineDesc& desc, V
     auto multisample =
         make<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
     multisample.rasterizationSamples = desc.samples;
+    multisample.pNext = desc.multisampleChain;
     auto depth =
         make<VkPipelineDepthStencilStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
     depth.depthTestEnable = depth.depthWriteEnable = desc.depthTest ? VK_TRUE : VK_FALSE;

@@ -16,14 +16,17 @@ class DrawTest : public VulkanTest {
         VkExtent2D extent{};
         std::vector<VkClearValue> clears;
     };
-    /// One subpass: clears the colour, and the depth to 1 if there is one, and stores both.
-    Pass makePass(const TestImage& color, const TestImage* depth = nullptr, const TestImage* resolve = nullptr);
+    /// One subpass: clears the colour, and the depth to 1 if there is one, and stores both. `samples` counts when there
+    /// is something to resolve to.
+    Pass makePass(const TestImage& color, const TestImage* depth = nullptr, const TestImage* resolve = nullptr,
+                  VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_4_BIT);
 
     struct PipelineDesc {
         VkShaderModule vertex = VK_NULL_HANDLE, fragment = VK_NULL_HANDLE;
         VkPipelineLayout layout = VK_NULL_HANDLE;  // VK_NULL_HANDLE: an empty one
         uint32_t subpass = 0;
         VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
+        const void* multisampleChain = nullptr;  // of VkPipelineMultisampleStateCreateInfo
         bool depthTest = false;
         uint32_t colorCount = 1;
         const VkSpecializationInfo* specialization = nullptr;  // of the fragment stage

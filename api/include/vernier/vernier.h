@@ -175,7 +175,7 @@ typedef struct VnImageDesc {
     uint32_t height;
     uint32_t mipLevels; /* 0: 1; VN_ALL_MIPS: down to 1x1 */
     uint32_t layers;    /* of an array; 0: 1 */
-    uint32_t samples;   /* 1 or 4; 0: 1. More than 1: one mip level, no initial contents */
+    uint32_t samples;   /* 1, 2, 4, 8 or 16; 0: 1. More than 1: one mip level, no initial contents */
     int cube;           /* nonzero: layers come in sixes and a whole view is a cube (array) */
     uint32_t _end;
 } VnImageDesc;

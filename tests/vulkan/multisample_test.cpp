@@ -1,0 +1,123 @@
+// Every sample count at the standard and at programmed positions, resolved.
+#include <cmath>
+
+#include "runtime/plan/sample_positions.h"
+#include "tests/vulkan/test_pipeline.h"
+
+namespace vernier::test {
+namespace {
+
+constexpr VkExtent2D kExtent{16, 16};
+
+class SampleCountTest : public DrawTest {
+  protected:
+    std::vector<const char*> moreExtensions() override { return {VK_EXT_SAMPLE_LOCATIONS_EXTENSION_NAME}; }
+
+    struct Locations {
+        std::vector<VkSampleLocationEXT> places;  // empty: the standard ones
+        bool dynamic;
+    };
+    VkSampleLocationsInfoEXT infoOf(const Locations& locations) const {
+        auto info = make<VkSampleLocationsInfoEXT>(VK_STRUCTURE_TYPE_SAMPLE_LOCATIONS_INFO_EXT);
+        info.sampleLocationsPerPixel = static_cast<VkSampleCountFlagBits>(locations.places.size());
+        info.sampleLocationGridSize = {1, 1};
+        info.sampleLocationsCount = static_cast<uint32_t>(locations.places.size());
+        info.pSampleLocations = locations.places.data();
+        return info;
+    }
+
+    /// The red channel of pixel (3, 3) after white was drawn left of x = `edge` (in pixels) and resolved.
+    uint32_t resolvedLeftOf(float edge, uint32_t samples, const Locations& locations) {
+        const auto count = static_cast<VkSampleCountFlagBits>(samples);
+        const TestImage color =
+            makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, count);
+        const TestImage resolved = makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
+        const Pass pass = makePass(color, nullptr, samples > 1 ? &resolved : nullptr, count);
+        auto state = make<VkPipelineSampleLocationsStateCreateInfoEXT>(
+            VK_STRUCTURE_TYPE_PIPELINE_SAMPLE_LOCATIONS_STATE_CREATE_INFO_EXT);
+        const VkSampleLocationsInfoEXT info = infoOf(locations);
+        state.sampleLocationsEnable = VK_TRUE;
+        state.sampleLocationsInfo =
+            locations.dynamic ? infoOf({std::vector<VkSampleLocationEXT>(samples), false}) : info;
+        std::vector<VkSampleLocationEXT> zeros(samples);
+        state.sampleLocationsInfo.pSampleLocations = locations.dynamic ? zeros.data() : info.pSampleLocations;
+        PipelineDesc desc;
+        desc.extent = kExtent;
+        desc.samples = count;
+        if (!locations.places.empty()) desc.multisampleChain = &state;
+        if (locations.dynamic) desc.dynamic = {VK_DYNAMIC_STATE_SAMPLE_LOCATIONS_EXT};
+        desc.layout = makeLayout({}, 4);
+        if (vertex_ == VK_NULL_HANDLE)
+            vertex_ = makeShader(VK_SHADER_STAGE_VERTEX_BIT, R"(#version 450
+layout(push_constant) uniform P { float edge; };
+void main() {
+    vec2 p[6] = vec2[](vec2(-1, -1), vec2(edge, -1), vec2(-1, 1), vec2(-1, 1), vec2(edge, -1), vec2(edge, 1));
+    gl_Position = vec4(p[gl_VertexIndex], 0.5, 1);
+})");
+        if (fragment_ == VK_NULL_HANDLE) fragment_ = constantColor("1");
+        desc.vertex = vertex_;
+        desc.fragment = fragment_;
+        const VkPipeline pipeline = makePipeline(pass.pass, desc);
+        const VkCommandBuffer commands = begin();
+        beginPass(commands, pass);
+        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+        const float clip = edge / static_cast<float>(kExtent.width) * 2 - 1;
+        vkCmdPushConstants(commands, desc.layout, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, 4,
+                           &clip);
+        if (locations.dynamic) {
+            const auto set = reinterpret_cast<PFN_vkCmdSetSampleLocationsEXT>(
+                vkGetDeviceProcAddr(device, "vkCmdSetSampleLocationsEXT"));
+            set(commands, &info);
+        }
+        vkCmdDraw(commands, 6, 1, 0, 0);
+        vkCmdEndRenderPass(commands);
+        submit(commands);
+        return pixelAt(readImage(samples > 1 ? resolved : color, VK_IMAGE_ASPECT_COLOR_BIT, 4), color, 3, 3) & 0xFF;
+    }
+
+    static uint32_t code(uint32_t covered, uint32_t samples) {
+        return static_cast<uint32_t>(std::nearbyint(255.0 * covered / samples));
+    }
+
+  private:
+    VkShaderModule vertex_ = VK_NULL_HANDLE, fragment_ = VK_NULL_HANDLE;
+};
+
+TEST_F(SampleCountTest, standardPositions) {
+    VkPhysicalDeviceProperties properties{};
+    vkGetPhysicalDeviceProperties(physicalDevice, &properties);
+    EXPECT_EQ(properties.limits.framebufferColorSampleCounts, 31u);
+    for (const uint32_t samples : {2u, 4u, 8u, 16u}) {
+        for (uint32_t sixteenth = 0; sixteenth < 16; sixteenth += 3) {
+            uint32_t covered = 0;
+            for (uint32_t s = 0; s < samples; ++s) covered += samplePositions(samples)[s].x16 < sixteenth;
+            EXPECT_EQ(resolvedLeftOf(3 + static_cast<float>(sixteenth) / 16, samples, {{}, false}),
+                      code(covered, samples))
+                << samples << " samples, edge at " << sixteenth;
+        }
+    }
+}
+
+TEST_F(SampleCountTest, programmedPositions) {
+    auto properties = make<VkPhysicalDeviceSampleLocationsPropertiesEXT>(
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SAMPLE_LOCATIONS_PROPERTIES_EXT);
+    auto all = make<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
+    all.pNext = &properties;
+    const auto get = reinterpret_cast<PFN_vkGetPhysicalDeviceProperties2KHR>(
+        vkGetInstanceProcAddr(instance, "vkGetPhysicalDeviceProperties2KHR"));
+    get(physicalDevice, &all);
+    EXPECT_EQ(properties.sampleLocationSampleCounts, 31u);
+    EXPECT_EQ(properties.sampleLocationCoordinateRange[1], 0.9375f);
+    // Three of four samples in the left half.
+    const std::vector<VkSampleLocationEXT> places{{0, 0}, {0.25f, 0.5f}, {0.4375f, 0.9375f}, {0.5f, 0.125f}};
+    for (const bool dynamic : {false, true}) {
+        EXPECT_EQ(resolvedLeftOf(3.5f, 4, {places, dynamic}), code(3, 4)) << dynamic;
+        EXPECT_EQ(resolvedLeftOf(3.125f, 4, {places, dynamic}), code(1, 4)) << dynamic;
+        EXPECT_EQ(resolvedLeftOf(3.0f, 4, {places, dynamic}), 0u) << dynamic;
+    }
+    EXPECT_EQ(resolvedLeftOf(3.25f, 1, {{{0.1875f, 0.5f}}, false}), 255u);
+    EXPECT_EQ(resolvedLeftOf(3.25f, 1, {{{0.25f, 0.5f}}, false}), 0u);
+}
+
+}  // namespace
+}  // namespace vernier::test
