@@ -26,6 +26,9 @@ namespace {
     X(wideLines)                               \
     X(largePoints)                             \
     X(alphaToOne)                              \
+    X(textureCompressionETC2)                  \
+    X(textureCompressionASTC_LDR)              \
+    X(textureCompressionBC)                    \
     X(occlusionQueryPrecise)                   \
     X(pipelineStatisticsQuery)                 \
     X(vertexPipelineStoresAndAtomics)          \

@@ -35,7 +35,8 @@ constexpr VkImageUsageFlags kKnownUsages = [] {
 }();
 
 constexpr VkImageCreateFlags kKnownFlags =
-    VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT | VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT;
+    VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT | VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT |
+    VK_IMAGE_CREATE_BLOCK_TEXEL_VIEW_COMPATIBLE_BIT | VK_IMAGE_CREATE_EXTENDED_USAGE_BIT;
 
 bool flagsFit(VkImageType type, VkImageCreateFlags flags) {
     if ((flags & ~kKnownFlags) != 0) return false;

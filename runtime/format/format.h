@@ -19,6 +19,7 @@
 //   srgb           decoded to the nearest float; encoded to the nearest code of the exact curve; A is plain
 //   unorm sfloat 16      encoded by rounding to nearest even, overflow to infinity; NaN stays NaN (quiet)
 //   ufloat 11, 10  as above, but negative values encode as 0 and finite overflow as the largest finite value
+//   block          compressed formats (block.h) are seen as the texels they decode to, and are never encoded
 //   E5B9G9R9       by the specification's algorithm ("Conversion from RGB to shared exponent")
 //   uint, sint     clamped to the range of the component; u/sscaled likewise, from floats rounded to nearest
 //   even
@@ -30,6 +31,7 @@
 #include <cstdint>
 
 #include "base/simd.h"
+#include "runtime/format/block.h"
 
 namespace vernier {
 
@@ -58,18 +60,25 @@ struct TexelLayout {
 
 struct FormatInfo {
     VkFormat format;
-    const char* name;  // without VK_FORMAT_
-    uint8_t bytesPerTexel;
+    const char* name;            // without VK_FORMAT_
+    uint8_t bytesPerTexel;       // of a block-compressed format: bytes per block
     uint8_t componentCount;      // colour components, or depth + stencil
     bool packed;                 // a *_PACK8/16/32 format
     VkImageAspectFlags aspects;  // COLOR, DEPTH, STENCIL
-    TexelLayout color;           // meaningful when aspects has COLOR
+    TexelLayout color;           // meaningful when aspects has COLOR; of a compressed format: what it decodes to
     TexelLayout depth;           // ... DEPTH
     TexelLayout stencil;         // ... STENCIL
     // As vkGetPhysicalDeviceFormatProperties reports them.
     VkFormatFeatureFlags optimalTilingFeatures;
     VkFormatFeatureFlags linearTilingFeatures;
     VkFormatFeatureFlags bufferFeatures;
+    const BlockCodec* block = nullptr;  // block compression; nullptr: each texel stands for itself
+
+    // Texels of a block, 1 x 1 without compression; and how many blocks cover `texels`.
+    uint32_t blockWidth() const { return block == nullptr ? 1 : block->width; }
+    uint32_t blockHeight() const { return block == nullptr ? 1 : block->height; }
+    uint32_t columns(uint32_t texels) const { return (texels + blockWidth() - 1) / blockWidth(); }
+    uint32_t rows(uint32_t texels) const { return (texels + blockHeight() - 1) / blockHeight(); }
 
     /// `aspect` is one bit of `aspects`.
     const TexelLayout& layout(VkImageAspectFlags aspect) const {
@@ -141,7 +150,7 @@ FormatOps formatOps(VkFormat format, Isa isa);
 
 // --- Copies between images and buffers (vkCmdCopyBufferToImage: "depth/stencil aspects").
 
-/// Bytes per texel in a buffer that receives one aspect: colour as in the image, D16 2, D24 4 (depth in the
+/// Bytes per texel (or block) in a buffer that receives one aspect: colour as in the image, D16 2, D24 4 (depth in the
 /// low 24 bits, the rest zero), D32 4, stencil 1.
 uint32_t bufferTexelBytes(const FormatInfo& info, VkImageAspectFlags aspect);
 void copyTexelsToBuffer(const FormatInfo& info, VkImageAspectFlags aspect, const void* texels, size_t n, void* buffer);

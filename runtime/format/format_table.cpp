@@ -1,5 +1,5 @@
-// The table of formats: the tables of "Required Format Support" in the Vulkan specification without the
-// block-compressed formats, plus what comes for free with the general conversions.
+// The table of formats: the tables of "Required Format Support" in the Vulkan specification, plus what comes for free
+// with the general conversions.
 #include <array>
 
 #include "runtime/format/format.h"
@@ -32,6 +32,10 @@ constexpr Shape kR32{4, false, {{32, 0}}};
 constexpr Shape kRg32{8, false, {{32, 0}, {32, 32}}};
 constexpr Shape kRgb32{12, false, {{32, 0}, {32, 32}, {32, 64}}};
 constexpr Shape kRgba32{16, false, {{32, 0}, {32, 32}, {32, 64}, {32, 96}}};
+// Decoded blocks of formats without A: its place is there, but nothing reads it.
+constexpr Shape kRgbx8{4, false, {{8, 0}, {8, 8}, {8, 16}}};
+constexpr Shape kRgbx16{8, false, {{16, 0}, {16, 16}, {16, 32}}};
+constexpr Shape kRgbx32{16, false, {{32, 0}, {32, 32}, {32, 64}}};
 constexpr Shape kRgba4{2, true, {{4, 12}, {4, 8}, {4, 4}, {4, 0}}};
 constexpr Shape kBgra4{2, true, {{4, 4}, {4, 8}, {4, 12}, {4, 0}}};
 constexpr Shape kR5g6b5{2, true, {{5, 11}, {6, 5}, {5, 0}}};
@@ -101,6 +105,16 @@ constexpr FormatInfo colorFormat(VkFormat format, const char* name, const Shape&
     return info;
 }
 
+constexpr FormatInfo blockFormat(VkFormat format, const char* name, const BlockCodec& codec, const Shape& shape,
+                                 ComponentKind kind) {
+    FormatInfo info = colorFormat(codec.decoded, name, shape, kind, Uses{kReadable | kFiltered, 0});
+    info.format = format;
+    info.bytesPerTexel = codec.bytes;
+    info.linearTilingFeatures = 0;
+    info.block = &codec;
+    return info;
+}
+
 constexpr FormatInfo depthStencilFormat(VkFormat format, const char* name, uint8_t bytes, Component depth,
                                         Component stencil, bool packed) {
     FormatInfo info{};
@@ -140,66 +154,132 @@ constexpr Component kNoPart{};
 #define DEPTH_STENCIL(NAME, BYTES, DEPTH, STENCIL, PACKED) \
     depthStencilFormat(VK_FORMAT_##NAME, #NAME, BYTES, DEPTH, STENCIL, PACKED)
 
-constexpr std::array kFormats{
-    COLOR(R4G4B4A4_UNORM_PACK16, kRgba4, unorm, kColor),
-    COLOR(B4G4R4A4_UNORM_PACK16, kBgra4, unorm, kColor),
-    COLOR(R5G6B5_UNORM_PACK16, kR5g6b5, unorm, kColor),
-    COLOR(B5G6R5_UNORM_PACK16, kB5g6r5, unorm, kColor),
-    COLOR(R5G5B5A1_UNORM_PACK16, kRgb5a1, unorm, kColor),
-    COLOR(B5G5R5A1_UNORM_PACK16, kBgr5a1, unorm, kColor),
-    COLOR(A1R5G5B5_UNORM_PACK16, kA1rgb5, unorm, kColor),
-    NORM(R8, kR8, , kColorExtended, kColorExtended),
-    INT(R8, kR8, , kIntegerExtended),
-    COLOR(R8_SRGB, kR8, srgb, kColor),
-    NORM(R8G8, kRg8, , kColorExtended, kColorExtended),
-    INT(R8G8, kRg8, , kIntegerExtended),
-    COLOR(R8G8_SRGB, kRg8, srgb, kColor),
-    NORM(R8G8B8, kRgb8, , kVertexOnly, kVertexOnly),
-    INT(R8G8B8, kRgb8, , kVertexOnly),
-    NORM(R8G8B8A8, kRgba8, , kColorStorage, kColorStorage),
-    INT(R8G8B8A8, kRgba8, , kIntegerStorage),
-    COLOR(R8G8B8A8_SRGB, kRgba8, srgb, kColor),
-    NORM(B8G8R8A8, kBgra8, , kColorVertex, kColorVertex),
-    INT(B8G8R8A8, kBgra8, , kInteger),
-    COLOR(B8G8R8A8_SRGB, kBgra8, srgb, kColor),
-    NORM(A8B8G8R8, kAbgr8Pack32, _PACK32, kColorTexelBuffer, kColorTexelBuffer),
-    INT(A8B8G8R8, kAbgr8Pack32, _PACK32, kIntegerTexelBuffer),
-    COLOR(A8B8G8R8_SRGB_PACK32, kAbgr8Pack32, srgb, kColor),
-    NORM(A2R10G10B10, kA2rgb10, _PACK32, kColorVertex, kVertexOnly),
-    INT(A2R10G10B10, kA2rgb10, _PACK32, kInteger),
-    NORM(A2B10G10R10, kA2bgr10, _PACK32, kColorExtended, kVertexOnly),
-    INT(A2B10G10R10, kA2bgr10, _PACK32, kIntegerExtended),
-    NORM(R16, kR16, , kColorExtended, kColorExtended),
-    INT(R16, kR16, , kIntegerExtended),
-    COLOR(R16_SFLOAT, kR16, sfloat, kColorExtended),
-    NORM(R16G16, kRg16, , kColorExtended, kColorExtended),
-    INT(R16G16, kRg16, , kIntegerExtended),
-    COLOR(R16G16_SFLOAT, kRg16, sfloat, kColorExtended),
-    NORM(R16G16B16, kRgb16, , kVertexOnly, kVertexOnly),
-    INT(R16G16B16, kRgb16, , kVertexOnly),
-    COLOR(R16G16B16_SFLOAT, kRgb16, sfloat, kVertexOnly),
-    NORM(R16G16B16A16, kRgba16, , kColorExtended, kColorExtended),
-    INT(R16G16B16A16, kRgba16, , kIntegerStorage),
-    COLOR(R16G16B16A16_SFLOAT, kRgba16, sfloat, kColorStorage),
-    INT(R32, kR32, , kIntegerAtomic),
-    COLOR(R32_SFLOAT, kR32, sfloat, kColorStorage),
-    INT(R32G32, kRg32, , kIntegerStorage),
-    COLOR(R32G32_SFLOAT, kRg32, sfloat, kColorStorage),
-    INT(R32G32B32, kRgb32, , kVertexOnly),
-    COLOR(R32G32B32_SFLOAT, kRgb32, sfloat, kVertexOnly),
-    INT(R32G32B32A32, kRgba32, , kIntegerStorage),
-    COLOR(R32G32B32A32_SFLOAT, kRgba32, sfloat, kColorStorage),
-    COLOR(B10G11R11_UFLOAT_PACK32, kB10gr11, ufloat, kColorExtended),
-    COLOR(E5B9G9R9_UFLOAT_PACK32, kE5bgr9, ufloat, kTexture),
-    DEPTH_STENCIL(D16_UNORM, 2, part(16, 0, unorm), kNoPart, false),
-    DEPTH_STENCIL(X8_D24_UNORM_PACK32, 4, part(24, 0, unorm), kNoPart, true),
-    DEPTH_STENCIL(D32_SFLOAT, 4, part(32, 0, sfloat), kNoPart, false),
-    DEPTH_STENCIL(S8_UINT, 1, kNoPart, part(8, 0, uint), false),
-    DEPTH_STENCIL(D24_UNORM_S8_UINT, 4, part(24, 0, unorm), part(8, 24, uint), false),
-    DEPTH_STENCIL(D32_SFLOAT_S8_UINT, 8, part(32, 0, sfloat), part(8, 32, uint), false),
-};
+// What blocks decode to: a format, and the shape and kind of its components that count.
+#define VERNIER_R32F VK_FORMAT_R32_SFLOAT, kR32, sfloat
+#define VERNIER_RG32F VK_FORMAT_R32G32_SFLOAT, kRg32, sfloat
+#define VERNIER_RGBX32F VK_FORMAT_R32G32B32A32_SFLOAT, kRgbx32, sfloat
+#define VERNIER_RGBA32F VK_FORMAT_R32G32B32A32_SFLOAT, kRgba32, sfloat
+#define VERNIER_RGBX16F VK_FORMAT_R16G16B16A16_SFLOAT, kRgbx16, sfloat
+#define VERNIER_RGBA16F VK_FORMAT_R16G16B16A16_SFLOAT, kRgba16, sfloat
+#define VERNIER_RGBX8 VK_FORMAT_R8G8B8A8_UNORM, kRgbx8, unorm
+#define VERNIER_RGBX8S VK_FORMAT_R8G8B8A8_SRGB, kRgbx8, srgb
+#define VERNIER_RGBA8 VK_FORMAT_R8G8B8A8_UNORM, kRgba8, unorm
+#define VERNIER_RGBA8S VK_FORMAT_R8G8B8A8_SRGB, kRgba8, srgb
 
-constexpr size_t kHighestFormat = VK_FORMAT_D32_SFLOAT_S8_UINT;
+// X(name, width, height, bytes, decoded, decoder), in the order of the format numbers.
+#define VERNIER_BLOCK_FORMATS(X)                                           \
+    X(BC1_RGB_UNORM_BLOCK, 4, 4, 8, VERNIER_RGBX32F, decodeBc1Rgb)         \
+    X(BC1_RGB_SRGB_BLOCK, 4, 4, 8, VERNIER_RGBX32F, decodeBc1RgbSrgb)      \
+    X(BC1_RGBA_UNORM_BLOCK, 4, 4, 8, VERNIER_RGBA32F, decodeBc1Rgba)       \
+    X(BC1_RGBA_SRGB_BLOCK, 4, 4, 8, VERNIER_RGBA32F, decodeBc1RgbaSrgb)    \
+    X(BC2_UNORM_BLOCK, 4, 4, 16, VERNIER_RGBA32F, decodeBc2)               \
+    X(BC2_SRGB_BLOCK, 4, 4, 16, VERNIER_RGBA32F, decodeBc2Srgb)            \
+    X(BC3_UNORM_BLOCK, 4, 4, 16, VERNIER_RGBA32F, decodeBc3)               \
+    X(BC3_SRGB_BLOCK, 4, 4, 16, VERNIER_RGBA32F, decodeBc3Srgb)            \
+    X(BC4_UNORM_BLOCK, 4, 4, 8, VERNIER_R32F, decodeBc4Unorm)              \
+    X(BC4_SNORM_BLOCK, 4, 4, 8, VERNIER_R32F, decodeBc4Snorm)              \
+    X(BC5_UNORM_BLOCK, 4, 4, 16, VERNIER_RG32F, decodeBc5Unorm)            \
+    X(BC5_SNORM_BLOCK, 4, 4, 16, VERNIER_RG32F, decodeBc5Snorm)            \
+    X(BC6H_UFLOAT_BLOCK, 4, 4, 16, VERNIER_RGBX16F, decodeBc6Ufloat)       \
+    X(BC6H_SFLOAT_BLOCK, 4, 4, 16, VERNIER_RGBX16F, decodeBc6Sfloat)       \
+    X(BC7_UNORM_BLOCK, 4, 4, 16, VERNIER_RGBA8, decodeBc7)                 \
+    X(BC7_SRGB_BLOCK, 4, 4, 16, VERNIER_RGBA8S, decodeBc7)                 \
+    X(ETC2_R8G8B8_UNORM_BLOCK, 4, 4, 8, VERNIER_RGBX8, decodeEtc2Rgb)      \
+    X(ETC2_R8G8B8_SRGB_BLOCK, 4, 4, 8, VERNIER_RGBX8S, decodeEtc2Rgb)      \
+    X(ETC2_R8G8B8A1_UNORM_BLOCK, 4, 4, 8, VERNIER_RGBA8, decodeEtc2RgbA1)  \
+    X(ETC2_R8G8B8A1_SRGB_BLOCK, 4, 4, 8, VERNIER_RGBA8S, decodeEtc2RgbA1)  \
+    X(ETC2_R8G8B8A8_UNORM_BLOCK, 4, 4, 16, VERNIER_RGBA8, decodeEtc2Rgba)  \
+    X(ETC2_R8G8B8A8_SRGB_BLOCK, 4, 4, 16, VERNIER_RGBA8S, decodeEtc2Rgba)  \
+    X(EAC_R11_UNORM_BLOCK, 4, 4, 8, VERNIER_R32F, decodeEacR11Unorm)       \
+    X(EAC_R11_SNORM_BLOCK, 4, 4, 8, VERNIER_R32F, decodeEacR11Snorm)       \
+    X(EAC_R11G11_UNORM_BLOCK, 4, 4, 16, VERNIER_RG32F, decodeEacRg11Unorm) \
+    X(EAC_R11G11_SNORM_BLOCK, 4, 4, 16, VERNIER_RG32F, decodeEacRg11Snorm) \
+    VERNIER_ASTC_FORMAT(X, 4, 4)                                           \
+    VERNIER_ASTC_FORMAT(X, 5, 4)                                           \
+    VERNIER_ASTC_FORMAT(X, 5, 5)                                           \
+    VERNIER_ASTC_FORMAT(X, 6, 5)                                           \
+    VERNIER_ASTC_FORMAT(X, 6, 6)                                           \
+    VERNIER_ASTC_FORMAT(X, 8, 5)                                           \
+    VERNIER_ASTC_FORMAT(X, 8, 6)                                           \
+    VERNIER_ASTC_FORMAT(X, 8, 8)                                           \
+    VERNIER_ASTC_FORMAT(X, 10, 5)                                          \
+    VERNIER_ASTC_FORMAT(X, 10, 6)                                          \
+    VERNIER_ASTC_FORMAT(X, 10, 8)                                          \
+    VERNIER_ASTC_FORMAT(X, 10, 10)                                         \
+    VERNIER_ASTC_FORMAT(X, 12, 10)                                         \
+    VERNIER_ASTC_FORMAT(X, 12, 12)
+#define VERNIER_ASTC_FORMAT(X, W, H)                                                      \
+    X(ASTC_##W##x##H##_UNORM_BLOCK, W, H, 16, VERNIER_RGBA16F, (decodeAstc<W, H, false>)) \
+    X(ASTC_##W##x##H##_SRGB_BLOCK, W, H, 16, VERNIER_RGBA32F, (decodeAstc<W, H, true>))
+
+#define VERNIER_CODEC_OF(NAME, W, H, BYTES, DECODED, SHAPE, KIND, DECODER) \
+    constexpr BlockCodec k##NAME{W, H, BYTES, DECODED, DECODER};
+#define VERNIER_BLOCK_CODEC(...) VERNIER_CODEC_OF(__VA_ARGS__)
+VERNIER_BLOCK_FORMATS(VERNIER_BLOCK_CODEC)
+#define VERNIER_ROW_OF(NAME, W, H, BYTES, DECODED, SHAPE, KIND, DECODER) \
+    blockFormat(VK_FORMAT_##NAME, #NAME, k##NAME, SHAPE, KIND),
+#define VERNIER_BLOCK_ROW(...) VERNIER_ROW_OF(__VA_ARGS__)
+
+constexpr std::array kFormats{COLOR(R4G4B4A4_UNORM_PACK16, kRgba4, unorm, kColor),
+                              COLOR(B4G4R4A4_UNORM_PACK16, kBgra4, unorm, kColor),
+                              COLOR(R5G6B5_UNORM_PACK16, kR5g6b5, unorm, kColor),
+                              COLOR(B5G6R5_UNORM_PACK16, kB5g6r5, unorm, kColor),
+                              COLOR(R5G5B5A1_UNORM_PACK16, kRgb5a1, unorm, kColor),
+                              COLOR(B5G5R5A1_UNORM_PACK16, kBgr5a1, unorm, kColor),
+                              COLOR(A1R5G5B5_UNORM_PACK16, kA1rgb5, unorm, kColor),
+                              NORM(R8, kR8, , kColorExtended, kColorExtended),
+                              INT(R8, kR8, , kIntegerExtended),
+                              COLOR(R8_SRGB, kR8, srgb, kColor),
+                              NORM(R8G8, kRg8, , kColorExtended, kColorExtended),
+                              INT(R8G8, kRg8, , kIntegerExtended),
+                              COLOR(R8G8_SRGB, kRg8, srgb, kColor),
+                              NORM(R8G8B8, kRgb8, , kVertexOnly, kVertexOnly),
+                              INT(R8G8B8, kRgb8, , kVertexOnly),
+                              NORM(R8G8B8A8, kRgba8, , kColorStorage, kColorStorage),
+                              INT(R8G8B8A8, kRgba8, , kIntegerStorage),
+                              COLOR(R8G8B8A8_SRGB, kRgba8, srgb, kColor),
+                              NORM(B8G8R8A8, kBgra8, , kColorVertex, kColorVertex),
+                              INT(B8G8R8A8, kBgra8, , kInteger),
+                              COLOR(B8G8R8A8_SRGB, kBgra8, srgb, kColor),
+                              NORM(A8B8G8R8, kAbgr8Pack32, _PACK32, kColorTexelBuffer, kColorTexelBuffer),
+                              INT(A8B8G8R8, kAbgr8Pack32, _PACK32, kIntegerTexelBuffer),
+                              COLOR(A8B8G8R8_SRGB_PACK32, kAbgr8Pack32, srgb, kColor),
+                              NORM(A2R10G10B10, kA2rgb10, _PACK32, kColorVertex, kVertexOnly),
+                              INT(A2R10G10B10, kA2rgb10, _PACK32, kInteger),
+                              NORM(A2B10G10R10, kA2bgr10, _PACK32, kColorExtended, kVertexOnly),
+                              INT(A2B10G10R10, kA2bgr10, _PACK32, kIntegerExtended),
+                              NORM(R16, kR16, , kColorExtended, kColorExtended),
+                              INT(R16, kR16, , kIntegerExtended),
+                              COLOR(R16_SFLOAT, kR16, sfloat, kColorExtended),
+                              NORM(R16G16, kRg16, , kColorExtended, kColorExtended),
+                              INT(R16G16, kRg16, , kIntegerExtended),
+                              COLOR(R16G16_SFLOAT, kRg16, sfloat, kColorExtended),
+                              NORM(R16G16B16, kRgb16, , kVertexOnly, kVertexOnly),
+                              INT(R16G16B16, kRgb16, , kVertexOnly),
+                              COLOR(R16G16B16_SFLOAT, kRgb16, sfloat, kVertexOnly),
+                              NORM(R16G16B16A16, kRgba16, , kColorExtended, kColorExtended),
+                              INT(R16G16B16A16, kRgba16, , kIntegerStorage),
+                              COLOR(R16G16B16A16_SFLOAT, kRgba16, sfloat, kColorStorage),
+                              INT(R32, kR32, , kIntegerAtomic),
+                              COLOR(R32_SFLOAT, kR32, sfloat, kColorStorage),
+                              INT(R32G32, kRg32, , kIntegerStorage),
+                              COLOR(R32G32_SFLOAT, kRg32, sfloat, kColorStorage),
+                              INT(R32G32B32, kRgb32, , kVertexOnly),
+                              COLOR(R32G32B32_SFLOAT, kRgb32, sfloat, kVertexOnly),
+                              INT(R32G32B32A32, kRgba32, , kIntegerStorage),
+                              COLOR(R32G32B32A32_SFLOAT, kRgba32, sfloat, kColorStorage),
+                              COLOR(B10G11R11_UFLOAT_PACK32, kB10gr11, ufloat, kColorExtended),
+                              COLOR(E5B9G9R9_UFLOAT_PACK32, kE5bgr9, ufloat, kTexture),
+                              DEPTH_STENCIL(D16_UNORM, 2, part(16, 0, unorm), kNoPart, false),
+                              DEPTH_STENCIL(X8_D24_UNORM_PACK32, 4, part(24, 0, unorm), kNoPart, true),
+                              DEPTH_STENCIL(D32_SFLOAT, 4, part(32, 0, sfloat), kNoPart, false),
+                              DEPTH_STENCIL(S8_UINT, 1, kNoPart, part(8, 0, uint), false),
+                              DEPTH_STENCIL(D24_UNORM_S8_UINT, 4, part(24, 0, unorm), part(8, 24, uint), false),
+                              DEPTH_STENCIL(D32_SFLOAT_S8_UINT, 8, part(32, 0, sfloat), part(8, 32, uint), false),
+                              VERNIER_BLOCK_FORMATS(VERNIER_BLOCK_ROW)};
+static_assert(kFormats.size() < 256);
+
+constexpr size_t kHighestFormat = VK_FORMAT_ASTC_12x12_SRGB_BLOCK;
 
 /// Index into kFormats plus one; 0 = absent.
 constexpr auto kIndex = [] {

@@ -1,10 +1,11 @@
 // The tables of srgb.h, computed by the compiler in integer arithmetic: no rounding but the last.
 //
-// For v = h / 510 (h even: a code; h odd: half-way between two) the curve's linear value is
-//     v / 12.92 = 5h / 32946                                     up to v = 0.04045,
-//     ((v + 0.055) / 1.055)^2.4 = ((20h + 561) / 10761)^(12/5)   above,
+// For v = n / d the curve's linear value is
+//     v / 12.92 = 25n / 323d                                          up to v = 0.04045,
+//     ((v + 0.055) / 1.055)^2.4 = ((200n + 11d) / 211d)^(12/5)        above,
 // so that a float m * 2^-e is at most that value if and only if
-//     m * 32946 <= 5h * 2^e,   or   m^5 * 10761^12 <= (20h + 561)^12 * 2^5e.
+//     m * 323d <= 25n * 2^e,   or   m^5 * (211d)^12 <= (200n + 11d)^12 * 2^5e.
+// The codes and the half-way points between them have d = 510.
 #include "runtime/format/srgb.h"
 
 #include <cstddef>
@@ -13,8 +14,8 @@
 namespace vernier {
 namespace {
 
-/// Unsigned integers below 2^448, enough for the products above: 5 * 25 + 162 bits on the left, 162 + 5 * 39
-/// on the right.
+/// Unsigned integers below 2^448, enough for the products above with d <= 510: 5 * 25 + 12 * 17 bits on the left,
+/// 12 * 17 + 5 * 39 on the right.
 struct BigUint {
     std::array<uint32_t, 14> limb{};
 
@@ -44,21 +45,23 @@ constexpr BigUint power(uint32_t base, int exponent) {
     return result;
 }
 
-constexpr bool isLinear(uint32_t h) {
-    return h * 100000 <= 4045 * 510;
-}  // h / 510 <= 0.04045
+constexpr bool isLinear(uint32_t n, uint32_t d) {
+    return n * 100000 <= 4045 * d;
+}  // n / d <= 0.04045
 
-/// m * 2^-e <= the curve's value at h / 510, for one h and e.
+/// m * 2^-e <= the curve's value at n / d, for one n, d and e.
 struct AtMostCurve {
     bool linear;
-    uint64_t linearLimit = 0;
-    BigUint powerLimit{0};
+    uint64_t linearFactor = 0, linearLimit = 0;
+    BigUint powerLimit{0}, denominator{0};
 
-    constexpr AtMostCurve(uint32_t h, int e) : linear(isLinear(h)) {
+    constexpr AtMostCurve(uint32_t n, uint32_t d, int e) : linear(isLinear(n, d)) {
         if (linear) {
-            linearLimit = (uint64_t{5} * h) << e;
+            linearFactor = uint64_t{323} * d;
+            linearLimit = (uint64_t{25} * n) << e;
         } else {
-            powerLimit = power(20 * h + 561, 12);
+            denominator = power(211 * d, 12);
+            powerLimit = power(200 * n + 11 * d, 12);
             for (int i = 0; i < 5; ++i) {
                 powerLimit *= 1u << (e / 2);
                 powerLimit *= 1u << (e - e / 2);
@@ -67,25 +70,23 @@ struct AtMostCurve {
     }
 
     constexpr bool operator()(uint32_t m) const {
-        if (linear) return m * uint64_t{32946} <= linearLimit;
-        BigUint left = kDenominator;
+        if (linear) return m * linearFactor <= linearLimit;
+        BigUint left = denominator;
         for (int i = 0; i < 5; ++i) left *= m;
         return left <= powerLimit;
     }
-
-    static constexpr BigUint kDenominator = power(10761, 12);
 };
 
-/// The value at h / 510 rounded down to 25 significant bits: m * 2^-e with 2^24 <= m < 2^25.
+/// The value at n / d rounded down to 25 significant bits: m * 2^-e with 2^24 <= m < 2^25.
 struct Truncated {
     uint32_t m;
     int e;
 };
 
 /// The curve in double precision, within a few units in the 16th digit: a first guess, checked exactly below.
-constexpr double approximateCurve(uint32_t h) {
-    if (isLinear(h)) return 5.0 * h / 32946.0;
-    const double x = (20.0 * h + 561.0) / 10761.0;
+constexpr double approximateCurve(uint32_t n, uint32_t d) {
+    if (isLinear(n, d)) return 25.0 * n / (323.0 * d);
+    const double x = (200.0 * n + 11.0 * d) / (211.0 * d);
     const double x2 = x * x, x4 = x2 * x2, x12 = x4 * x4 * x4;
     double y = 1.0;  // Newton's method for y^5 = x^12, from above
     for (int i = 0; i < 40; ++i) {
@@ -95,11 +96,11 @@ constexpr double approximateCurve(uint32_t h) {
     return y;
 }
 
-constexpr Truncated truncateCurve(uint32_t h) {
-    double scaled = approximateCurve(h) * (1u << 24);
+constexpr Truncated truncateCurve(uint32_t n, uint32_t d) {
+    double scaled = approximateCurve(n, d) * (1u << 24);
     int e = 24;
     for (; scaled < (1u << 24); scaled *= 2) ++e;
-    const AtMostCurve atMost(h, e);
+    const AtMostCurve atMost(n, d, e);
     auto m = static_cast<uint32_t>(scaled);
     while (!atMost(m)) --m;
     while (atMost(m + 1)) ++m;
@@ -113,23 +114,24 @@ constexpr float toFloat(uint32_t m, int e) {
 /// The curve crosses no float and no middle between floats inside (0, 1): 12/5 powers of these rationals are
 /// irrational or not dyadic. So rounding to nearest has no ties, and a threshold lies strictly between two
 /// floats.
-template <uint32_t kCode>
+template <uint32_t n, uint32_t d>
 constexpr float kDecoded = [] {
-    if (kCode == 0 || kCode == 255) return static_cast<float>(kCode / 255);
-    const Truncated t = truncateCurve(2 * kCode);
+    if (n == 0 || n == d) return static_cast<float>(n / d);
+    const Truncated t = truncateCurve(n, d);
     return toFloat((t.m + 1) & ~1u, t.e);
 }();
 
 /// The bits of the first float above the threshold between kCode and kCode + 1.
 template <uint32_t kCode>
 constexpr uint32_t kThreshold = [] {
-    const Truncated t = truncateCurve(2 * kCode + 1);
+    const Truncated t = truncateCurve(2 * kCode + 1, 510);
     return std::bit_cast<uint32_t>(toFloat((t.m & ~1u) + 2, t.e));
 }();
 
-template <std::size_t... kCodes>
-constexpr std::array<float, 256> decodeTable(std::index_sequence<kCodes...>) {
-    return {kDecoded<kCodes>...};
+/// The curve at i / kMax, i from 0 to kMax.
+template <uint32_t kMax, std::size_t... kCodes>
+constexpr std::array<float, kMax + 1> decodeTable(std::index_sequence<kCodes...>) {
+    return {kDecoded<kCodes, kMax>...};
 }
 
 template <std::size_t... kCodes>
@@ -154,7 +156,9 @@ constexpr std::array<uint32_t, kSrgbBuckets> encodeTable() {
 
 }  // namespace
 
-constexpr std::array<float, 256> kSrgbToLinear = decodeTable(std::make_index_sequence<256>{});
+constexpr std::array<float, 256> kSrgbToLinear = decodeTable<255>(std::make_index_sequence<256>{});
+constexpr std::array<float, 187> kSrgbToLinear186 = decodeTable<186>(std::make_index_sequence<187>{});
+constexpr std::array<float, 379> kSrgbToLinear378 = decodeTable<378>(std::make_index_sequence<379>{});
 constexpr std::array<uint32_t, kSrgbBuckets> kSrgbFromLinear = encodeTable();
 
 }  // namespace vernier

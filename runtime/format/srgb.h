@@ -12,6 +12,11 @@ namespace vernier {
 /// Code -> the nearest float of its linear value.
 extern const std::array<float, 256> kSrgbToLinear;
 
+/// The nearest float of the linear value of i / 186 and i / 378: colours between 5- and 6-bit codes in thirds and
+/// halves.
+extern const std::array<float, 187> kSrgbToLinear186;
+extern const std::array<float, 379> kSrgbToLinear378;
+
 /// Encoding by thresholds. Threshold c is where the nearest code changes from c to c + 1. The floats between
 /// 2^-13 and 1 are cut into buckets by exponent and 7 bits of mantissa (the upper half of their bits); a
 /// bucket contains one threshold at most. An entry holds the code below the threshold in bits 17 and up, and

@@ -65,8 +65,10 @@ Result<Image> Image::create(const ImageInfo& info) {
         LevelLayout level;
         level.extent = {std::max(1u, info.extent.width >> mip), std::max(1u, info.extent.height >> mip),
                         std::max(1u, info.extent.depth >> mip)};
-        const uint64_t columns = padded ? alignUp(level.extent.width, kAttachmentBlock) : level.extent.width;
-        const uint64_t rows = padded ? alignUp(level.extent.height, kAttachmentBlock) : level.extent.height;
+        const uint32_t width = image.format_->columns(level.extent.width);
+        const uint32_t height = image.format_->rows(level.extent.height);
+        const uint64_t columns = padded ? alignUp(width, kAttachmentBlock) : width;
+        const uint64_t rows = padded ? alignUp(height, kAttachmentBlock) : height;
         level.offset = offset;
         level.rowPitch = static_cast<uint32_t>(alignUp(columns * texel, kRowAlignment));
         level.samplePitch = level.rowPitch * rows;

@@ -31,7 +31,7 @@ struct ImageInfo {
 struct LevelLayout {
     VkDeviceSize offset = 0;       // from the start of the layer
     VkExtent3D extent{};           // texels: max(1, size >> level)
-    uint32_t rowPitch = 0;         // bytes
+    uint32_t rowPitch = 0;         // bytes from a row of texels (of a compressed format: of blocks) to the next
     VkDeviceSize slicePitch = 0;   // bytes from one depth slice to the next
     VkDeviceSize samplePitch = 0;  // bytes from one sample plane to the next
 };

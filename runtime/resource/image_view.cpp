@@ -50,6 +50,15 @@ Status checkRange(const Image& image, const ImageViewInfo& info) {
     return {};
 }
 
+/// Whether texels of one format can be seen as those of the other: of the same size, in equal blocks; or (VK_KHR_
+/// maintenance2) the blocks of a compressed image as texels.
+bool formatFits(const Image& image, const FormatInfo& view) {
+    const FormatInfo& format = image.format();
+    if (view.bytesPerTexel != format.bytesPerTexel || view.aspects != format.aspects) return false;
+    if (view.blockWidth() == format.blockWidth() && view.blockHeight() == format.blockHeight()) return true;
+    return view.block == nullptr && (image.info().flags & VK_IMAGE_CREATE_BLOCK_TEXEL_VIEW_COMPATIBLE_BIT) != 0;
+}
+
 }  // namespace
 
 bool seesSlices(const Image& image, VkImageViewType type) {
@@ -59,11 +68,14 @@ bool seesSlices(const Image& image, VkImageViewType type) {
 Result<ImageView> ImageView::create(const Image& image, const ImageViewInfo& info, Isa isa) {
     const FormatInfo* format = findFormat(info.format);
     if (!format) return unsupported("image view: format " + std::to_string(info.format) + " is not supported");
-    if (format->bytesPerTexel != image.format().bytesPerTexel || format->aspects != image.format().aspects)
+    if (!formatFits(image, *format))
         return wrong(std::string("format ") + format->name + " does not fit the image's " + image.format().name);
     if (!typeFits(info.type, image.info()))
         return wrong("view type " + std::to_string(info.type) + " does not fit the image's type");
     if (Status status = checkRange(image, info); !status) return status.error();
+    const bool seesBlocks = format->block == nullptr && image.format().block != nullptr;
+    if (seesBlocks && (info.range.levelCount != 1 || info.range.layerCount != 1))
+        return wrong("a view of blocks has one mip level and one layer");
     if (!image.bound()) return wrong("the image has no memory bound");
 
     ImageView view;
@@ -81,6 +93,7 @@ Result<ImageView> ImageView::create(const Image& image, const ImageViewInfo& inf
     texture.layerCount = info.range.layerCount;
     texture.samples = image.info().samples;
     texture.texelPitch = format->bytesPerTexel;
+    texture.block = format->block;
     texture.samplePitch = image.level(info.range.baseMipLevel).samplePitch;
     texture.ops = formatOps(info.format, texture.aspect, isa);
     const bool slices = seesSlices(image, info.type);
@@ -90,8 +103,8 @@ Result<ImageView> ImageView::create(const Image& image, const ImageViewInfo& inf
         const uint32_t first = info.range.baseArrayLayer;
         const bool volume = image.info().type == VK_IMAGE_TYPE_3D;
         texture.levels[i] = {.data = slices ? image.address(mip, 0, first) : image.address(mip, first),
-                             .width = level.extent.width,
-                             .height = level.extent.height,
+                             .width = seesBlocks ? image.format().columns(level.extent.width) : level.extent.width,
+                             .height = seesBlocks ? image.format().rows(level.extent.height) : level.extent.height,
                              .depth = slices ? 1 : level.extent.depth,
                              .rowPitch = level.rowPitch,
                              .slicePitch = volume ? level.slicePitch : image.layerPitch()};

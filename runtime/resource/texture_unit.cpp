@@ -116,6 +116,7 @@ std::byte* storageTexel(const TextureView& view, const ImageCall& call, uint32_t
     const int32_t* coord[4] = {};
     placeCoordinates(call, coord, [](const uint32_t* lanes) { return asInt(lanes); });
     const auto at = [&](size_t i) { return coord[i] ? static_cast<uint32_t>(coord[i][lane]) : 0u; };
+    if (view.block != nullptr) return nullptr;  // blocks are read, never written
     const TextureLevel& level = view.levels[0];
     const bool volume = view.type == VK_IMAGE_VIEW_TYPE_3D || call.op->dim == ir::ImageDim::cube;
     const uint32_t slice = volume ? at(2) : at(3);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "runtime/texture/block_cache.h"
 #include "runtime/texture/routing.h"
 #include "runtime/texture/texture.h"
 
@@ -35,11 +36,11 @@ uint32_t at(const int32_t* values, uint32_t lane, int32_t offset = 0) {
     return values == nullptr ? 0 : static_cast<uint32_t>(values[lane]) + static_cast<uint32_t>(offset);
 }
 
-void fetch(const TextureView& view, const FetchRequest& request) {
+/// Calls read(lane, level, slice, x, y, sample) for the active lanes whose texel exists.
+template <class Read>
+void forEachTexel(const TextureView& view, const FetchRequest& request, Read read) {
     const FetchShape shape = shapeOf(view.type);
-    const std::byte* texels[kMaxSampleLanes];
     for (uint32_t i = 0; i < request.lanes; ++i) {
-        texels[i] = kZeroTexel;
         if (request.mask != nullptr && request.mask[i] == 0) continue;
         const uint32_t levelIndex = at(request.lod, i), sample = at(request.sample, i);
         if (levelIndex >= view.levelCount || sample >= view.samples) continue;
@@ -49,10 +50,13 @@ void fetch(const TextureView& view, const FetchRequest& request) {
         const uint32_t z = shape.z ? at(request.coord[2], i, request.offset[2]) : 0;
         const uint32_t layer = shape.layer ? at(request.coord[3], i) : 0;
         if (x >= level.width || y >= level.height || z >= level.depth || layer >= view.layerCount) continue;
-        texels[i] = level.data + (uint64_t{z} + layer) * level.slicePitch + uint64_t{y} * level.rowPitch +
-                    uint64_t{x} * view.texelPitch + sample * view.samplePitch;
+        read(i, level, level.data + (uint64_t{z} + layer) * level.slicePitch, x, y, sample);
     }
+}
 
+/// Converts the texels that `unpack(planes)` gives to the outputs, by the view's swizzle.
+template <class Unpack>
+void deliver(const TextureView& view, const FetchRequest& request, Unpack unpack) {
     // Each converted component goes straight to the first output that takes it.
     void* planes[4] = {};
     for (uint32_t c = 0; c < 4; ++c) {
@@ -61,7 +65,7 @@ void fetch(const TextureView& view, const FetchRequest& request) {
             planes[static_cast<size_t>(route)] = request.out[c];
         }
     }
-    view.ops.unpackEach(texels, request.lanes, planes);
+    unpack(planes);
     for (uint32_t c = 0; c < 4; ++c) {
         if (request.out[c] == nullptr) continue;
         const Route route = routeOf(view.swizzle, c);
@@ -75,11 +79,34 @@ void fetch(const TextureView& view, const FetchRequest& request) {
     }
 }
 
+void fetch(const TextureView& view, const FetchRequest& request) {
+    const std::byte* texels[kMaxSampleLanes];
+    std::fill_n(texels, request.lanes, kZeroTexel);
+    forEachTexel(
+        view, request,
+        [&](uint32_t lane, const TextureLevel& level, const std::byte* slice, uint32_t x, uint32_t y, uint32_t sample) {
+            texels[lane] =
+                slice + uint64_t{y} * level.rowPitch + uint64_t{x} * view.texelPitch + sample * view.samplePitch;
+        });
+    deliver(view, request, [&](void* const(&planes)[4]) { view.ops.unpackEach(texels, request.lanes, planes); });
+}
+
+void fetchBlocks(const TextureView& view, const FetchRequest& request) {
+    alignas(16) std::byte texels[kMaxSampleLanes * kMaxDecodedBytes];
+    const uint32_t bytes = view.ops.layout.bytes;
+    std::memset(texels, 0, request.lanes * bytes);
+    BlockCache cache(view);
+    forEachTexel(view, request,
+                 [&](uint32_t lane, const TextureLevel& level, const std::byte* slice, uint32_t x, uint32_t y,
+                     uint32_t) { cache.read(view, level, slice, x, y, texels + lane * bytes); });
+    deliver(view, request, [&](void* const(&planes)[4]) { view.ops.unpack(texels, request.lanes, planes); });
+}
+
 }  // namespace
 
 // The conversion in view.ops is the part that depends on the instruction set.
-FetchFn selectFetch(const TextureView&, Isa) {
-    return fetch;
+FetchFn selectFetch(const TextureView& view, Isa) {
+    return view.block != nullptr ? fetchBlocks : fetch;
 }
 
 }  // namespace vernier

@@ -24,12 +24,13 @@ void runSample(const TextureView& view, const SamplerState& sampler, const Sampl
 
 template <Shape kShape>
 void runGather(const TextureView& view, const SamplerState& sampler, const SampleRequest& request) {
+    if (view.block != nullptr) return Sampler<BlockSource<4>, kShape, Wrap::any>(view, sampler, request).gather();
     Sampler<AnySource<4>, kShape, Wrap::any>(view, sampler, request).gather();
 }
 
 template <Shape kShape>
 void runQueryLod(const TextureView& view, const SamplerState& sampler, const SampleRequest& request) {
-    Sampler<AnySource<4>, kShape, Wrap::any>(view, sampler, request).queryLod();
+    Sampler<AnySource<1>, kShape, Wrap::any>(view, sampler, request).queryLod();
 }
 
 Shape shapeOf(VkImageViewType type) {
@@ -73,6 +74,16 @@ SampleFn selectSampleRoutine(const TextureView& view, const SamplerState& sample
     const TexelLayout& layout = view.ops.layout;
     const Component& first = layout.rgba[0];
     const bool words = layout.bytes == 4 && view.texelPitch == 4;
+    if (view.block != nullptr) {
+        switch (shapeOf(view.type)) {
+            case Shape::volume:
+                return runSample<BlockSource<4>, Shape::volume, Wrap::any>;
+            case Shape::cube:
+                return runSample<BlockSource<4>, Shape::cube, Wrap::any>;
+            case Shape::flat:
+                return runSample<BlockSource<4>, Shape::flat, Wrap::any>;
+        }
+    }
     bool fourBytes = words && !sampler.compareEnable;
     for (const Component& part : layout.rgba) fourBytes = fourBytes && part.bits == 8 && part.offset % 8 == 0;
     if (fourBytes && first.kind == ComponentKind::unorm) return selectRgba8<false>(view, sampler);

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "runtime/texture/block_cache.h"
 #include "runtime/texture/lod-inl.h"
 #include "runtime/texture/routing.h"
 
@@ -172,6 +173,44 @@ struct AnySource {
     }
 
     HWY_INLINE VU finish(VU plane) const { return plane; }
+};
+
+/// Compressed formats: texels of decoded blocks, through their conversion of rows.
+template <int kPlaneCount>
+struct BlockSource : AnySource<kPlaneCount> {
+    mutable BlockCache cache;
+
+    explicit BlockSource(const TextureView& view) : AnySource<kPlaneCount>(view), cache(view) {}
+
+    template <int kTaps>
+    HWY_NOINLINE void load(const TextureView& view, const TextureLevel& level, const TexelPosition (&at)[kTaps],
+                           uint32_t needed, Texel (&texels)[kTaps]) const {
+        constexpr uint32_t kCount = kTaps * kVectorLanes;
+        alignas(16) std::byte packed[kCount * kMaxDecodedBytes];
+        const uint32_t bytes = view.ops.layout.bytes;
+        for (uint32_t t = 0; t < kTaps; ++t) {
+            alignas(64) int32_t x[kVectorLanes], y[kVectorLanes], slice[kVectorLanes];
+            hn::Store(at[t].x, I32(), x);
+            hn::Store(at[t].y, I32(), y);
+            hn::Store(at[t].slice, I32(), slice);
+            for (uint32_t i = 0; i < kVectorLanes; ++i) {
+                cache.read(view, level, level.data + static_cast<uint64_t>(slice[i]) * level.slicePitch,
+                           static_cast<uint32_t>(x[i]), static_cast<uint32_t>(y[i]),
+                           packed + (t * kVectorLanes + i) * bytes);
+            }
+        }
+        alignas(64) uint32_t values[kPlaneCount][kCount];
+        void* planes[4] = {};
+        for (int c = 0; c < kPlaneCount; ++c) {
+            if ((needed >> c & 1) != 0) planes[c] = values[c];
+        }
+        view.ops.unpack(packed, kCount, planes);
+        unrolled<kTaps>([&](auto t) VERNIER_INLINE_LAMBDA {
+            unrolled<kPlaneCount>([&](auto c) VERNIER_INLINE_LAMBDA {
+                texels[t][c] = planes[c] == nullptr ? hn::Zero(U32()) : hn::Load(U32(), values[c] + t * kVectorLanes);
+            });
+        });
+    }
 };
 
 /// a where t = 0, towards b: a + t (b - a), the same bits as a where a = b.

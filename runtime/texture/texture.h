@@ -35,7 +35,7 @@ inline constexpr uint32_t kMaxSampleLanes = 128;
 struct TextureLevel {
     const std::byte* data = nullptr;            // texel (0, 0) of the view's first layer (z = 0 of a 3D image)
     uint32_t width = 1, height = 1, depth = 1;  // in texels, of this level
-    uint32_t rowPitch = 0;                      // bytes from a row to the next
+    uint32_t rowPitch = 0;                      // bytes from a row (of blocks, if compressed) to the next
     uint64_t slicePitch = 0;                    // bytes from an array layer, cube face or z slice to the next
 };
 
@@ -48,8 +48,10 @@ struct TextureView {
     uint32_t levelCount = 1;
     uint32_t layerCount = 1;  // array layers of the view; 6 per cube
     uint32_t samples = 1;
-    uint32_t texelPitch = 0;  // bytes from a texel to its right neighbour: bytesPerTexel unless samples are interleaved
-    uint64_t samplePitch = 0;                            // bytes from a sample of a texel to the next
+    uint32_t texelPitch = 0;            // bytes from a texel to its right neighbour: bytesPerTexel unless samples are
+                                        // interleaved; of a compressed format from a block to the next
+    const BlockCodec* block = nullptr;  // of a compressed format
+    uint64_t samplePitch = 0;           // bytes from a sample of a texel to the next
     std::array<TextureLevel, kMaxTextureLevels> levels;  // [0] is the view's base level
     FormatOps ops;  // formatOps(format, aspect, isa), the isa given to the select functions
 };

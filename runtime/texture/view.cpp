@@ -37,12 +37,14 @@ Status checkLevel(const TextureView& view, const TextureLevel& level, uint32_t i
     if (isCube(view.type) && level.width != level.height) {
         return invalidArgument(fieldError(name.c_str(), "height", level.height, "must equal the width in a cube view"));
     }
-    const uint64_t rowBytes = uint64_t{level.width - 1} * view.texelPitch + view.ops.layout.bytes;
-    if (level.height > 1 && level.rowPitch < rowBytes) {
+    const FormatInfo& format = *findFormat(view.format);
+    const uint64_t rowBytes = uint64_t{format.columns(level.width) - 1} * view.texelPitch + format.bytesPerTexel;
+    const uint32_t rows = format.rows(level.height);
+    if (rows > 1 && level.rowPitch < rowBytes) {
         return invalidArgument(fieldError(name.c_str(), "rowPitch", level.rowPitch, "must hold a row of texels"));
     }
     const uint64_t slices = view.type == VK_IMAGE_VIEW_TYPE_3D ? level.depth : view.layerCount;
-    if (slices > 1 && level.slicePitch < uint64_t{level.height - 1} * level.rowPitch + rowBytes) {
+    if (slices > 1 && level.slicePitch < uint64_t{rows - 1} * level.rowPitch + rowBytes) {
         return invalidArgument(
             fieldError(name.c_str(), "slicePitch", level.slicePitch, "must hold all rows of a slice"));
     }
@@ -97,8 +99,9 @@ Status checkView(const TextureView& view) {
     if (!oneAspect || (info->aspects & view.aspect) == 0) {
         return invalidArgument(fieldError("TextureView", "aspect", view.aspect, "must be one aspect of the format"));
     }
-    if (view.ops.unpackFn == nullptr || view.ops.layout.bytes != info->bytesPerTexel) {
-        return invalidArgument("TextureView.ops is not that of TextureView.format");
+    if (view.ops.unpackFn == nullptr || view.ops.layout.bytes != info->layout(view.aspect).bytes ||
+        view.block != info->block) {
+        return invalidArgument("TextureView.ops or TextureView.block is not that of TextureView.format");
     }
     if (view.type > VK_IMAGE_VIEW_TYPE_CUBE_ARRAY) {
         return unsupported(fieldError("TextureView", "type", static_cast<uint32_t>(view.type), "unknown view type"));

@@ -64,6 +64,20 @@ float mix(float a, float b, float weight) {
     return weight == 0 || a == b ? a : a + weight * (b - a);
 }
 
+/// The values of a row of texels of a compressed level.
+void unpackBlocks(const FormatInfo& format, const FormatOps& ops, const std::byte* blocks, uint32_t y, uint32_t width,
+                  void* const planes[4]) {
+    alignas(16) std::byte texels[kMaxBlockTexels * kMaxDecodedBytes];
+    const uint32_t blockWidth = format.blockWidth();
+    for (uint32_t x = 0; x < width; x += blockWidth, blocks += format.bytesPerTexel) {
+        format.block->decode(blocks, texels);
+        void* part[4];
+        for (size_t c = 0; c < 4; ++c) part[c] = static_cast<std::byte*>(planes[c]) + x * sizeof(float);
+        ops.unpack(texels + size_t{y % format.blockHeight()} * blockWidth * ops.layout.bytes,
+                   std::min(blockWidth, width - x), part);
+    }
+}
+
 class Blitter {
   public:
     Blitter(const Image& source, uint32_t mip, FormatOps ops, Axis x, VkFilter filter)
@@ -102,7 +116,13 @@ class Blitter {
     void horizontal(uint32_t y, uint32_t z, PlaneRow& result) const {
         const uint32_t width = source_.level(mip_).extent.width;
         PlaneRow texels(width);
-        ops_.unpack(rowAddress(source_, mip_, y, z, 0), width, texels.writable());
+        const FormatInfo& format = source_.format();
+        const std::byte* row = rowAddress(source_, mip_, y / format.blockHeight(), z, 0);
+        if (format.block != nullptr) {
+            unpackBlocks(format, ops_, row, y, width, texels.writable());
+        } else {
+            ops_.unpack(row, width, texels.writable());
+        }
         for (size_t c = 0; c < 4; ++c) {
             const float* from = texels.plane(c);
             float* to = result.plane(c);
@@ -139,6 +159,7 @@ void blitImage(const TransferContext& context, const Image& source, const Image&
     const Axis z(s[0].z, s[1].z, fromSize.depth, d[0].z, d[1].z, toSize.depth);
     const auto aspect = static_cast<VkImageAspectFlags>(from.aspectMask & -from.aspectMask);
     if (x.count == 0 || (aspect & source.format().aspects) == 0 || (aspect & destination.format().aspects) == 0) return;
+    if (destination.format().block != nullptr) return;  // nothing encodes blocks
     const FormatOps pack = formatOps(destination.info().format, aspect, context.isa);
     const Blitter blitter(source, from.mipLevel, formatOps(source.info().format, aspect, context.isa), x, filter);
 

@@ -22,7 +22,7 @@ void clearRange(const TransferContext& context, const Image& image, VkImageAspec
                 const VkClearValue& value, const VkImageSubresourceRange& range) {
     const FormatInfo& format = image.format();
     aspects &= format.aspects;
-    if (aspects == 0) return;
+    if (aspects == 0 || format.block != nullptr) return;  // nothing encodes blocks
     // Where packing over all zeros and over all ones gives different bits, the clear does not reach.
     std::array<std::byte, kMaxTexelBytes> texel{}, keep;
     keep.fill(std::byte{0xFF});

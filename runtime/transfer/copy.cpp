@@ -30,8 +30,10 @@ void forEachBufferRow(const TransferContext& context, const Image& image, const 
     if (!checkBufferImageCopy(image, buffer.size(), region)) return;
     const TexelBox box = clipBox(image, sub, region.imageOffset, region.imageExtent);
     const uint64_t texel = bufferTexelBytes(image.format(), sub.aspectMask);
-    const uint64_t rowPitch = (region.bufferRowLength ? region.bufferRowLength : box.width) * texel;
-    const uint64_t slicePitch = (region.bufferImageHeight ? region.bufferImageHeight : box.height) * rowPitch;
+    const FormatInfo& format = image.format();
+    const uint64_t rowPitch = (region.bufferRowLength ? format.columns(region.bufferRowLength) : box.width) * texel;
+    const uint64_t slicePitch =
+        (region.bufferImageHeight ? format.rows(region.bufferImageHeight) : box.height) * rowPitch;
     forEachRow(context, box, [&](uint32_t y, uint32_t z) {
         std::byte* texels =
             rowAddress(image, sub.mipLevel, box.y + y, box.z + z, 0) + uint64_t{box.x} * image.format().bytesPerTexel;
@@ -59,7 +61,11 @@ void copyBuffer(const TransferContext& context, const Buffer& source, const Buff
 void copyImage(const TransferContext& context, const Image& source, const Image& destination,
                const VkImageCopy& region) {
     TexelBox from = clipBox(source, region.srcSubresource, region.srcOffset, region.extent);
-    TexelBox to = clipBox(destination, region.dstSubresource, region.dstOffset, region.extent);
+    // The extent is in texels of the source; a block of a compressed image corresponds to a texel of another one.
+    const FormatInfo& target = destination.format();
+    const VkExtent3D extent{source.format().columns(region.extent.width) * target.blockWidth(),
+                            source.format().rows(region.extent.height) * target.blockHeight(), region.extent.depth};
+    TexelBox to = clipBox(destination, region.dstSubresource, region.dstOffset, extent);
     if (source.format().bytesPerTexel != destination.format().bytesPerTexel ||
         source.info().samples != destination.info().samples)
         return;

@@ -26,6 +26,12 @@ TexelBox clipBox(const Image& image, const VkImageSubresourceLayers& subresource
     box.z = volume ? static_cast<uint32_t>(offset.z) : subresource.baseArrayLayer;
     box.width = clipSpan(box.x, extent.width, size.width);
     box.height = clipSpan(box.y, extent.height, size.height);
+    if (const BlockCodec* block = image.format().block) {
+        box.x /= block->width;
+        box.y /= block->height;
+        box.width = image.format().columns(box.width);
+        box.height = image.format().rows(box.height);
+    }
     const uint32_t slices =
         volume ? std::max(extent.depth, subresource.layerCount) : std::max(subresource.layerCount, extent.depth);
     box.depth = clipSpan(box.z, slices, volume ? size.depth : image.info().arrayLayers);
@@ -59,15 +65,29 @@ Status checkBufferImageCopy(const Image& image, VkDeviceSize bufferSize, const V
     if (sub.mipLevel >= image.info().mipLevels)
         return wrong("mip level " + std::to_string(sub.mipLevel) + " of " + std::to_string(image.info().mipLevels));
     const TexelBox box = clipBox(image, sub, region.imageOffset, region.imageExtent);
-    if (box.width != region.imageExtent.width || box.height != region.imageExtent.height || box.empty() ||
+    const FormatInfo& format = image.format();
+    const VkExtent3D& size = image.level(sub.mipLevel).extent;
+    const auto inside = [](int32_t offset, uint32_t count, uint32_t limit) {
+        return offset >= 0 && static_cast<uint32_t>(offset) <= limit && count <= limit - static_cast<uint32_t>(offset);
+    };
+    if (!inside(region.imageOffset.x, region.imageExtent.width, size.width) ||
+        !inside(region.imageOffset.y, region.imageExtent.height, size.height) || box.empty() ||
         box.depth < std::max(sub.layerCount, region.imageExtent.depth))
         return wrong("the region reaches outside the image");
+    const auto wholeBlocks = [](int32_t offset, uint32_t count, uint32_t limit, uint32_t block) {
+        const auto first = static_cast<uint32_t>(offset);
+        return first % block == 0 && (count % block == 0 || first + count == limit);
+    };
+    if (!wholeBlocks(region.imageOffset.x, region.imageExtent.width, size.width, format.blockWidth()) ||
+        !wholeBlocks(region.imageOffset.y, region.imageExtent.height, size.height, format.blockHeight()))
+        return wrong("the region cuts blocks of " + std::to_string(format.blockWidth()) + " x " +
+                     std::to_string(format.blockHeight()) + " texels");
     const bool oneAspect = sub.aspectMask != 0 && (sub.aspectMask & (sub.aspectMask - 1)) == 0;
-    if (!oneAspect || (sub.aspectMask & image.format().aspects) == 0)
+    if (!oneAspect || (sub.aspectMask & format.aspects) == 0)
         return wrong("aspect mask " + std::to_string(sub.aspectMask) + " is not one aspect of the image");
-    const uint64_t texel = bufferTexelBytes(image.format(), sub.aspectMask);
-    const uint64_t rowTexels = region.bufferRowLength ? region.bufferRowLength : box.width;
-    const uint64_t sliceRows = region.bufferImageHeight ? region.bufferImageHeight : box.height;
+    const uint64_t texel = bufferTexelBytes(format, sub.aspectMask);
+    const uint64_t rowTexels = region.bufferRowLength ? format.columns(region.bufferRowLength) : box.width;
+    const uint64_t sliceRows = region.bufferImageHeight ? format.rows(region.bufferImageHeight) : box.height;
     const uint64_t last = ((uint64_t{box.depth} - 1) * sliceRows + box.height - 1) * rowTexels + box.width;
     if (region.bufferOffset > bufferSize || last * texel > bufferSize - region.bufferOffset)
         return wrong("needs " + std::to_string(last * texel) + " bytes at offset " +

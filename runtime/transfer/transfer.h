@@ -25,7 +25,8 @@ void copyBufferToImage(const TransferContext&, const Buffer& buffer, const Image
                        const VkBufferImageCopy& region);
 void copyImageToBuffer(const TransferContext&, const Image& image, const Buffer& buffer,
                        const VkBufferImageCopy& region);
-/// Scales and converts; nearest or linear filter, coordinates clamped to the edge of the source level.
+/// Scales and converts, from compressed formats too; nearest or linear filter, coordinates clamped to the edge of the
+/// source level.
 void blitImage(const TransferContext&, const Image& source, const Image& destination, const VkImageBlit& region,
                VkFilter filter);
 /// Averages the samples of float and normalised formats (sRGB: of the linear values), takes sample 0 of integer

@@ -20,7 +20,6 @@ TEST(FormatTable, FindsEachFormatOnce) {
         EXPECT_EQ(findFormat(info.format), &info) << info.name;
     }
     EXPECT_EQ(findFormat(VK_FORMAT_UNDEFINED), nullptr);
-    EXPECT_EQ(findFormat(VK_FORMAT_BC1_RGB_UNORM_BLOCK), nullptr);
     EXPECT_EQ(findFormat(VK_FORMAT_G8B8G8R8_422_UNORM), nullptr);
     EXPECT_EQ(findFormat(VK_FORMAT_MAX_ENUM), nullptr);
     EXPECT_EQ(findFormat(static_cast<VkFormat>(0x7ffffffe)), nullptr);
@@ -28,6 +27,7 @@ TEST(FormatTable, FindsEachFormatOnce) {
 
 TEST(FormatTable, ComponentsFitTheTexelWithoutOverlap) {
     for (const FormatInfo& info : allFormats()) {
+        if (info.block != nullptr) continue;
         std::array<int, 128> owner{};
         int components = 0;
         for (const VkImageAspectFlags aspect :
