@@ -23,6 +23,7 @@ class ApiDriver final : public Driver {
     std::string name() const override { return "Vernier API"; }
     std::string version() const override;
     std::string limits() const override;
+    uint32_t subPixelBits() const override { return info_.subPixelBits; }
     /// Plans are made on first use, so that their time shows in the first image; Timing::pipelines is that of
     /// programs and state objects.
     Result<std::vector<RenderedImage>> render(const Scene& scene, Timing* timing) override;

@@ -34,6 +34,8 @@ class Driver {
     virtual std::string version() const = 0;
     /// The limits that bear on pixels (sub-pixel bits, filter precision, ...), one "name value" a line.
     virtual std::string limits() const = 0;
+    /// The sub-pixel bits that the implementation declares.
+    virtual uint32_t subPixelBits() const = 0;
 
     /// Runs the scene and returns one image per Scene::outputs. `timing` may be nullptr: then the commands
     /// run once only. A scene that needs what the implementation lacks is an `unsupported` error that names

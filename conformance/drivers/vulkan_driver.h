@@ -17,6 +17,7 @@ class VulkanDriver final : public Driver {
     std::string name() const override;
     std::string version() const override;
     std::string limits() const override;
+    uint32_t subPixelBits() const override { return context_.properties().limits.subPixelPrecisionBits; }
     Result<std::vector<RenderedImage>> render(const Scene& scene, Timing* timing) override;
 
   private:

@@ -28,6 +28,11 @@ std::string causes(std::span<const GridTriangle> triangles, const GridPoint& p) 
     return result.empty() ? "no triangle comes near" : result;
 }
 
+bool inside(const VkRect2D& scissor, uint32_t x, uint32_t y) {
+    const int64_t dx = int64_t{x} - scissor.offset.x, dy = int64_t{y} - scissor.offset.y;
+    return dx >= 0 && dy >= 0 && dx < scissor.extent.width && dy < scissor.extent.height;
+}
+
 template <class Check>
 std::string forEachSample(const SampleGrid& grid, std::span<const uint32_t> observed, Check check) {
     for (uint32_t y = 0; y < grid.extent.height; ++y) {
@@ -92,9 +97,7 @@ std::string checkDeclaredCoverage(std::span<const GridTriangle> triangles, const
                                   const VkRect2D& scissor, std::span<const uint32_t> observed) {
     return forEachSample(
         grid, observed, [&](uint32_t x, uint32_t y, const GridPoint& p, uint32_t count) -> std::string {
-            const int64_t dx = static_cast<int64_t>(x) - scissor.offset.x,
-                          dy = static_cast<int64_t>(y) - scissor.offset.y;
-            const bool inScissor = dx >= 0 && dy >= 0 && dx < scissor.extent.width && dy < scissor.extent.height;
+            const bool inScissor = inside(scissor, x, y);
             const auto covering = [&p](const GridTriangle& t) { return covers(t, p); };
             const auto expected = inScissor ? static_cast<uint32_t>(std::ranges::count_if(triangles, covering)) : 0u;
             if (count == expected) return {};
@@ -103,11 +106,19 @@ std::string checkDeclaredCoverage(std::span<const GridTriangle> triangles, const
         });
 }
 
-std::string checkLegalCoverage(std::span<const GridTriangle> triangles, const SampleGrid& grid,
+std::string checkScissor(const SampleGrid& grid, const VkRect2D& scissor, std::span<const uint32_t> observed) {
+    return forEachSample(grid, observed, [&](uint32_t x, uint32_t y, const GridPoint&, uint32_t count) -> std::string {
+        if (count == 0 || inside(scissor, x, y)) return {};
+        return wrongSample(x, y, count, "0", "outside the scissor");
+    });
+}
+
+std::string checkLegalCoverage(std::span<const GridTriangle> triangles, const SampleGrid& grid, const VkRect2D& scissor,
                                std::span<const uint32_t> observed) {
     const std::vector<SharedEdge> shared = findSharedEdges(triangles);
     return forEachSample(grid, observed,
                          [&](uint32_t x, uint32_t y, const GridPoint& p, uint32_t count) -> std::string {
+                             if (!inside(scissor, x, y)) return {};
                              uint32_t low = 0, high = 0;
                              for (const GridTriangle& t : triangles) {
                                  const Coverage coverage = classify(t, p);
@@ -126,16 +137,17 @@ std::string checkLegalCoverage(std::span<const GridTriangle> triangles, const Sa
                          });
 }
 
-std::string checkPartition(std::span<const GridTriangle> triangles, const SampleGrid& grid,
+std::string checkPartition(std::span<const GridTriangle> triangles, const SampleGrid& grid, const VkRect2D& scissor,
                            std::span<const uint32_t> observed) {
     const std::vector<Edge> boundary = outline(triangles, findSharedEdges(triangles));
     return forEachSample(
         grid, observed, [&](uint32_t x, uint32_t y, const GridPoint& p, uint32_t count) -> std::string {
+            if (!inside(scissor, x, y)) return {};
             const auto open = [&p](const Edge& edge) { return nearSegment(edge, p, 1); };
             if (std::ranges::any_of(boundary, open)) return {};
-            const bool inside = std::ranges::any_of(triangles, [&p](const GridTriangle& t) { return covers(t, p); });
-            if (count == (inside ? 1u : 0u)) return {};
-            return wrongSample(x, y, count, inside ? "1 (interior of the tiling)" : "0 (outside the tiling)",
+            const bool isInner = std::ranges::any_of(triangles, [&p](const GridTriangle& t) { return covers(t, p); });
+            if (count == (isInner ? 1u : 0u)) return {};
+            return wrongSample(x, y, count, isInner ? "1 (interior of the tiling)" : "0 (outside the tiling)",
                                causes(triangles, p));
         });
 }

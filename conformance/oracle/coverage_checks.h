@@ -34,14 +34,17 @@ std::string describeSample(const GridTriangle& triangle, const GridPoint& sample
 std::string checkDeclaredCoverage(std::span<const GridTriangle> triangles, const SampleGrid& grid,
                                   const VkRect2D& scissor, std::span<const uint32_t> observed);
 
-/// Any legal snapping: counts lie between what must and what may be covered, and pairs of triangles that
-/// share the only open edge count exactly one between them.
-std::string checkLegalCoverage(std::span<const GridTriangle> triangles, const SampleGrid& grid,
+/// Nothing outside the scissor is covered.
+std::string checkScissor(const SampleGrid& grid, const VkRect2D& scissor, std::span<const uint32_t> observed);
+
+/// Any legal snapping, inside the scissor: counts lie between what must and what may be covered, and pairs of triangles
+/// that share the only open edge count exactly one between them.
+std::string checkLegalCoverage(std::span<const GridTriangle> triangles, const SampleGrid& grid, const VkRect2D& scissor,
                                std::span<const uint32_t> observed);
 
-/// For triangles that tile a region: every sample farther than one sub-unit from the region's outline is
-/// covered exactly once inside and never outside, under any snapping and any tie rule.
-std::string checkPartition(std::span<const GridTriangle> triangles, const SampleGrid& grid,
+/// For triangles that tile a region, inside the scissor: every sample farther than one sub-unit from the region's
+/// outline is covered exactly once inside and never outside, under any snapping and any tie rule.
+std::string checkPartition(std::span<const GridTriangle> triangles, const SampleGrid& grid, const VkRect2D& scissor,
                            std::span<const uint32_t> observed);
 
 }  // namespace vernier::conformance::exact

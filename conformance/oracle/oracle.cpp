@@ -160,8 +160,8 @@ Status blitImage(const SceneBlitImage& blit, std::vector<ImageStore>& images) {
     return {};
 }
 
-Status execute(const Scene& scene, const SceneStep& step, std::vector<ImageStore>& images) {
-    if (const auto* pass = std::get_if<ScenePass>(&step)) return exact::renderPass(scene, *pass, images);
+Status execute(const Scene& scene, const SceneStep& step, const OracleRules& rules, std::vector<ImageStore>& images) {
+    if (const auto* pass = std::get_if<ScenePass>(&step)) return exact::renderPass(scene, *pass, rules, images);
     if (const auto* copy = std::get_if<SceneCopyImage>(&step)) return copyImage(*copy, images);
     if (const auto* blit = std::get_if<SceneBlitImage>(&step)) return blitImage(*blit, images);
     generateMips(images[std::get<SceneGenerateMips>(step).image]);
@@ -189,7 +189,7 @@ OracleImage readBack(const ImageStore& image) {
 
 }  // namespace
 
-Result<std::vector<OracleImage>> renderOracle(const Scene& scene) {
+Result<std::vector<OracleImage>> renderOracle(const Scene& scene, const OracleRules& rules) {
     if (Status s = SceneCheck(scene).run(); !s) return s.error();
     std::vector<ImageStore> images;
     for (const SceneImage& image : scene.images) {
@@ -198,7 +198,7 @@ Result<std::vector<OracleImage>> renderOracle(const Scene& scene) {
         images.push_back(std::move(*store));
     }
     for (const SceneStep& step : scene.steps) {
-        if (Status s = execute(scene, step, images); !s) return s.error();
+        if (Status s = execute(scene, step, rules, images); !s) return s.error();
     }
     std::vector<OracleImage> outputs;
     for (const uint32_t output : scene.outputs) outputs.push_back(readBack(images[output]));

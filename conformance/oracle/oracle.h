@@ -28,8 +28,13 @@ struct OracleImage {
     std::vector<OraclePixel> pixels;  // row by row
 };
 
+/// What an implementation declares and the specification leaves to it.
+struct OracleRules {
+    int subPixelBits = 8;  // subPixelPrecisionBits: vertices may be snapped by up to 2^-bits pixel
+};
+
 /// One image per Scene::outputs, in that order. An error with code `unsupported` when the scene uses
 /// something the oracle does not model.
-Result<std::vector<OracleImage>> renderOracle(const Scene& scene);
+Result<std::vector<OracleImage>> renderOracle(const Scene& scene, const OracleRules& rules = {});
 
 }  // namespace vernier::conformance

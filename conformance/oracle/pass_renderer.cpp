@@ -4,6 +4,7 @@
 #include "conformance/oracle/depth_exact.h"
 #include "conformance/oracle/fragment_shader.h"
 #include "conformance/oracle/quantise.h"
+#include "conformance/oracle/sample_locations.h"
 #include "conformance/oracle/sample_states.h"
 #include "conformance/oracle/triangle.h"
 
@@ -18,25 +19,6 @@ namespace vernier::conformance::exact {
 
 namespace {
 
-// Standard sample locations (Vulkan, Multisampling) in 1/16 pixel.
-std::vector<GridPoint> samplePositions(uint32_t samples) {
-    switch (samples) {
-        case 1:
-            return {{8, 8}};
-        case 2:
-            return {{12, 12}, {4, 4}};
-        case 4:
-            return {{6, 2}, {14, 6}, {2, 10}, {10, 14}};
-        case 8:
-            return {{9, 5}, {7, 11}, {13, 9}, {5, 3}, {3, 13}, {1, 7}, {11, 15}, {15, 1}};
-        case 16:
-            return {{9, 9},  {7, 5}, {5, 10}, {12, 7}, {3, 6}, {10, 13}, {13, 11}, {11, 3},
-                    {6, 14}, {8, 1}, {4, 2},  {2, 12}, {0, 8}, {15, 4},  {14, 15}, {1, 0}};
-        default:
-            return {};
-    }
-}
-
 // One triangle ready for all rows.
 struct PreparedTriangle {
     Triangle triangle;
@@ -49,8 +31,8 @@ struct PreparedTriangle {
 
 class PassRenderer {
   public:
-    PassRenderer(const Scene& scene, const ScenePass& pass, std::vector<ImageStore>& images)
-        : scene_(scene), pass_(pass), images_(images) {}
+    PassRenderer(const Scene& scene, const ScenePass& pass, const OracleRules& rules, std::vector<ImageStore>& images)
+        : scene_(scene), pass_(pass), rules_(rules), images_(images) {}
 
     Status run() {
         if (Status s = load(); !s) return s;
@@ -85,7 +67,7 @@ class PassRenderer {
             samples_ = depth->samples;
             output_.depthFormat = &images_[pass_.depthStencil.image].format();
         }
-        positions_ = samplePositions(samples_);
+        positions_ = standardSampleLocations(samples_);
         if (positions_.empty()) return unsupported("oracle: " + std::to_string(samples_) + " samples");
         state_.resize(static_cast<size_t>(width_) * height_ * samples_);
         for (uint32_t y = 0; y < height_; ++y) {
@@ -196,8 +178,12 @@ class PassRenderer {
         std::vector<PreparedTriangle> result;
         for (size_t i = 0; i < geometry.triangles.size(); ++i) {
             FragmentSource source;
-            Triangle::Setup setup{
-                {}, draw.viewport, !pipeline.depthClamp, {}, hashNumbers(0, context, std::size(context))};
+            Triangle::Setup setup{{},
+                                  draw.viewport,
+                                  !pipeline.depthClamp,
+                                  {},
+                                  hashNumbers(0, context, std::size(context)),
+                                  rules_.subPixelBits};
             size_t distances = ~size_t{0};
             for (size_t k = 0; k < 3; ++k) {
                 source.vertices[k] = &geometry.vertices[geometry.triangles[i][k]];
@@ -242,9 +228,9 @@ class PassRenderer {
     }
 
     GridPoint samplePoint(int32_t x, int32_t y, uint32_t s) const {
-        constexpr int64_t kUnits = (1 << kSubPixelBits) / 16;
-        return {(int64_t{x} << kSubPixelBits) + positions_[s].x * kUnits,
-                (int64_t{y} << kSubPixelBits) + positions_[s].y * kUnits};
+        const int64_t unit = (int64_t{1} << rules_.subPixelBits) / 16;
+        return {(int64_t{x} << rules_.subPixelBits) + positions_[s].x * unit,
+                (int64_t{y} << rules_.subPixelBits) + positions_[s].y * unit};
     }
 
     // The two pixel rows of quads that begin at `row`.
@@ -359,6 +345,7 @@ class PassRenderer {
 
     const Scene& scene_;
     const ScenePass& pass_;
+    const OracleRules& rules_;
     std::vector<ImageStore>& images_;
     uint32_t width_ = 0, height_ = 0, samples_ = 1;
     OutputState output_;  // attachments only
@@ -368,8 +355,9 @@ class PassRenderer {
 
 }  // namespace
 
-Status renderPass(const Scene& scene, const ScenePass& pass, std::vector<ImageStore>& images) {
-    return PassRenderer(scene, pass, images).run();
+Status renderPass(const Scene& scene, const ScenePass& pass, const OracleRules& rules,
+                  std::vector<ImageStore>& images) {
+    return PassRenderer(scene, pass, rules, images).run();
 }
 
 }  // namespace vernier::conformance::exact

@@ -8,7 +8,6 @@ namespace vernier::conformance::exact {
 
 namespace {
 
-constexpr double kSubUnit = 1.0 / (1 << kSubPixelBits);
 // Beyond this many pixels the homogeneous test takes over: snapped coordinates would not fit the exact edge
 // functions' declared range, and no implementation keeps such vertices unclipped.
 constexpr double kFarAway = 0x1p22;
@@ -24,8 +23,8 @@ struct Point {
     double x, y;
 };
 
-Point toPoint(const GridPoint& p) {
-    return {static_cast<double>(p.x) * kSubUnit, static_cast<double>(p.y) * kSubUnit};
+Point toPoint(const GridPoint& p, double subUnit) {
+    return {static_cast<double>(p.x) * subUnit, static_cast<double>(p.y) * subUnit};
 }
 
 double distance(const std::array<double, 2>& a, const Point& p) {
@@ -78,21 +77,22 @@ std::optional<Triangle> Triangle::create(const Setup& setup) {
         if (outside != 0) t.cuts_.push_back(plane);
     }
 
-    t.freedom_ = kSubUnit;
+    t.subUnit_ = std::ldexp(1.0, -setup.subPixelBits);
+    t.freedom_ = t.subUnit_;
     t.snapped_ = inFront;
     for (size_t i = 0; i < 3 && t.snapped_; ++i) {
         t.window_[i] = {v[i].x / v[i].w, v[i].y / v[i].w};
         const double reach = std::max(std::abs(t.window_[i][0]), std::abs(t.window_[i][1]));
         t.snapped_ = reach < kFarAway;
-        t.freedom_ = std::max(t.freedom_, kSubUnit + kPositionRounding * reach);
+        t.freedom_ = std::max(t.freedom_, t.subUnit_ + kPositionRounding * reach);
     }
     const double determinant = t.shape_.determinant;
     t.side_ = determinant < 0 ? -1 : 1;
     t.orientation_ = determinant > 0 ? 1 : determinant < 0 ? -1 : 0;
     if (t.snapped_) {
         for (size_t i = 0; i < 3; ++i) {
-            t.grid_[i] = {static_cast<int64_t>(std::nearbyint(t.window_[i][0] / kSubUnit)),
-                          static_cast<int64_t>(std::nearbyint(t.window_[i][1] / kSubUnit))};
+            t.grid_[i] = {static_cast<int64_t>(std::nearbyint(t.window_[i][0] / t.subUnit_)),
+                          static_cast<int64_t>(std::nearbyint(t.window_[i][1] / t.subUnit_))};
         }
         t.orientation_ = exact::orientation(t.grid_);
         const auto& [a, b, c] = t.window_;
@@ -105,8 +105,8 @@ std::optional<Triangle> Triangle::create(const Setup& setup) {
         // function of the coordinates.
         bool onGrid = true;
         for (const auto& w : t.window_) {
-            onGrid = onGrid && w[0] == std::nearbyint(w[0] / kSubUnit) * kSubUnit &&
-                     w[1] == std::nearbyint(w[1] / kSubUnit) * kSubUnit;
+            onGrid = onGrid && w[0] == std::nearbyint(w[0] / t.subUnit_) * t.subUnit_ &&
+                     w[1] == std::nearbyint(w[1] / t.subUnit_) * t.subUnit_;
         }
         if (area == 0 && (onGrid || p[0] == p[1] || p[1] == p[2] || p[2] == p[0])) return std::nullopt;
     } else if (determinant == 0) {
@@ -145,7 +145,7 @@ PixelBounds Triangle::bounds(const PixelBounds& within) const {
     PixelBounds result = within;
     const auto [left, right] = std::minmax({window_[0][0], window_[1][0], window_[2][0]});
     const auto [top, bottom] = std::minmax({window_[0][1], window_[1][1], window_[2][1]});
-    const double margin = freedom_ + kSubUnit;
+    const double margin = freedom_ + subUnit_;
     result.x0 = std::max(result.x0, static_cast<int32_t>(std::floor(left - margin)));
     result.y0 = std::max(result.y0, static_cast<int32_t>(std::floor(top - margin)));
     result.x1 = std::min(result.x1, static_cast<int32_t>(std::ceil(right + margin)) + 1);
@@ -159,7 +159,7 @@ OpenEdge Triangle::openEdge(size_t oppositeVertex, bool nominalInside) const {
 
 SampleVerdict Triangle::classifySnapped(const GridPoint& sample) const {
     SampleVerdict verdict;
-    const Point p = toPoint(sample);
+    const Point p = toPoint(sample, subUnit_);
     const auto [left, right] = std::minmax({window_[0][0], window_[1][0], window_[2][0]});
     const auto [top, bottom] = std::minmax({window_[0][1], window_[1][1], window_[2][1]});
     if (p.x < left - freedom_ || p.x > right + freedom_ || p.y < top - freedom_ || p.y > bottom + freedom_)
@@ -192,7 +192,7 @@ SampleVerdict Triangle::classifySnapped(const GridPoint& sample) const {
 
 SampleVerdict Triangle::classifyHomogeneous(const GridPoint& sample) const {
     SampleVerdict verdict;
-    const Point p = toPoint(sample);
+    const Point p = toPoint(sample, subUnit_);
     for (size_t i = 0; i < 3; ++i) {
         const auto& [a, b, c] = shape_.edge[i];
         const double e = side_ * (a * p.x + b * p.y + c);
@@ -208,7 +208,7 @@ SampleVerdict Triangle::classifyHomogeneous(const GridPoint& sample) const {
 }
 
 void Triangle::applyCuts(const GridPoint& sample, SampleVerdict& verdict) const {
-    const Point p = toPoint(sample);
+    const Point p = toPoint(sample, subUnit_);
     const auto b = shape_.weights(p.x, p.y);
     verdict.cutNominal = true;
     for (const auto& cut : cuts_) {
@@ -240,7 +240,7 @@ SampleVerdict Triangle::classify(const GridPoint& sample) const {
 Interval Triangle::depth(const GridPoint& sample) const {
     const WindowVertex<double>& v = shape_.vertex[0];
     if (slopeX_ == 0 && slopeY_ == 0 && depthSlack_ == 0) return v.z / v.w;
-    const Point p = toPoint(sample);
+    const Point p = toPoint(sample, subUnit_);
     return Interval(shape_.depth(shape_.weights(p.x, p.y))).widened(depthSlack_);
 }
 

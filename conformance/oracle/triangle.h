@@ -1,7 +1,7 @@
 // One triangle of a draw as the oracle rasterises it: where samples must, may or must not be covered, and its
 // depth.
 //
-// Nominal coverage is the declared one: vertices snapped to nearest even on 8 sub-pixel bits, exact integers,
+// Nominal coverage is the declared one: vertices snapped to nearest even on the sub-pixel grid, exact integers,
 // top-left ties. What is open is decided on the unsnapped vertices, each free to move by one sub-unit (plus
 // float rounding of the viewport transform). Triangles that cross the eye plane or reach very far out are
 // tested in homogeneous coordinates, unsnapped: new vertices of a clipper would themselves be snapped within
@@ -19,8 +19,6 @@
 #include <vector>
 
 namespace vernier::conformance::exact {
-
-inline constexpr int kSubPixelBits = 8;
 
 /// An edge or cut that a legal implementation may put on either side of a sample. All primitives with the
 /// same key must take the same side: their edges have the same two vertices.
@@ -53,6 +51,7 @@ class Triangle {
         bool depthClip = true;
         std::vector<std::array<double, 3>> clipDistances;  // per distance: the three vertices' values
         uint64_t context = 0;  // vertices with equal clip coordinates snap alike within a context
+        int subPixelBits = 8;
     };
 
     /// Nothing when no implementation draws any of it.
@@ -91,6 +90,7 @@ class Triangle {
     double side_ = 1;  // sign that makes edge functions positive inside
     int orientation_ = 0;
     bool orientationOpen_ = false;
+    double subUnit_ = 1.0 / 256;  // pixels
     double freedom_ = 0;
     std::array<std::array<double, 2>, 3> window_{};  // snapped_: unsnapped positions
     GridTriangle grid_{};

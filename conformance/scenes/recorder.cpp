@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <map>
 #include <memory>
+#include <mutex>
 
 namespace vernier::conformance {
 namespace {
@@ -22,6 +24,33 @@ template <class T>
 uint32_t append(std::vector<T>& list, T element) {
     list.push_back(std::move(element));
     return static_cast<uint32_t>(list.size() - 1);
+}
+
+Result<std::vector<uint32_t>> compile(VkShaderStageFlagBits stage, const std::string& glsl, const std::string& name) {
+    VnGlslDesc desc{};
+    desc.stage = stage;
+    desc.source = glsl.c_str();
+    desc.sourceLength = glsl.size();
+    desc.sourceName = name.c_str();
+    desc.target = VN_GLSL_TARGET_VULKAN_1_0;  // what every driver reads
+    VnGlslOutput* raw = nullptr;
+    const VnGlslResult result = vnCompileGlsl(&desc, &raw);
+    const std::unique_ptr<VnGlslOutput, decltype(&vnFreeGlslOutput)> output(raw, &vnFreeGlslOutput);
+    if (result == VN_GLSL_SUCCESS) return std::vector<uint32_t>(output->words, output->words + output->wordCount);
+    return invalidArgument(name + " does not compile:\n" + (output ? output->log : "out of memory"));
+}
+
+/// Remembers what was compiled: hundreds of small scenes share a few shaders, and compiling takes longer than drawing.
+Result<std::vector<uint32_t>> compileOnce(VkShaderStageFlagBits stage, const std::string& glsl,
+                                          const std::string& name) {
+    static std::mutex mutex;
+    static std::map<std::pair<VkShaderStageFlagBits, std::string>, std::vector<uint32_t>> known;
+    const std::lock_guard lock(mutex);
+    const auto found = known.find({stage, glsl});
+    if (found != known.end()) return found->second;
+    Result<std::vector<uint32_t>> compiled = compile(stage, glsl, name);
+    if (compiled) known.emplace(std::pair(stage, glsl), *compiled);
+    return compiled;
 }
 
 }  // namespace
@@ -74,6 +103,16 @@ PipelineRecorder& PipelineRecorder::stencil(const VkStencilOpState& front, const
 
 PipelineRecorder& PipelineRecorder::samples(VkSampleCountFlagBits samples) {
     state().samples = samples;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::sampleMask(uint32_t mask) {
+    state().sampleMask = mask;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::depthClamp() {
+    state().depthClamp = true;
     return *this;
 }
 
@@ -254,19 +293,11 @@ uint32_t SceneRecorder::shader(VkShaderStageFlagBits stage, std::string_view gls
     shader.glsl = glsl;
     const std::string name = scene_.name + "/shader" + std::to_string(scene_.shaders.size()) +
                              (stage == VK_SHADER_STAGE_VERTEX_BIT ? ".vert" : ".frag");
-    VnGlslDesc desc{};
-    desc.stage = stage;
-    desc.source = shader.glsl.c_str();
-    desc.sourceLength = shader.glsl.size();
-    desc.sourceName = name.c_str();
-    desc.target = VN_GLSL_TARGET_VULKAN_1_0;  // what every driver reads
-    VnGlslOutput* raw = nullptr;
-    const VnGlslResult result = vnCompileGlsl(&desc, &raw);
-    const std::unique_ptr<VnGlslOutput, decltype(&vnFreeGlslOutput)> output(raw, &vnFreeGlslOutput);
-    if (result == VN_GLSL_SUCCESS) {
-        shader.spirv.assign(output->words, output->words + output->wordCount);
+    Result<std::vector<uint32_t>> compiled = compileOnce(stage, shader.glsl, name);
+    if (compiled) {
+        shader.spirv = std::move(compiled).value();
     } else if (status_.ok()) {
-        status_ = invalidArgument(name + " does not compile:\n" + (output ? output->log : "out of memory"));
+        status_ = compiled.error();
     }
     return append(scene_.shaders, std::move(shader));
 }

@@ -45,6 +45,8 @@ class PipelineRecorder {
     PipelineRecorder& depthBias(float constant, float slope, float clamp = 0);
     PipelineRecorder& stencil(const VkStencilOpState& front, const VkStencilOpState& back);
     PipelineRecorder& samples(VkSampleCountFlagBits samples);
+    PipelineRecorder& sampleMask(uint32_t mask);
+    PipelineRecorder& depthClamp();
     /// The number of colour attachments (1 unless said); all unblended, all components written.
     PipelineRecorder& targets(uint32_t count);
     PipelineRecorder& blend(const VkPipelineColorBlendAttachmentState& state, uint32_t target = 0);

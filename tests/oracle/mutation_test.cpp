@@ -53,8 +53,8 @@ std::vector<GridTriangle> diagonalQuad() {
 TEST(Mutation, TheRightRulePasses) {
     const auto counts = draw(diagonalQuad(), covers);
     EXPECT_EQ(checkDeclaredCoverage(diagonalQuad(), kGrid, kEverything, counts), "");
-    EXPECT_EQ(checkLegalCoverage(diagonalQuad(), kGrid, counts), "");
-    EXPECT_EQ(checkPartition(diagonalQuad(), kGrid, counts), "");
+    EXPECT_EQ(checkLegalCoverage(diagonalQuad(), kGrid, kEverything, counts), "");
+    EXPECT_EQ(checkPartition(diagonalQuad(), kGrid, kEverything, counts), "");
 }
 
 TEST(Mutation, ShiftedTieRuleIsCaughtInDeclaredModeOnly) {
@@ -62,16 +62,16 @@ TEST(Mutation, ShiftedTieRuleIsCaughtInDeclaredModeOnly) {
     const auto counts = draw(diagonalQuad(), bottomRight);
     const std::string wrong = checkDeclaredCoverage(diagonalQuad(), kGrid, kEverything, counts);
     EXPECT_NE(wrong.find("tie"), std::string::npos) << wrong;
-    EXPECT_EQ(checkLegalCoverage(diagonalQuad(), kGrid, counts), "") << "another tie rule is legal";
-    EXPECT_EQ(checkPartition(diagonalQuad(), kGrid, counts), "");
+    EXPECT_EQ(checkLegalCoverage(diagonalQuad(), kGrid, kEverything, counts), "") << "another tie rule is legal";
+    EXPECT_EQ(checkPartition(diagonalQuad(), kGrid, kEverything, counts), "");
 }
 
 TEST(Mutation, MissingTopLeftDecrementDoublesTheDiagonal) {
     const auto inclusive = withTies([](const GridPoint&, const GridPoint&) { return true; });
     const auto counts = draw(diagonalQuad(), inclusive);
-    for (const std::string& wrong :
-         {checkDeclaredCoverage(diagonalQuad(), kGrid, kEverything, counts),
-          checkLegalCoverage(diagonalQuad(), kGrid, counts), checkPartition(diagonalQuad(), kGrid, counts)}) {
+    for (const std::string& wrong : {checkDeclaredCoverage(diagonalQuad(), kGrid, kEverything, counts),
+                                     checkLegalCoverage(diagonalQuad(), kGrid, kEverything, counts),
+                                     checkPartition(diagonalQuad(), kGrid, kEverything, counts)}) {
         EXPECT_NE(wrong.find("covered"), std::string::npos);
         EXPECT_NE(wrong.find("tie"), std::string::npos) << wrong;
     }
@@ -80,8 +80,8 @@ TEST(Mutation, MissingTopLeftDecrementDoublesTheDiagonal) {
 TEST(Mutation, ExclusiveTestLeavesHoles) {
     const auto exclusive = withTies([](const GridPoint&, const GridPoint&) { return false; });
     const auto counts = draw(diagonalQuad(), exclusive);
-    EXPECT_NE(checkLegalCoverage(diagonalQuad(), kGrid, counts), "");
-    EXPECT_NE(checkPartition(diagonalQuad(), kGrid, counts).find("covered 0 times"), std::string::npos);
+    EXPECT_NE(checkLegalCoverage(diagonalQuad(), kGrid, kEverything, counts), "");
+    EXPECT_NE(checkPartition(diagonalQuad(), kGrid, kEverything, counts).find("covered 0 times"), std::string::npos);
 }
 
 TEST(Mutation, SamplesShiftedByThreeSubUnitsAreIllegal) {
@@ -90,8 +90,8 @@ TEST(Mutation, SamplesShiftedByThreeSubUnitsAreIllegal) {
     EXPECT_NE(checkDeclaredCoverage(diagonalQuad(), kGrid, kEverything, counts), "");
     // Every pixel of the border columns is within reach of a legal snapping only for shifts of one sub-unit.
     const std::vector<GridTriangle> offGrid{{GridPoint{640 - 2, 600}, GridPoint{3000, 600}, GridPoint{640 - 2, 3000}}};
-    EXPECT_EQ(checkLegalCoverage(offGrid, kGrid, draw(offGrid, covers)), "");
-    EXPECT_NE(checkLegalCoverage(offGrid, kGrid, draw(offGrid, withTies(isTopLeft, {-5, 0}))), "");
+    EXPECT_EQ(checkLegalCoverage(offGrid, kGrid, kEverything, draw(offGrid, covers)), "");
+    EXPECT_NE(checkLegalCoverage(offGrid, kGrid, kEverything, draw(offGrid, withTies(isTopLeft, {-5, 0}))), "");
 }
 
 TEST(Mutation, ScissorOffByOne) {
@@ -124,13 +124,13 @@ TEST(Mutation, PerTriangleSnappingBreaksTheTiling) {
             tiling.push_back({points[i + 1], points[i + kCells + 2], points[i + kCells + 1]});
         }
     }
-    EXPECT_EQ(checkPartition(tiling, kGrid, draw(tiling, covers)), "");
-    EXPECT_EQ(checkLegalCoverage(tiling, kGrid, draw(tiling, covers)), "");
+    EXPECT_EQ(checkPartition(tiling, kGrid, kEverything, draw(tiling, covers)), "");
+    EXPECT_EQ(checkLegalCoverage(tiling, kGrid, kEverything, draw(tiling, covers)), "");
     std::vector<GridTriangle> cracked = tiling;
     for (size_t i = 0; i < cracked.size(); i += 2) {
         for (GridPoint& p : cracked[i]) p = {p.x / 64 * 64, p.y / 64 * 64};
     }
-    EXPECT_NE(checkPartition(tiling, kGrid, draw(cracked, covers)), "");
+    EXPECT_NE(checkPartition(tiling, kGrid, kEverything, draw(cracked, covers)), "");
 }
 
 TEST(Mutation, SevenBitWeights) {

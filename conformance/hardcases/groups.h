@@ -1,0 +1,21 @@
+// The one list of groups: it declares what group_*.cpp define and makes the table of catalogue.cpp.
+#pragma once
+
+#include "conformance/hardcases/hard_case.h"
+
+// X(letter, function, title)
+#define VERNIER_CASE_GROUPS(X)                                  \
+    X('E', edgeCases, "Coverage and edges")                     \
+    X('C', clippingCases, "Clipping")                           \
+    X('W', homogeneousCases, "w near zero and guard band")      \
+    X('I', interpolationCases, "Interpolation and perspective") \
+    X('D', depthCases, "Depth precision, bias, clamp")          \
+    X('B', blendingCases, "Blending, rounding, formats")
+
+namespace vernier::conformance::hardcases {
+
+#define VERNIER_DECLARE_GROUP(letter, function, title) std::span<const HardCase> function();
+VERNIER_CASE_GROUPS(VERNIER_DECLARE_GROUP)
+#undef VERNIER_DECLARE_GROUP
+
+}  // namespace vernier::conformance::hardcases

@@ -1,0 +1,153 @@
+#include "conformance/hardcases/homogeneous_input.h"
+
+#include "conformance/scenes/recorder.h"
+
+namespace vernier::conformance::hardcases {
+namespace {
+
+using exact::Rational;
+
+const char* const kColorVertexGlsl = R"(#version 450
+layout(location = 0) in vec4 position;
+layout(location = 1) in vec4 color;
+layout(location = 0) out vec4 vColor;
+void main() {
+    gl_Position = position;
+    vColor = color;
+}
+)";
+const char* const kColorFragmentGlsl = R"(#version 450
+layout(location = 0) in vec4 vColor;
+layout(location = 0) out vec4 color;
+void main() { color = vColor; }
+)";
+
+const char* const kBothVertexGlsl = R"(#version 450
+layout(location = 0) in vec4 position;
+layout(location = 1) in vec4 color;
+layout(location = 0) out vec4 vSmooth;
+layout(location = 1) noperspective out vec4 vLinear;
+void main() {
+    gl_Position = position;
+    vSmooth = color;
+    vLinear = color;
+}
+)";
+const char* const kBothFragmentGlsl = R"(#version 450
+layout(location = 0) in vec4 vSmooth;
+layout(location = 1) noperspective in vec4 vLinear;
+layout(location = 0) out vec4 perspective;
+layout(location = 1) out vec4 linear;
+void main() {
+    perspective = vSmooth;
+    linear = vLinear;
+}
+)";
+
+/// A linear function of the sample: inside where positive.
+Side sideOf(const std::array<Rational, 3>& line, const Rational& x, const Rational& y, const Rational& subUnit) {
+    const Rational value = line[0] * x + line[1] * y + line[2];
+    const Rational reach = (abs(line[0]) + abs(line[1])) * subUnit;
+    if (abs(value) <= reach) return Side::open;
+    return value > 0 ? Side::inside : Side::outside;
+}
+
+}  // namespace
+
+exact::HomogeneousTriangle<Rational> exactTriangle(const ClipTriangle& triangle, const VkViewport& viewport) {
+    std::array<exact::WindowVertex<Rational>, 3> v;
+    for (size_t i = 0; i < 3; ++i) {
+        exact::Clip<Rational> p;
+        for (size_t c = 0; c < 4; ++c) p[c] = exact::rational(triangle[i][c]);
+        v[i] = exact::toWindow(p, viewport);
+    }
+    return exact::HomogeneousTriangle<Rational>(v);
+}
+
+SampleSides sidesOf(const ClipTriangle& clip, const exact::HomogeneousTriangle<Rational>& triangle, const Rational& x,
+                    const Rational& y, int subPixelBits) {
+    SampleSides sides;
+    const Rational subUnit = exact::powerOfTwo(-subPixelBits);
+    const int orientation = sgn(triangle.determinant);
+    std::array<Rational, 3> nearLine, farLine;
+    for (size_t i = 0; i < 3; ++i) {
+        std::array<Rational, 3> line;
+        for (size_t c = 0; c < 3; ++c) {
+            line[c] = triangle.edge[i][c] * orientation;
+            nearLine[c] += line[c] * exact::rational(clip[i][2]);
+            farLine[c] += line[c] * (exact::rational(clip[i][3]) - exact::rational(clip[i][2]));
+        }
+        sides.edge[i] = sideOf(line, x, y, subUnit);
+    }
+    for (const auto& line : {nearLine, farLine}) sides.clip = std::max(sides.clip, sideOf(line, x, y, subUnit));
+    return sides;
+}
+
+void judgeSides(CaseInput& input, size_t scene, const std::vector<ClipTriangle>& triangles, VkExtent2D extent) {
+    input.judge({scene}, [=](std::span<const Drawn* const> images, const Declared& declared) -> Verdict {
+        const auto counts = readCounts(*images[0], extent);
+        if (!counts) return Verdict::wrong(counts.error().message);
+        std::vector<exact::HomogeneousTriangle<Rational>> shapes;
+        for (const ClipTriangle& t : triangles) shapes.push_back(exactTriangle(t, viewportOf(extent)));
+        for (uint32_t y = 0; y < extent.height; ++y) {
+            for (uint32_t x = 0; x < extent.width; ++x) {
+                uint32_t low = 0, high = 0;
+                for (size_t i = 0; i < triangles.size(); ++i) {
+                    if (sgn(shapes[i].determinant) == 0) continue;
+                    const Side side = sidesOf(triangles[i], shapes[i], x + exact::fraction(1, 2),
+                                              y + exact::fraction(1, 2), declared.subPixelBits)
+                                          .worst();
+                    low += side == Side::inside;
+                    high += side != Side::outside;
+                }
+                const uint32_t count = (*counts)[size_t{y} * extent.width + x];
+                if (count >= low && count <= high) continue;
+                return Verdict::wrong(pixelText(x, y) + " is covered " + std::to_string(count) + " times, exactly " +
+                                      std::to_string(low) + ".." + std::to_string(high) +
+                                      " by the homogeneous edge functions");
+            }
+        }
+        return {};
+    });
+}
+
+std::vector<ClipPosition> flatten(const std::vector<ClipTriangle>& triangles) {
+    std::vector<ClipPosition> result;
+    for (const ClipTriangle& t : triangles) result.insert(result.end(), t.begin(), t.end());
+    return result;
+}
+
+Result<Scene> colorScene(std::string_view name, const std::vector<ColorVertex>& vertices, VkExtent2D extent,
+                         VkFormat format, bool depthClamp) {
+    SceneRecorder record(name, "Colours interpolated in perspective.");
+    const uint32_t target = record.colorTarget("color", format, extent);
+    const uint32_t buffer = record.vertexBuffer("vertices", vertices);
+    auto pipeline = record.pipeline(record.vertex(kColorVertexGlsl), record.fragment(kColorFragmentGlsl))
+                        .binding(sizeof(ColorVertex))
+                        .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, 0)
+                        .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, sizeof(ClipPosition));
+    if (depthClamp) pipeline.depthClamp();
+    record.pass(extent).color(target, {0, 0, 0, 0});
+    record.draw(pipeline, static_cast<uint32_t>(vertices.size())).vertices(buffer);
+    record.output(target);
+    return record.finish();
+}
+
+Result<Scene> interpolationScene(std::string_view name, const std::vector<ColorVertex>& vertices, VkExtent2D extent) {
+    SceneRecorder record(name, "An attribute interpolated in perspective and linearly on the screen.");
+    const uint32_t perspective = record.colorTarget("perspective", VK_FORMAT_R32G32B32A32_SFLOAT, extent);
+    const uint32_t linear = record.colorTarget("linear", VK_FORMAT_R32G32B32A32_SFLOAT, extent);
+    const uint32_t buffer = record.vertexBuffer("vertices", vertices);
+    const uint32_t pipeline = record.pipeline(record.vertex(kBothVertexGlsl), record.fragment(kBothFragmentGlsl))
+                                  .binding(sizeof(ColorVertex))
+                                  .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, 0)
+                                  .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, sizeof(ClipPosition))
+                                  .targets(2);
+    record.pass(extent).color(perspective, {0, 0, 0, 0}).color(linear, {0, 0, 0, 0});
+    record.draw(pipeline, static_cast<uint32_t>(vertices.size())).vertices(buffer);
+    record.output(perspective);
+    record.output(linear);
+    return record.finish();
+}
+
+}  // namespace vernier::conformance::hardcases

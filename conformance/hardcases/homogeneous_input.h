@@ -1,0 +1,44 @@
+// Triangles in clip coordinates: exact sides of samples, for cases about clipping and w.
+#pragma once
+
+#include "conformance/hardcases/coverage_input.h"
+#include "conformance/oracle/homogeneous.h"
+
+namespace vernier::conformance::hardcases {
+
+using ClipTriangle = std::array<ClipPosition, 3>;
+
+/// In exact arithmetic, in window coordinates times w.
+exact::HomogeneousTriangle<exact::Rational> exactTriangle(const ClipTriangle& triangle, const VkViewport& viewport);
+
+enum class Side : uint8_t { inside, open, outside };
+
+/// What is known of a sample: open where moving it by one sub-unit can change the answer.
+struct SampleSides {
+    std::array<Side, 3> edge{};  // opposite each vertex
+    Side clip = Side::inside;    // near and far together
+    Side worst() const { return std::max({edge[0], edge[1], edge[2], clip}); }
+};
+SampleSides sidesOf(const ClipTriangle& clip, const exact::HomogeneousTriangle<exact::Rational>& triangle,
+                    const exact::Rational& x, const exact::Rational& y, int subPixelBits);
+
+/// Adds a judge: every sample is covered by at least the triangles that it lies inside of, and at most by those that it
+/// does not lie outside of. Where nothing is open the count is exact.
+void judgeSides(CaseInput& input, size_t scene, const std::vector<ClipTriangle>& triangles, VkExtent2D extent);
+
+std::vector<ClipPosition> flatten(const std::vector<ClipTriangle>& triangles);
+
+/// A vertex with a position and four numbers that the fragment shader sees.
+struct ColorVertex {
+    ClipPosition position;
+    std::array<float, 4> color;
+};
+
+/// Draws vertices with their colours interpolated in perspective into one target.
+Result<Scene> colorScene(std::string_view name, const std::vector<ColorVertex>& vertices, VkExtent2D extent,
+                         VkFormat format = VK_FORMAT_R8G8B8A8_UNORM, bool depthClamp = false);
+
+/// The same with two targets of floats: smooth and noperspective.
+Result<Scene> interpolationScene(std::string_view name, const std::vector<ColorVertex>& vertices, VkExtent2D extent);
+
+}  // namespace vernier::conformance::hardcases

@@ -1,0 +1,191 @@
+// The judges are judged: pictures with one deliberate fault each must be called wrong, and the cause named.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <functional>
+#include <map>
+
+#include "conformance/hardcases/run.h"
+#include "conformance/oracle/oracle.h"
+#include "tests/oracle/rendered.h"
+
+namespace vernier::conformance::hardcases {
+namespace {
+
+struct Ideal {
+    CaseInput input;
+    std::vector<SceneOutcome> drawn;
+};
+
+// The oracle's own declared rendering, once per case and process.
+const Ideal& ideal(std::string_view id) {
+    static std::map<std::string_view, Ideal> cache;
+    const auto [found, fresh] = cache.try_emplace(id);
+    if (!fresh) return found->second;
+    const HardCase* hardCase = findCase(id);
+    EXPECT_NE(hardCase, nullptr);
+    if (hardCase == nullptr) return found->second;
+    hardCase->build(found->second.input);
+    for (const Scene& scene : found->second.input.scenes()) {
+        const auto images = renderOracle(scene);
+        EXPECT_TRUE(images.ok()) << id << ": " << (images.ok() ? "" : images.error().message);
+        SceneOutcome outcome;
+        if (images) {
+            for (const OracleImage& image : *images) outcome.images.push_back(renderedFrom(image));
+        }
+        found->second.drawn.push_back(std::move(outcome));
+    }
+    return found->second;
+}
+
+using Fault = std::function<void(std::vector<SceneOutcome>&)>;
+
+Verdict verdictOn(std::string_view id, const Fault& fault) {
+    const Ideal& made = ideal(id);
+    std::vector<SceneOutcome> drawn = made.drawn;
+    fault(drawn);
+    return judgeCase(made.input, drawn, {});
+}
+
+std::byte& byteAt(RenderedImage& image, uint32_t x, uint32_t y, uint32_t channel) {
+    return image.texels[(size_t{y} * image.extent.width + x) * 4 + channel];
+}
+
+void setFloat(RenderedImage& image, uint32_t x, uint32_t y, uint32_t channel, float value) {
+    std::memcpy(image.texels.data() + (size_t{y} * image.extent.width + x) * 16 + channel * 4, &value, 4);
+}
+
+class DeclaredRendering : public testing::TestWithParam<const char*> {};
+
+TEST_P(DeclaredRendering, IsExact) {
+    const Verdict verdict = verdictOn(GetParam(), [](auto&) {});
+    EXPECT_EQ(verdict.outcome, Outcome::exact) << outcomeName(verdict.outcome) << ": " << verdict.witness;
+}
+
+TEST_P(DeclaredRendering, WithAMissingPartIsNot) {
+    EXPECT_EQ(verdictOn(GetParam(), [](auto& drawn) { drawn.pop_back(); }).outcome, Outcome::crashed);
+    const Verdict cut = verdictOn(GetParam(), [](auto& drawn) { drawn.back().images.back().texels.pop_back(); });
+    EXPECT_EQ(cut.outcome, Outcome::wrong);
+    const Verdict lacking = verdictOn(GetParam(), [](auto& drawn) {
+        drawn[0] = {{}, Outcome::unsupported, "no such feature"};
+    });
+    EXPECT_GE(lacking.outcome, Outcome::unsupported);
+}
+
+INSTANTIATE_TEST_SUITE_P(Judges, DeclaredRendering,
+                         testing::Values("E01", "E02", "E06", "E07", "E10", "E11", "E20", "C02", "W06", "I01", "I02",
+                                         "D03", "B01", "B02", "B03", "B04"));
+
+void expectWrong(std::string_view id, const Fault& fault, const std::string& cause) {
+    const Verdict verdict = verdictOn(id, fault);
+    EXPECT_EQ(verdict.outcome, Outcome::wrong) << id;
+    EXPECT_NE(verdict.witness.find(cause), std::string::npos) << id << ": " << verdict.witness;
+}
+
+TEST(Fault, HoleAndDoubleOnTheDiagonal) {
+    expectWrong(
+        "E01", [](auto& d) { byteAt(d[0].images[0], 3, 4, 0) = std::byte{0}; }, "pixel (3, 4) is covered 0 times");
+    expectWrong(
+        "E01", [](auto& d) { byteAt(d[0].images[0], 3, 4, 0) = std::byte{32}; }, "tie");
+}
+
+TEST(Fault, VertexOrderMatters) {
+    expectWrong(
+        "E02", [](auto& d) { byteAt(d[7].images[0], 3, 4, 0) = std::byte{0}; }, "covered 0 times");
+}
+
+TEST(Fault, CracksInTilings) {
+    for (const char* id : {"E06", "E07"}) {
+        expectWrong(
+            id, [](auto& d) { byteAt(d[0].images[0], 31, 30, 0) = std::byte{0}; }, "pixel (31, 30)");
+    }
+}
+
+TEST(Fault, SliverTakenForEmpty) {
+    // Where the sliver's centres are, both neighbours leave a hole.
+    expectWrong(
+        "E10", [](auto& d) { byteAt(d[0].images[0], 8, 8, 0) = std::byte{0}; }, "pixel (8, 8) is covered 0 times");
+}
+
+TEST(Fault, EmptyTriangleDrawsAPixel) {
+    expectWrong(
+        "E11", [](auto& d) { byteAt(d[0].images[0], 8, 2, 0) = std::byte{16}; }, "no area");
+}
+
+TEST(Fault, LeakOutsideTheScissor) {
+    expectWrong(
+        "E19", [](auto& d) { byteAt(d[2].images[0], 60, 60, 0) = std::byte{16}; }, "outside the scissor");
+}
+
+TEST(Fault, OrderOfOverlappingTriangles) {
+    expectWrong(
+        "E20", [](auto& d) { byteAt(d[0].images[0], 50, 45, 0) ^= std::byte{1}; }, "the last in API order");
+}
+
+TEST(Fault, ClippedEdgeDrawnTwice) {
+    expectWrong(
+        "C02",
+        [](auto& d) {
+            for (std::byte& b : d[0].images[0].texels) {
+                if (b == std::byte{16}) b = std::byte{32};
+            }
+        },
+        "covered 2 times");
+}
+
+TEST(Fault, ScalingChangesABit) {
+    expectWrong(
+        "W06", [](auto& d) { byteAt(d[4].images[0], 20, 20, 1) ^= std::byte{1}; }, "2^120");
+}
+
+TEST(Fault, AlmostOne) {
+    expectWrong(
+        "I01", [](auto& d) { setFloat(d[0].images[0], 30, 30, 0, 0.9999999f); }, "exactly 1");
+}
+
+TEST(Fault, OriginPlaneEquation) {
+    // The error of a plane anchored at the framebuffer's origin: 0.7 codes at 4000 pixels.
+    expectWrong(
+        "I02",
+        [](auto& d) {
+            Bytes& texels = d[0].images[0].texels;
+            for (size_t p = 0; p < texels.size(); p += 16) {
+                float v;
+                std::memcpy(&v, texels.data() + p, 4);
+                v += 0.74f / 255;
+                std::memcpy(texels.data() + p, &v, 4);
+            }
+        },
+        "of the attribute's range");
+}
+
+TEST(Fault, EqualFails) {
+    expectWrong(
+        "D03",
+        [](auto& d) {
+            byteAt(d[1].images[0], 30, 30, 0) = std::byte{255};
+            byteAt(d[1].images[0], 30, 30, 1) = std::byte{0};
+        },
+        "failed EQUAL");
+}
+
+TEST(Fault, WrongCodes) {
+    const auto fill = [](std::byte value) {
+        return [value](std::vector<SceneOutcome>& d) {
+            for (SceneOutcome& outcome : d) std::ranges::fill(outcome.images[0].texels, value);
+        };
+    };
+    EXPECT_EQ(verdictOn("B01", fill(std::byte{63})).outcome, Outcome::allowed);
+    expectWrong("B01", fill(std::byte{65}), "permitted 63 or 64");
+    EXPECT_EQ(verdictOn("B02", fill(std::byte{127})).outcome, Outcome::allowed);
+    expectWrong("B02", fill(std::byte{126}), "permitted 127 or 128");
+    expectWrong(
+        "B01", [](auto& d) { byteAt(d[1].images[0], 9, 9, 2) = std::byte{63}; }, "elsewhere");
+    for (const char* id : {"B03", "B04"}) {
+        expectWrong(
+            id, [](auto& d) { byteAt(d[0].images[0], 200, 0, 1) ^= std::byte{1}; }, "came back as");
+    }
+}
+
+}  // namespace
+}  // namespace vernier::conformance::hardcases
