@@ -14,6 +14,11 @@ constexpr VkImageUsageFlags kAttachmentUsage =
 constexpr uint32_t kRowAlignment = 16;  // bytes
 constexpr VkDeviceSize kLevelAlignment = 64;
 
+/// Rows whose distance is a multiple of this share few sets of a first-level cache (64 sets of 64 bytes): a tile of 64
+/// rows would throw its own lines out. One line more puts each row into other sets.
+constexpr uint64_t kAliasingPitch = 512;
+constexpr uint64_t kCacheLine = 64;
+
 uint64_t alignUp(uint64_t value, uint64_t alignment) {
     return (value + alignment - 1) / alignment * alignment;
 }
@@ -70,7 +75,9 @@ Result<Image> Image::create(const ImageInfo& info) {
         const uint64_t columns = padded ? alignUp(width, kAttachmentBlock) : width;
         const uint64_t rows = padded ? alignUp(height, kAttachmentBlock) : height;
         level.offset = offset;
-        level.rowPitch = static_cast<uint32_t>(alignUp(columns * texel, kRowAlignment));
+        uint64_t pitch = alignUp(columns * texel, kRowAlignment);
+        if (pitch % kAliasingPitch == 0) pitch += kCacheLine;
+        level.rowPitch = static_cast<uint32_t>(pitch);
         level.samplePitch = level.rowPitch * rows;
         level.slicePitch = level.samplePitch * info.samples;
         offset = alignUp(offset + level.slicePitch * level.extent.depth, kLevelAlignment);
