@@ -7,6 +7,17 @@ namespace {
 
 constexpr uint32_t kDefaultMxcsr = 0x1F80;  // all exceptions masked, round to nearest, DAZ and FTZ off
 
+/// Looks at `ready` for about as long as sleeping and waking up would take; returns whether it came true.
+template <class Ready>
+bool awaitBriefly(const Ready& ready) {
+    constexpr int kLooks = 1000;  // of 20 to 70 nanoseconds
+    for (int n = 0; n < kLooks; ++n) {
+        if (ready()) return true;
+        _mm_pause();
+    }
+    return false;
+}
+
 }  // namespace
 
 FloatControlScope::FloatControlScope() : saved_(_mm_getcsr()) {
@@ -41,31 +52,60 @@ void ThreadPool::parallelFor(uint32_t count, const std::function<void(uint32_t, 
         step_ = &step;
         count_ = count;
         next_.store(0, std::memory_order_relaxed);
-        busy_ = static_cast<uint32_t>(workers_.size());
         ++generation_;
     }
     wake_.notify_all();
-    runSteps(0);
+    runSteps(step, count, 0);
+    {
+        // Nothing is left to share: who has not come by now need not be waited for.
+        const std::lock_guard lock(mutex_);
+        step_ = nullptr;
+    }
+    const auto allDone = [this] { return busy_.load(std::memory_order_acquire) == 0; };
+    awaitBriefly(allDone);
     std::unique_lock lock(mutex_);
-    done_.wait(lock, [this] { return busy_ == 0; });
+    done_.wait(lock, allDone);
 }
 
-void ThreadPool::runSteps(uint32_t worker) {
-    for (uint32_t index; (index = next_.fetch_add(1, std::memory_order_relaxed)) < count_;) (*step_)(index, worker);
+void ThreadPool::expectLoop() {
+    if (workers_.empty()) return;
+    {
+        const std::lock_guard lock(mutex_);
+        ++expected_;
+    }
+    wake_.notify_all();
+}
+
+void ThreadPool::runSteps(const Step& step, uint32_t count, uint32_t worker) {
+    for (uint32_t index; (index = next_.fetch_add(1, std::memory_order_relaxed)) < count;) step(index, worker);
 }
 
 void ThreadPool::workerMain(uint32_t worker) {
     const FloatControlScope floatControl;
-    uint32_t seen = 0;
+    uint32_t seen = 0, expected = 0;
     std::unique_lock lock(mutex_);
     while (true) {
-        wake_.wait(lock, [&] { return stop_ || generation_ != seen; });
+        wake_.wait(lock, [&] { return stop_ || generation_ != seen || expected_ != expected; });
         if (stop_) return;
+        expected = expected_;
+        if (generation_ == seen) {
+            lock.unlock();
+            awaitBriefly([&] { return generation_.load(std::memory_order_relaxed) != seen || stop_; });
+            lock.lock();
+            continue;
+        }
         seen = generation_;
+        if (step_ == nullptr) continue;
+        const Step& step = *step_;
+        const uint32_t count = count_;
+        ++busy_;
         lock.unlock();
-        runSteps(worker);
+        runSteps(step, count, worker);
         lock.lock();
         if (--busy_ == 0) done_.notify_one();
+        lock.unlock();
+        awaitBriefly([&] { return generation_.load(std::memory_order_relaxed) != seen || stop_; });
+        lock.lock();
     }
 }
 

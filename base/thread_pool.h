@@ -11,9 +11,10 @@
 
 namespace vernier {
 
-/// Runs loops on the calling thread and `threads - 1` workers, which sleep when there is nothing to do. parallelFor may
-/// be called by several threads: their loops run one after the other. Steps of a loop run in any order, on any thread;
-/// nothing that depends on the order may be computed in them.
+/// Runs loops on the calling thread and `threads - 1` workers, which sleep when there is nothing to do, though not at
+/// once: waking up takes as long as a short loop. parallelFor may be called by several threads: their loops run one
+/// after the other. Steps of a loop run in any order, on any thread; nothing that depends on the order may be computed
+/// in them.
 class ThreadPool {
   public:
     /// `threads` counts the caller too: 1 makes every loop run on the caller alone. At least 1.
@@ -30,19 +31,25 @@ class ThreadPool {
     /// throw and must not call parallelFor.
     void parallelFor(uint32_t count, const std::function<void(uint32_t index, uint32_t worker)>& step);
 
+    /// A loop will follow soon: wakes the workers, so that they wait for it awake (for some microseconds).
+    void expectLoop();
+
   private:
+    using Step = std::function<void(uint32_t index, uint32_t worker)>;
     void workerMain(uint32_t worker);
-    void runSteps(uint32_t worker);
+    void runSteps(const Step& step, uint32_t count, uint32_t worker);
 
     std::mutex callers_;  // one loop at a time
     std::mutex mutex_;
     std::condition_variable wake_, done_;
-    const std::function<void(uint32_t, uint32_t)>* step_ = nullptr;
+    const Step* step_ = nullptr;  // nullptr: it is too late to join the loop
     std::atomic<uint32_t> next_{0};
     uint32_t count_ = 0;
-    uint32_t generation_ = 0;
-    uint32_t busy_ = 0;
-    bool stop_ = false;
+    // Written under the mutex; read without it by who waits awake.
+    std::atomic<uint32_t> generation_{0};  // of loops
+    std::atomic<uint32_t> expected_{0};    // calls of expectLoop
+    std::atomic<uint32_t> busy_{0};        // workers in the loop
+    std::atomic<bool> stop_{false};
     std::vector<std::thread> workers_;
 };
 

@@ -113,7 +113,8 @@ class BatchContext {
 
     /// Runs `lanes` lanes (a multiple of 4, at most BatchProgram::lanes()). `execMask`: ~0 for every lane that runs,
     /// helpers included; `storeMask`: ~0 for every lane whose effects count (a subset). Both have room for
-    /// BatchProgram::lanes() words; lanes beyond `lanes` may be computed but have no effects. Returns false if a loop
+    /// BatchProgram::lanes() words; lanes beyond `lanes` may be computed but have no effects.
+    /// Both nullptr: all `lanes` run and have effects. Returns false if a loop
     /// passed the back-edge budget (2^24 per lane and run): the device is lost.
     bool run(uint32_t lanes, const uint32_t* execMask, const uint32_t* storeMask);
 

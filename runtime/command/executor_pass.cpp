@@ -63,6 +63,7 @@ uint64_t nowNanoseconds() {
 }  // namespace
 
 void Executor::run(const command::BeginRendering& command) {
+    device_.pool().expectLoop();
     PassTargets targets;
     targets.colorCount = command.colorCount;
     for (uint32_t i = 0; i < command.colorCount; ++i) {

@@ -28,10 +28,13 @@ void forEachRun(const FragmentBatch& batch, const Function& function) {
             return;
         case LaneOrder::rows:
             for (uint32_t lane = 0; lane < batch.count; lane += kBlockSize)
-                function(batch.x[lane], batch.y[lane], lane, static_cast<uint32_t>(kBlockSize));
+                function(batch.originX, batch.originY + static_cast<int32_t>(rowOf(LaneOrder::rows, lane)), lane,
+                         static_cast<uint32_t>(kBlockSize));
             return;
         case LaneOrder::quads:
-            for (uint32_t lane = 0; lane < batch.count; lane += 2) function(batch.x[lane], batch.y[lane], lane, 2u);
+            for (uint32_t lane = 0; lane < batch.count; lane += 2)
+                function(batch.originX + static_cast<int32_t>(columnOf(LaneOrder::quads, lane)),
+                         batch.originY + static_cast<int32_t>(rowOf(LaneOrder::quads, lane)), lane, 2u);
             return;
     }
 }

@@ -37,7 +37,7 @@ struct FragmentBatch {
     uint32_t count = 0;
     LaneOrder order = LaneOrder::spans;
     int32_t originX = 0, originY = 0;                     // rows, quads: first pixel of the rectangle
-    alignas(64) std::array<int32_t, kLaneRoom> x, y;      // pixels
+    alignas(64) std::array<int32_t, kLaneRoom> x, y;      // pixels; in rows and quads only where somebody reads them
     alignas(64) std::array<uint32_t, kLaneRoom> execute;  // ~0: the lane runs, as a helper perhaps
     alignas(64) std::array<uint32_t, kLaneRoom> store;    // ~0: its effects count
     alignas(64) std::array<float, kLaneRoom> offsetX,

@@ -147,6 +147,7 @@ void FragmentStage::fillBuiltin(const FragmentBatch& batch, const BuiltinSlot& b
 void FragmentStage::interpolateAt(void* self, uint32_t slot, uint32_t where, uint32_t lanes, const float* a,
                                   const float* b, float* result) {
     auto& stage = *static_cast<FragmentStage*>(self);
+    if (stage.current_ == &stage.block_) stage.placeBlock();
     const FragmentBatch& batch = *stage.current_;
     const std::vector<Varying>& varyings = stage.plan_->varyings;
     const auto found =

@@ -65,7 +65,6 @@ void FragmentStage::bind(const PreparedDraw& draw, uint64_t token) {
     interpolate_ = interpolateFunction(isa);
     placeLanes_ = placeLanesFunction(isa);
     blend_ = blendFunction(isa);
-    for (size_t k = 0; k < plan_->colors.size(); ++k) blockColors_[k] = blockColorFunction(plan_->colors[k], isa);
 
     const DynamicState& dynamic = *draw.call.dynamic;
     const RenderTarget& depth = targets_->depthStencil;
@@ -90,14 +89,14 @@ void FragmentStage::bind(const PreparedDraw& draw, uint64_t token) {
     context_ = &entry.context;
     capacity_ = std::min(program->lanes(), kMaxFragmentLanes);
     bindInputs();
+    bindColors(isa);
+    readsPixels_ = !plan_->fragmentBuiltins.empty() || plan_->preciseInterpolation || plan_->needsCentroid ||
+                   !plan_->keepsCoverage;
 
     block_.count = std::min(capacity_, kBlockLanes);
     block_.order = plan_->usesQuads ? LaneOrder::quads : LaneOrder::rows;
     block_.segmentCount = 1;
-    for (auto* lanes : {&block_.execute, &block_.store}) {
-        std::fill_n(lanes->begin(), block_.count, ~0u);
-        std::fill(lanes->begin() + block_.count, lanes->end(), 0u);
-    }
+    block_.store.fill(~0u);
 }
 
 TrianglePlanes& FragmentStage::startPrimitive() {
@@ -157,6 +156,11 @@ void FragmentStage::add(const BlockCoverage& block) {
     inBatch_[index] |= any;
 }
 
+void FragmentStage::placeBlock() {
+    placeLanes_(block_);
+    std::fill_n(block_.coverage.begin(), block_.count, (1u << samples_) - 1);
+}
+
 /// A block that the current primitive covers completely: shaded and written without being collected.
 void FragmentStage::runBlock(const BlockCoverage& block) {
     const uint32_t lanes = block_.count, rows = lanes / static_cast<uint32_t>(kBlockSize);
@@ -164,8 +168,7 @@ void FragmentStage::runBlock(const BlockCoverage& block) {
     block_.originX = tileX_ + block.x;
     for (uint32_t row = 0; row < static_cast<uint32_t>(kBlockSize); row += rows) {
         block_.originY = tileY_ + block.y + static_cast<int32_t>(row);
-        placeLanes_(block_);
-        if (!plan_->coverageIsFull) std::fill_n(block_.coverage.begin(), lanes, (1u << samples_) - 1);
+        if (readsPixels_) placeBlock();
         run(block_);
     }
 }
@@ -245,7 +248,9 @@ void FragmentStage::run(FragmentBatch& batch) {
     const bool spans = batch.order == LaneOrder::spans;
     current_ = &batch;
     fillInputs(batch);
-    if (!context_->run(lanes, batch.execute.data(), batch.store.data())) outOfBudget_ = true;
+    const uint32_t* execute = spans ? batch.execute.data() : nullptr;
+    const uint32_t* store = spans ? batch.store.data() : nullptr;
+    if (!context_->run(lanes, execute, store)) outOfBudget_ = true;
     ++statistics_.batches;
     uint32_t stored = count;
     if (plan_->usesQuads && spans)
@@ -315,48 +320,49 @@ const float* FragmentStage::outputPlane(uint32_t slot, uint32_t component) const
     return component == 3 ? ones_.data() : zeros_.data();
 }
 
-void FragmentStage::writeColor(const ColorOutputInput& input, BlockColorFn block) {
-    const FragmentBatch& batch = *input.batch;
-    if (block == nullptr || batch.order == LaneOrder::spans) {
-        statistics_.destinationReads += outputColors(input, colors_);
-        return;
+void FragmentStage::bindColors(Isa isa) {
+    boundColorCount_ = 0;
+    for (const ColorPlan& plan : plan_->colors) {
+        const RenderTarget& target = targets_->colors[plan.attachment];
+        if (target.data == nullptr) continue;  // VK_ATTACHMENT_UNUSED
+        BoundColor& color = boundColors_[boundColorCount_++];
+        color = {};
+        color.general.plan = color.block.plan = &plan;
+        color.general.target = &target;
+        color.general.blend = blend_;
+        color.general.constants = draw_->call.dynamic->blendConstants.data();
+        for (uint32_t c = 0; c < 4; ++c) {
+            color.general.source[c] = color.block.source[c] = outputPlane(plan.slots[c], c);
+            color.general.second[c] = outputPlane(plan.dualSlots[c], c);
+        }
+        color.block.rowPitch = target.rowPitch;
+        color.blockRoutine = blockColorFunction(plan, isa);
     }
-    BlockColorInput colors{};
-    colors.plan = input.plan;
-    colors.texels = texelAddress(input, batch.originX, batch.originY);
-    colors.rowPitch = input.target->rowPitch;
-    colors.order = batch.order;
-    colors.lanes = batch.count;
-    std::copy_n(input.source, 4, colors.source);
-    colors.mask = input.mask;
-    block(colors);
-    if (input.plan->readsDestination) statistics_.destinationReads += writtenLanes(input);
 }
 
 /// `full`: all lanes are written in all samples.
 void FragmentStage::writeColors(const FragmentBatch& batch, bool full) {
-    for (size_t k = 0; k < plan_->colors.size(); ++k) {
-        const ColorPlan& plan = plan_->colors[k];
-        if (targets_->colors[plan.attachment].data == nullptr) continue;  // VK_ATTACHMENT_UNUSED
-        ColorOutputInput input{};
-        input.plan = &plan;
-        input.target = &targets_->colors[plan.attachment];
-        input.batch = &batch;
-        input.blend = blend_;
-        input.constants = draw_->call.dynamic->blendConstants.data();
-        for (uint32_t c = 0; c < 4; ++c) {
-            input.source[c] = outputPlane(plan.slots[c], c);
-            input.second[c] = outputPlane(plan.dualSlots[c], c);
+    for (uint32_t s = 0; s < samples_; ++s) {
+        uint32_t any = full ? 1 : 0;
+        for (uint32_t lane = 0; lane < batch.count && !full; ++lane) {
+            mask_[lane] = (batch.coverage[lane] >> s & 1) != 0 ? ~0u : 0u;
+            any |= mask_[lane];
         }
-        if (!full) input.mask = mask_.data();
-        for (uint32_t s = 0; s < samples_; ++s) {
-            input.sample = s;
-            uint32_t any = full ? 1 : 0;
-            for (uint32_t lane = 0; lane < batch.count && !full; ++lane) {
-                mask_[lane] = (batch.coverage[lane] >> s & 1) != 0 ? ~0u : 0u;
-                any |= mask_[lane];
+        if (any == 0) continue;
+        for (size_t k = 0; k < boundColorCount_; ++k) {
+            BoundColor& color = boundColors_[k];
+            color.general.batch = &batch;
+            color.general.mask = color.block.mask = full ? nullptr : mask_.data();
+            color.general.sample = s;
+            if (color.blockRoutine == nullptr || batch.order == LaneOrder::spans) {
+                statistics_.destinationReads += outputColors(color.general, colors_);
+                continue;
             }
-            if (any != 0) writeColor(input, blockColors_[k]);
+            color.block.texels = texelAddress(color.general, batch.originX, batch.originY);
+            color.block.order = batch.order;
+            color.block.lanes = batch.count;
+            color.blockRoutine(color.block);
+            if (color.general.plan->readsDestination) statistics_.destinationReads += writtenLanes(color.general);
         }
     }
 }

@@ -46,6 +46,7 @@ class FragmentStage {
     void addQuads(const BlockCoverage& block, uint64_t any, uint32_t samples, uint32_t sample);
     void addSamples(const BlockCoverage& block, uint32_t sample);
     void bindInputs();
+    void placeBlock();
     void runBlock(const BlockCoverage& block);
 
     void run(FragmentBatch& batch);
@@ -55,8 +56,8 @@ class FragmentStage {
     void centroidOffsets(const FragmentBatch& batch);
     void reduceCoverage(FragmentBatch& batch);
     void testLate(FragmentBatch& batch);
+    void bindColors(Isa isa);
     void writeColors(const FragmentBatch& batch, bool full);
-    void writeColor(const ColorOutputInput& input, BlockColorFn block);
     const float* outputPlane(uint32_t slot, uint32_t component) const;
     static void interpolateAt(void* self, uint32_t slot, uint32_t where, uint32_t lanes, const float* a, const float* b,
                               float* result);
@@ -75,7 +76,15 @@ class FragmentStage {
     InterpolateFn interpolate_ = nullptr;
     PlaceLanesFn placeLanes_ = nullptr;
     BlendFn blend_ = nullptr;
-    std::array<BlockColorFn, kMaxColorAttachments> blockColors_{};  // by Plan::colors
+    /// An attachment that changes, bound to the planes of the program's outputs.
+    struct BoundColor {
+        ColorOutputInput general;
+        BlockColorInput block;
+        BlockColorFn blockRoutine = nullptr;  // nullptr: there is none
+    };
+    std::array<BoundColor, kMaxColorAttachments> boundColors_{};
+    size_t boundColorCount_ = 0;
+    bool readsPixels_ = false;  // somebody other than interpolation reads x, y, or coverage of a batch
     DepthStencilState depthState_;
 
     FragmentBatch batch_;                     // waiting, in spans

@@ -1,5 +1,5 @@
-// What a later opaque primitive hides is not rendered: if a primitive replaces every colour of a tile, the tile's work
-// before it has no effect.
+// What later opaque primitives hide is not rendered: if primitives together replace every colour of a tile, the tile's
+// work before the first of them has no effect.
 #pragma once
 
 #include <cstddef>
@@ -17,10 +17,16 @@ namespace vernier {
 struct VisibleStart {
     size_t item = 0;
     uint32_t entry = 0;
-    bool replacesColors = false;  // the first primitive rendered replaces every colour of the tile
+    bool replacesColors = false;  // what is rendered replaces every colour of the tile
 };
 
-VisibleStart visibleStart(const PassTargets& targets, std::span<const PreparedDraw> draws,
-                          std::span<const TileWork> work);
+struct TileInput {
+    PixelRect rect;        // the pixels of the tile inside the render area
+    int32_t tileX, tileY;  // first pixel of the tile
+    std::span<const PreparedDraw> draws;
+    std::span<const TileWork> work;
+};
+
+VisibleStart visibleStart(const PassTargets& targets, const TileInput& tile);
 
 }  // namespace vernier

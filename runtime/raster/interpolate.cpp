@@ -21,6 +21,40 @@ using I = hn::RebindToSigned<F>;
 using VF = hn::Vec<F>;
 constexpr uint32_t kLanes = hn::MaxLanes(F());
 
+/// Pixels of a rectangle of lanes, from its first one.
+struct LaneTables {
+    alignas(64) int32_t column[2][64], row[2][64];  // by LaneOrder::rows, quads
+};
+
+constexpr LaneTables laneTables() {
+    LaneTables tables{};
+    for (uint32_t lane = 0; lane < 64; ++lane) {
+        for (const LaneOrder order : {LaneOrder::rows, LaneOrder::quads}) {
+            const int k = order == LaneOrder::quads ? 1 : 0;
+            tables.column[k][lane] = static_cast<int32_t>(columnOf(order, lane));
+            tables.row[k][lane] = static_cast<int32_t>(rowOf(order, lane));
+        }
+    }
+    return tables;
+}
+
+constexpr LaneTables kLaneTables = laneTables();
+
+/// The pixels of a batch: x and y plus an offset.
+struct PixelSource {
+    explicit PixelSource(const FragmentBatch& batch) {
+        const bool rectangle = batch.order != LaneOrder::spans;
+        const int k = batch.order == LaneOrder::quads ? 1 : 0;
+        x = rectangle ? kLaneTables.column[k] : batch.x.data();
+        y = rectangle ? kLaneTables.row[k] : batch.y.data();
+        offsetX = rectangle ? batch.originX : 0;
+        offsetY = rectangle ? batch.originY : 0;
+    }
+
+    const int32_t *x, *y;
+    int32_t offsetX, offsetY;
+};
+
 /// Weights of the second and third vertex.
 struct Weights {
     VF perspective1, perspective2, linear1, linear2;
@@ -28,14 +62,19 @@ struct Weights {
 
 /// What is the same for all lanes of a segment.
 struct SegmentPlanes {
-    SegmentPlanes(const InterpolationInput& in, const TrianglePlanes& p)
+    SegmentPlanes(const InterpolationInput& in, const PixelSource& source, const TrianglePlanes& p)
         : planes(p),
+          pixels(source),
           divide(!p.affine && (in.perspective || in.fragInverseW != nullptr)),
+          anchorX(hn::Set(I(), p.anchorX - source.offsetX)),
+          anchorY(hn::Set(I(), p.anchorY - source.offsetY)),
           centreX(hn::Set(F(), 0.5f - p.fractionX)),
           centreY(hn::Set(F(), 0.5f - p.fractionY)) {}
 
     const TrianglePlanes& planes;
+    const PixelSource& pixels;
     bool divide;
+    hn::Vec<I> anchorX, anchorY;
     VF centreX, centreY;
 };
 
@@ -43,8 +82,8 @@ HWY_INLINE Weights weightsAt(const InterpolationInput& in, const SegmentPlanes& 
     const F f;
     const I i;
     const TrianglePlanes& p = segment.planes;
-    const VF x = hn::ConvertTo(f, hn::Sub(hn::LoadU(i, in.batch->x.data() + n), hn::Set(i, p.anchorX)));
-    const VF y = hn::ConvertTo(f, hn::Sub(hn::LoadU(i, in.batch->y.data() + n), hn::Set(i, p.anchorY)));
+    const VF x = hn::ConvertTo(f, hn::Sub(hn::LoadU(i, segment.pixels.x + n), segment.anchorX));
+    const VF y = hn::ConvertTo(f, hn::Sub(hn::LoadU(i, segment.pixels.y + n), segment.anchorY));
     VF ox = segment.centreX, oy = segment.centreY;
     if (HWY_UNLIKELY(in.offsetX != nullptr)) {
         ox = hn::Sub(hn::LoadU(f, in.offsetX + n), hn::Set(f, p.fractionX));
@@ -77,18 +116,16 @@ HWY_INLINE Weights weightsAt(const InterpolationInput& in, const SegmentPlanes& 
     return w;
 }
 
-/// The attribute of a segment as a function of the weights.
+/// An attribute as a function of the weights: its value at the first vertex, and the differences of the others.
 struct AttributePlane {
-    AttributePlane(const TrianglePlanes& p, uint32_t varying) {
-        const float first = p.attributes[0][varying];
-        base = hn::Set(F(), first);
-        d1 = hn::Set(F(), p.attributes[1][varying] - first);
-        d2 = hn::Set(F(), p.attributes[2][varying] - first);
-    }
-    HWY_INLINE VF at(VF w1, VF w2) const { return hn::Add(base, hn::Add(hn::Mul(w1, d1), hn::Mul(w2, d2))); }
-
-    VF base, d1, d2;
+    float base, d1, d2;
 };
+
+HWY_INLINE VF valueAt(const AttributePlane& plane, VF w1, VF w2) {
+    const F f;
+    const VF change = hn::Add(hn::Mul(w1, hn::Set(f, plane.d1)), hn::Mul(w2, hn::Set(f, plane.d2)));
+    return hn::Add(hn::Set(f, plane.base), change);
+}
 
 /// Lanes past the segment are overwritten by the next one; lanes past the plane must not be.
 HWY_INLINE void storeLanes(VF value, float* plane, uint32_t n, uint32_t capacity) {
@@ -101,76 +138,41 @@ HWY_INLINE void storeLanes(VF value, float* plane, uint32_t n, uint32_t capacity
     }
 }
 
-/// A segment that one vector holds: the weights stay in registers.
-HWY_INLINE void shortSegment(const InterpolationInput& in, const SegmentPlanes& planes, uint32_t first) {
-    const Weights w = weightsAt(in, planes, first);
-    for (const VaryingTarget& target : in.targets) {
-        const AttributePlane plane(planes.planes, target.varying);
-        storeLanes(plane.at(target.linear ? w.linear1 : w.perspective1, target.linear ? w.linear2 : w.perspective2),
-                   target.plane, first, in.capacity);
-    }
-}
-
-void longSegment(const InterpolationInput& in, const SegmentPlanes& planes, uint32_t first, uint32_t count) {
-    const F f;
-    alignas(64) float perspective[2][kLaneRoom], linear[2][kLaneRoom];
-    const bool linearToo = !in.targets.empty() && in.targets.back().linear;
-    for (uint32_t n = 0; n < count; n += kLanes) {
-        const Weights w = weightsAt(in, planes, first + n);
-        hn::Store(w.perspective1, f, perspective[0] + n);
-        hn::Store(w.perspective2, f, perspective[1] + n);
-        if (!linearToo) continue;
-        hn::Store(w.linear1, f, linear[0] + n);
-        hn::Store(w.linear2, f, linear[1] + n);
-    }
-    for (const VaryingTarget& target : in.targets) {
-        const AttributePlane plane(planes.planes, target.varying);
-        const float(&weights)[2][kLaneRoom] = target.linear ? linear : perspective;
-        for (uint32_t n = 0; n < count; n += kLanes)
-            storeLanes(plane.at(hn::Load(f, weights[0] + n), hn::Load(f, weights[1] + n)), target.plane, first + n,
-                       in.capacity);
-    }
-}
-
 uint32_t interpolate(const InterpolationInput& in) {
     uint32_t divides = 0;
+    const PixelSource pixels(*in.batch);
+    const size_t targets = in.targets.size();
+    std::array<AttributePlane, kMaxInterfaceComponents> attributes;
     for (uint32_t s = 0; s < in.batch->segmentCount; ++s) {
         const FragmentSegment& segment = in.batch->segments[s];
-        const SegmentPlanes planes(in, *segment.planes);
+        const TrianglePlanes& p = *segment.planes;
+        const SegmentPlanes planes(in, pixels, p);
         if (planes.divide && in.perspective) divides += segment.count;
-        if (segment.count <= kLanes) {
-            shortSegment(in, planes, segment.first);
-        } else {
-            longSegment(in, planes, segment.first, segment.count);
+        for (size_t k = 0; k < targets; ++k) {
+            const uint32_t varying = in.targets[k].varying;
+            const float base = p.attributes[0][varying];
+            attributes[k] = {base, p.attributes[1][varying] - base, p.attributes[2][varying] - base};
+        }
+        for (uint32_t n = segment.first; n < segment.first + segment.count; n += kLanes) {
+            const Weights w = weightsAt(in, planes, n);
+            for (size_t k = 0; k < targets; ++k) {
+                const VaryingTarget& target = in.targets[k];
+                const VF w1 = target.linear ? w.linear1 : w.perspective1;
+                const VF w2 = target.linear ? w.linear2 : w.perspective2;
+                storeLanes(valueAt(attributes[k], w1, w2), target.plane, n, in.capacity);
+            }
         }
     }
     return divides;
 }
 
-struct LaneTables {
-    alignas(64) int32_t column[2][64], row[2][64];
-};
-
-constexpr LaneTables laneTables() {
-    LaneTables tables{};
-    for (uint32_t lane = 0; lane < 64; ++lane) {
-        for (const LaneOrder order : {LaneOrder::rows, LaneOrder::quads}) {
-            const int k = order == LaneOrder::quads ? 1 : 0;
-            tables.column[k][lane] = static_cast<int32_t>(columnOf(order, lane));
-            tables.row[k][lane] = static_cast<int32_t>(rowOf(order, lane));
-        }
-    }
-    return tables;
-}
-
 void placeLanes(FragmentBatch& batch) {
-    static constexpr LaneTables kTables = laneTables();
     const I i;
-    const int k = batch.order == LaneOrder::quads ? 1 : 0;
-    const auto x = hn::Set(i, batch.originX), y = hn::Set(i, batch.originY);
+    const PixelSource pixels(batch);
+    const auto x = hn::Set(i, pixels.offsetX), y = hn::Set(i, pixels.offsetY);
     for (uint32_t n = 0; n < batch.count; n += kLanes) {
-        hn::StoreU(hn::Add(hn::Load(i, kTables.column[k] + n), x), i, batch.x.data() + n);
-        hn::StoreU(hn::Add(hn::Load(i, kTables.row[k] + n), y), i, batch.y.data() + n);
+        hn::StoreU(hn::Add(hn::LoadU(i, pixels.x + n), x), i, batch.x.data() + n);
+        hn::StoreU(hn::Add(hn::LoadU(i, pixels.y + n), y), i, batch.y.data() + n);
     }
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "base/simd.h"
+#include "runtime/limits.h"
 #include "runtime/raster/fragment_batch.h"
 
 namespace vernier {
@@ -29,16 +30,17 @@ struct InterpolationInput {
     float* fragInverseW;
 };
 
+/// Of a batch in rows or quads, x and y need not be filled. At most kMaxInterfaceComponents targets.
 /// Returns the number of lanes for which 1/w was divided.
 using InterpolateFn = uint32_t (*)(const InterpolationInput& input);
 InterpolateFn interpolateFunction(Isa isa);
 
-/// The targets in double, rounded once.
+/// The targets in double, rounded once. From x and y of the batch.
 void interpolatePrecise(const InterpolationInput& input);
 /// Copies the bits of the provoking vertex.
 void copyFlat(const FragmentBatch& batch, const VaryingTarget& target);
 
-/// The pixels of a batch in rows or quads: x and y from count, order and origin.
+/// Fills x and y of a batch in rows or quads.
 using PlaceLanesFn = void (*)(FragmentBatch& batch);
 PlaceLanesFn placeLanesFunction(Isa isa);
 

@@ -200,12 +200,13 @@ void RenderPass::Impl::runTiles() {
         const uint32_t tile = activeTiles[index];
         const PixelRect rect = tileRect(tile);
         const bool cleared = !loaded && targets.depthStencil.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR;
-        const VisibleStart start = exactCounts ? VisibleStart{} : visibleStart(targets, draws, tileWork[tile]);
+        const TileInput input{rect, grid.x0 + static_cast<int32_t>(tile % grid.columns) * kTileSize,
+                              grid.y0 + static_cast<int32_t>(tile / grid.columns) * kTileSize, draws, tileWork[tile]};
+        const VisibleStart start = exactCounts ? VisibleStart{} : visibleStart(targets, input);
         if (!loaded) loadTile(rect, start.replacesColors && targets.layers == 1);
         if (tileWork[tile].empty()) return;
-        self.renderer.render(rect, grid.x0 + static_cast<int32_t>(tile % grid.columns) * kTileSize,
-                             grid.y0 + static_cast<int32_t>(tile / grid.columns) * kTileSize, cleared, draws, nextToken,
-                             tileWork[tile], start.item, start.entry);
+        self.renderer.render(rect, input.tileX, input.tileY, cleared, draws, nextToken, tileWork[tile], start.item,
+                             start.entry);
     });
     loaded = true;
     for (const auto& worker : workers) worker->renderer.fragments().unbind();

@@ -14,7 +14,8 @@ struct BatchContext::Impl {
 
     batch::SharedState shared;
     batch::RunState draw, batch;
-    batch::Words live;
+    batch::Words live;    // what liveMask() was last asked for
+    uint32_t groups = 0;  // of the last run: its lanes in whole groups
 };
 
 BatchContext::BatchContext(std::shared_ptr<const BatchProgram> program)
@@ -43,14 +44,18 @@ bool BatchContext::run(uint32_t lanes, const uint32_t* execMask, const uint32_t*
     lanes = std::min(lanes, compiled.batch().lanes);
     const uint32_t groups = (lanes + batch::kLaneGroup - 1) / batch::kLaneGroup * batch::kLaneGroup;
     const batch::MaskFunctions& maskWords = compiled.masks();
-    const batch::LaneMask exec = maskWords.pack(execMask, groups) & batch::LaneMask::first(lanes);
-    impl_->batch.begin(lanes, exec, maskWords.pack(storeMask, groups) & exec);
-    const bool ok = impl_->batch.ended() || impl_->batch.run();
-    maskWords.spread(impl_->batch.frame.live, impl_->live.get(), groups);
-    return ok;
+    const auto lanesOf = [&](const uint32_t* mask) {
+        const batch::LaneMask first = batch::LaneMask::first(lanes);
+        return mask == nullptr ? first : maskWords.pack(mask, groups) & first;
+    };
+    const batch::LaneMask exec = lanesOf(execMask);
+    impl_->batch.begin(lanes, exec, lanesOf(storeMask) & exec);
+    impl_->groups = groups;
+    return impl_->batch.ended() || impl_->batch.run();
 }
 
 const uint32_t* BatchContext::liveMask() const {
+    impl_->shared.compiled.masks().spread(impl_->batch.frame.live, impl_->live.get(), impl_->groups);
     return impl_->live.get();
 }
 

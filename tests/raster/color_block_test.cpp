@@ -61,10 +61,6 @@ struct Fixture {
     explicit Fixture(LaneOrder order) {
         batch.order = order;
         batch.count = kLanes;
-        for (uint32_t lane = 0; lane < kLanes; ++lane) {
-            batch.x[lane] = static_cast<int32_t>(columnOf(order, lane));
-            batch.y[lane] = static_cast<int32_t>(rowOf(order, lane));
-        }
     }
 
     void run(const ColorPlan& plan, bool masked, Isa isa) {
