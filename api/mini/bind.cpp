@@ -158,6 +158,27 @@ VnResult vnBindTexture(VnContext context, uint32_t set, uint32_t binding, uint32
     });
 }
 
+VnResult vnBindTexelBuffer(VnContext context, uint32_t set, uint32_t binding, uint32_t element, VnBuffer buffer,
+                           VkFormat format, uint64_t offset, uint64_t size) {
+    return guardedContext(context, __func__, [&] {
+        const auto object = context->device->buffers.find(buffer.id);
+        if (buffer.id && !object) return badHandle(context->device, "vnBindTexelBuffer", "buffer");
+        std::shared_ptr<BufferView> texels;
+        if (object) {
+            const BufferViewInfo info{format, offset, size ? size : VK_WHOLE_SIZE};
+            Result<BufferView> view = BufferView::create(object->buffer, info, context->device->runtime->isa());
+            if (!view) return fail(context->device, "vnBindTexelBuffer", view.error());
+            texels = std::make_shared<BufferView>(std::move(view).value());
+        }
+        BoundResource* resource = elementAt(context, "vnBindTexelBuffer", set, binding, element);
+        if (!resource) return VN_ERROR_INVALID_ARGUMENT;
+        *resource = {};
+        resource->buffer = object;
+        resource->texels = std::move(texels);
+        return VN_SUCCESS;
+    });
+}
+
 VnResult vnPushConstants(VnContext context, uint32_t offset, const void* data, uint32_t size) {
     return guardedContext(context, __func__, [&] {
         if (!data && size) return invalid(context->device, "vnPushConstants", "data is NULL");

@@ -62,6 +62,8 @@ VnResult attachmentOf(VnContext context, const VnAttachment& from, const char* n
     if (!view) return badHandle(context->device, "vnBeginPass", (std::string(name) + " view").c_str());
     if (view->view.info().range.levelCount != 1)
         return invalid(context->device, "vnBeginPass", std::string(name) + " view has more than one mip level");
+    if (view->view.info().type == VK_IMAGE_VIEW_TYPE_3D)
+        return invalid(context->device, "vnBeginPass", std::string(name) + " view is 3D; draw to a view of its slices");
     to.view = &context->recording->keep(view).view;
     to.loadOp = from.loadOp;
     to.storeOp = from.storeOp;
@@ -89,7 +91,7 @@ class PassBuilder {
     VnResult add(const VnAttachment& attachment, const char* name, bool depth, RenderingAttachment& to) {
         const ViewObject* view = nullptr;
         if (VnResult result = attachmentOf(context_, attachment, name, to, &view)) return result;
-        const FormatInfo& format = view->image->image.format();
+        const FormatInfo& format = *findFormat(view->view.info().format);
         const VkFormatFeatureFlags wanted =
             depth ? VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT;
         if (!(format.optimalTilingFeatures & wanted))

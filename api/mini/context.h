@@ -27,10 +27,11 @@ struct Recording {
     }
 };
 
-/// One element of what vnBindBuffer and vnBindTexture bind.
+/// One element of what vnBindBuffer, vnBindTexture and vnBindTexelBuffer bind.
 struct BoundResource {
-    std::shared_ptr<BufferObject> buffer;
+    std::shared_ptr<BufferObject> buffer;  // also of a texel buffer
     uint64_t offset = 0, size = 0;
+    std::shared_ptr<BufferView> texels;
     std::shared_ptr<ViewObject> view;
     std::shared_ptr<SamplerObject> sampler;
 };

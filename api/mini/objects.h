@@ -14,6 +14,7 @@
 #include "runtime/command/device.h"
 #include "runtime/plan/compute_pipeline.h"
 #include "runtime/plan/pipeline.h"
+#include "runtime/resource/buffer_view.h"
 #include "runtime/resource/descriptor.h"
 
 namespace vernier::mini {

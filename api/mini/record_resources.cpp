@@ -17,7 +17,10 @@ bool isBound(const BoundResource& bound, ir::ResourceKind kind) {
     switch (kind) {
         case ir::ResourceKind::uniformBuffer:
         case ir::ResourceKind::storageBuffer:
-            return bound.buffer != nullptr;
+            return bound.buffer && !bound.texels;
+        case ir::ResourceKind::uniformTexelBuffer:
+        case ir::ResourceKind::storageTexelBuffer:
+            return bound.texels != nullptr;
         case ir::ResourceKind::sampler:
             return bound.sampler != nullptr;
         case ir::ResourceKind::combinedImageSampler:
@@ -68,10 +71,12 @@ const DescriptorSet* snapshot(VnContext context, uint32_t set) {
         for (uint32_t i = 0; i < elements.size(); ++i) {
             const BoundResource& bound = elements[i];
             for (const std::shared_ptr<const void>& object :
-                 {std::shared_ptr<const void>(bound.buffer), std::shared_ptr<const void>(bound.view),
-                  std::shared_ptr<const void>(bound.sampler)})
+                 {std::shared_ptr<const void>(bound.buffer), std::shared_ptr<const void>(bound.texels),
+                  std::shared_ptr<const void>(bound.view), std::shared_ptr<const void>(bound.sampler)})
                 if (object) context->recording->alive.push_back(object);
-            if (bound.buffer)
+            if (bound.texels)
+                made->set.writeTexelBuffer(first + i, &bound.texels->texture(), context->device->runtime->isa());
+            else if (bound.buffer)
                 made->set.writeBuffer(first + i, &bound.buffer->buffer, bound.offset,
                                       bound.size ? bound.size : VK_WHOLE_SIZE);
             // The pair was checked when it was bound: this cannot fail.

@@ -11,18 +11,22 @@ using namespace vernier::mini;
 namespace {
 
 /// Every image can be used for everything its format allows.
-VkImageUsageFlags usageOf(const FormatInfo& format) {
+VkImageUsageFlags usageOf(const FormatInfo& format, VkImageType type) {
     constexpr VkImageUsageFlags kAlways =
         VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
     const VkFormatFeatureFlags features = format.optimalTilingFeatures;
     VkImageUsageFlags usage = kAlways;
     if (features & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT) usage |= VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
-    if (features & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT) usage |= VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    if (type != VK_IMAGE_TYPE_3D && features & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT)
+        usage |= VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     if (features & VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT) usage |= VK_IMAGE_USAGE_STORAGE_BIT;
     return usage;
 }
 
-VkImageViewType viewTypeOf(const ImageObject& image, uint32_t layers, bool array) {
+VkImageViewType viewTypeOf(const ImageObject& image, uint32_t layers, bool array, bool slices) {
+    const VkImageType type = image.image.info().type;
+    if (type == VK_IMAGE_TYPE_1D) return layers > 1 || array ? VK_IMAGE_VIEW_TYPE_1D_ARRAY : VK_IMAGE_VIEW_TYPE_1D;
+    if (type == VK_IMAGE_TYPE_3D && !slices) return VK_IMAGE_VIEW_TYPE_3D;
     if (image.cube && layers % 6 == 0)
         return layers == 6 && !array ? VK_IMAGE_VIEW_TYPE_CUBE : VK_IMAGE_VIEW_TYPE_CUBE_ARRAY;
     return layers > 1 || array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
@@ -37,9 +41,11 @@ Result<ImageView> makeView(VnDevice device, const ImageObject& object, const VnV
     view.range.baseMipLevel = desc.baseMip;
     view.range.levelCount = desc.mipCount ? desc.mipCount : std::max(info.mipLevels, desc.baseMip) - desc.baseMip;
     view.range.baseArrayLayer = desc.baseLayer;
-    view.range.layerCount =
-        desc.layerCount ? desc.layerCount : std::max(info.arrayLayers, desc.baseLayer) - desc.baseLayer;
-    view.type = viewTypeOf(object, view.range.layerCount, desc.array != 0);
+    const bool slices = desc.slices != 0 && info.type == VK_IMAGE_TYPE_3D;
+    const uint32_t layers =
+        slices ? std::max(1u, desc.baseMip < 32 ? info.extent.depth >> desc.baseMip : 0) : info.arrayLayers;
+    view.range.layerCount = desc.layerCount ? desc.layerCount : std::max(layers, desc.baseLayer) - desc.baseLayer;
+    view.type = viewTypeOf(object, view.range.layerCount, desc.array != 0, slices);
     return ImageView::create(object.image, view, device->runtime->isa());
 }
 
@@ -91,16 +97,25 @@ VnResult vnCreateImage(VnDevice device, const VnImageDesc* desc, VnImage* image)
         image->id = 0;
         ImageInfo info;
         info.format = desc->format ? desc->format : VK_FORMAT_R8G8B8A8_UNORM;
-        info.extent = {desc->width, desc->height, 1};
+        if (desc->dimensions > 3)
+            return invalid(device, "vnCreateImage", "dimensions is " + std::to_string(desc->dimensions));
+        info.type = desc->dimensions == 1   ? VK_IMAGE_TYPE_1D
+                    : desc->dimensions == 3 ? VK_IMAGE_TYPE_3D
+                                            : VK_IMAGE_TYPE_2D;
+        if (info.type == VK_IMAGE_TYPE_3D) info.flags = VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT;
+        const uint32_t height = desc->height == 0 && desc->dimensions == 1 ? 1 : desc->height;
+        info.extent = {desc->width, height, std::max(desc->depth, 1u)};
         info.mipLevels = std::max(desc->mipLevels, 1u);
-        if (desc->mipLevels == VN_ALL_MIPS)
-            info.mipLevels = std::max(1u, static_cast<uint32_t>(std::bit_width(std::max(desc->width, desc->height))));
+        if (desc->mipLevels == VN_ALL_MIPS) {
+            const uint32_t longest = std::max({desc->width, height, info.extent.depth});
+            info.mipLevels = std::max(1u, static_cast<uint32_t>(std::bit_width(longest)));
+        }
         info.arrayLayers = std::max(desc->layers, 1u);
         info.samples = std::max(desc->samples, 1u);
-        if (desc->cube && (info.arrayLayers % 6 != 0 || desc->width != desc->height))
-            return invalid(device, "vnCreateImage", "cube images are square and have layers in sixes");
+        if (desc->cube && (info.type != VK_IMAGE_TYPE_2D || info.arrayLayers % 6 != 0 || desc->width != desc->height))
+            return invalid(device, "vnCreateImage", "cube images are 2D, square and have layers in sixes");
         const FormatInfo* format = findFormat(info.format);
-        info.usage = format ? usageOf(*format) : 0;
+        info.usage = format ? usageOf(*format, info.type) : 0;
         Result<Image> made = Image::create(info);
         if (!made) return fail(device, "vnCreateImage", made.error());
         Result<std::unique_ptr<Memory>> memory = Memory::create(device->runtime->desc().allocator, made->memorySize());
@@ -177,7 +192,21 @@ VnResult vnCreateSampler(VnDevice device, const VnSamplerDesc* desc, VnSampler* 
         info.compareEnable = desc->compareEnable != 0;
         info.compareOp = desc->compareOp;
         info.borderColor = desc->borderColor;
-        sampler->id = device->samplers.insert(std::make_shared<SamplerObject>(SamplerObject{makeSamplerState(info)}));
+        info.unnormalizedCoordinates = desc->unnormalized != 0;
+        if (desc->seams) info.flags |= VK_SAMPLER_CREATE_NON_SEAMLESS_CUBE_MAP_BIT_EXT;
+        if (!(desc->maxAnisotropy >= 0 && desc->maxAnisotropy <= kMaxSamplerAnisotropy))
+            return invalid(device, "vnCreateSampler", "maxAnisotropy is " + std::to_string(desc->maxAnisotropy));
+        if (desc->reduction < VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE ||
+            desc->reduction > VK_SAMPLER_REDUCTION_MODE_MAX)
+            return invalid(device, "vnCreateSampler", "reduction is " + std::to_string(desc->reduction));
+        info.anisotropyEnable = desc->maxAnisotropy > 1;
+        info.maxAnisotropy = desc->maxAnisotropy;
+        SamplerState state = makeSamplerState(info);
+        state.reduction = desc->reduction;
+        if (desc->borderColor == VK_BORDER_COLOR_FLOAT_CUSTOM_EXT ||
+            desc->borderColor == VK_BORDER_COLOR_INT_CUSTOM_EXT)
+            state.borderColor = desc->customBorderColor;
+        sampler->id = device->samplers.insert(std::make_shared<SamplerObject>(SamplerObject{state}));
         return VN_SUCCESS;
     });
 }

@@ -26,18 +26,32 @@ VnResult resolveRegion(VnContext context, const char* function, const Image& ima
     const VkExtent3D& size = image.level(region.mip).extent;
     const uint32_t width = region.width ? region.width : std::max(size.width, region.x) - region.x;
     const uint32_t height = region.height ? region.height : std::max(size.height, region.y) - region.y;
-    if (width == 0 || height == 0 || region.x > size.width || width > size.width - region.x || region.y > size.height ||
-        height > size.height - region.y)
-        return invalid(context->device, function,
-                       "the region " + std::to_string(width) + " x " + std::to_string(height) + " at (" +
-                           std::to_string(region.x) + ", " + std::to_string(region.y) + ") is not inside the level's " +
-                           std::to_string(size.width) + " x " + std::to_string(size.height));
+    const uint32_t depth = region.depth ? region.depth : std::max(size.depth, region.z) - region.z;
+    const struct {
+        uint32_t offset, count, limit, block;
+    } axes[] = {{region.x, width, size.width, image.format().blockWidth()},
+                {region.y, height, size.height, image.format().blockHeight()},
+                {region.z, depth, size.depth, 1}};
+    const auto triple = [](uint32_t a, uint32_t b, uint32_t c) {
+        return std::to_string(a) + " x " + std::to_string(b) + " x " + std::to_string(c);
+    };
+    for (const auto& axis : axes) {
+        if (axis.count == 0 || axis.offset > axis.limit || axis.count > axis.limit - axis.offset)
+            return invalid(context->device, function,
+                           "the region " + triple(width, height, depth) + " at (" + std::to_string(region.x) + ", " +
+                               std::to_string(region.y) + ", " + std::to_string(region.z) +
+                               ") is not inside the level's " + triple(size.width, size.height, size.depth));
+        if (axis.offset % axis.block != 0 || (axis.count % axis.block != 0 && axis.offset + axis.count != axis.limit))
+            return invalid(context->device, function,
+                           "the region cuts blocks of " + std::to_string(image.format().blockWidth()) + " x " +
+                               std::to_string(image.format().blockHeight()) + " texels");
+    }
     const VkImageAspectFlags aspect = region.aspect ? region.aspect : defaultAspect(image.format());
     if ((aspect & (aspect - 1)) != 0 || !(aspect & image.format().aspects))
         return invalid(context->device, function, "aspect " + std::to_string(aspect) + " is not one of the image's");
     to.subresource = {aspect, region.mip, region.layer, 1};
-    to.offset = {static_cast<int32_t>(region.x), static_cast<int32_t>(region.y), 0};
-    to.extent = {width, height, 1};
+    to.offset = {static_cast<int32_t>(region.x), static_cast<int32_t>(region.y), static_cast<int32_t>(region.z)};
+    to.extent = {width, height, depth};
     return VN_SUCCESS;
 }
 
@@ -52,8 +66,10 @@ VnResult transferImage(VnContext context, const char* function, VnImage handle, 
 
 VnResult checkBytes(VnContext context, const char* function, const ImageObject& image, const Region& region,
                     const void* data, uint64_t size) {
-    const uint64_t needed = uint64_t{bufferTexelBytes(image.image.format(), region.subresource.aspectMask)} *
-                            region.extent.width * region.extent.height;
+    const FormatInfo& format = image.image.format();
+    const uint64_t needed = uint64_t{bufferTexelBytes(format, region.subresource.aspectMask)} *
+                            format.columns(region.extent.width) * format.rows(region.extent.height) *
+                            region.extent.depth;
     if (image.image.info().samples > 1)
         return invalid(context->device, function, "the image is multisampled; resolve it first");
     if (data && size >= needed) return VN_SUCCESS;
@@ -135,13 +151,14 @@ VnResult vnReadImage(VnContext context, VnImage image, const VnRegion* region, v
         if (VnResult result = finish(context, "vnReadImage")) return result;
         const FormatInfo& format = object->image.format();
         const VkImageSubresourceLayers& sub = resolved.subresource;
-        const uint64_t pitch = uint64_t{bufferTexelBytes(format, sub.aspectMask)} * resolved.extent.width;
-        for (uint32_t y = 0; y < resolved.extent.height; ++y)
-            copyTexelsToBuffer(format, sub.aspectMask,
-                               rowAddress(object->image, sub.mipLevel, static_cast<uint32_t>(resolved.offset.y) + y,
-                                          sub.baseArrayLayer, 0) +
-                                   static_cast<uint64_t>(resolved.offset.x) * format.bytesPerTexel,
-                               resolved.extent.width, static_cast<std::byte*>(data) + y * pitch);
+        const TexelBox box = clipBox(object->image, sub, resolved.offset, resolved.extent);
+        const uint64_t pitch = uint64_t{bufferTexelBytes(format, sub.aspectMask)} * box.width;
+        for (uint32_t i = 0; i < box.height * box.depth; ++i)
+            copyTexelsToBuffer(
+                format, sub.aspectMask,
+                rowAddress(object->image, sub.mipLevel, box.y + i % box.height, box.z + i / box.height, 0) +
+                    uint64_t{box.x} * format.bytesPerTexel,
+                box.width, static_cast<std::byte*>(data) + i * pitch);
         return VN_SUCCESS;
     });
 }
@@ -179,7 +196,10 @@ VnResult vnCopyImage(VnContext context, VnImage source, const VnRegion* sourceRe
         if (VnResult result = transferImage(context, "vnCopyImage", source, sourceRegion, from, a)) return result;
         if (VnResult result = transferImage(context, "vnCopyImage", destination, destinationRegion, to, b))
             return result;
-        if (a.extent.width != b.extent.width || a.extent.height != b.extent.height)
+        const FormatInfo& fromFormat = from->image.format();
+        const FormatInfo& toFormat = to->image.format();
+        if (fromFormat.columns(a.extent.width) != toFormat.columns(b.extent.width) ||
+            fromFormat.rows(a.extent.height) != toFormat.rows(b.extent.height) || a.extent.depth != b.extent.depth)
             return invalid(context->device, "vnCopyImage", "the regions have different sizes");
         if (from->image.format().bytesPerTexel != to->image.format().bytesPerTexel ||
             from->image.info().samples != to->image.info().samples)
@@ -211,7 +231,7 @@ VnResult vnBlitImage(VnContext context, VnImage source, const VnRegion* sourceRe
         const bool smooth = fromFormat.layout(a.subresource.aspectMask).type == ValueType::floating && color;
         if (a.subresource.aspectMask != b.subresource.aspectMask || !sameKind ||
             (!color && fromFormat.format != toFormat.format) || (filter == VK_FILTER_LINEAR && !smooth) ||
-            from->image.info().samples > 1 || to->image.info().samples > 1)
+            toFormat.block != nullptr || from->image.info().samples > 1 || to->image.info().samples > 1)
             return invalid(context->device, "vnBlitImage",
                            std::string(fromFormat.name) + " cannot be blitted to " + toFormat.name +
                                " with this filter, aspect or sample count");
@@ -220,7 +240,8 @@ VnResult vnBlitImage(VnContext context, VnImage source, const VnRegion* sourceRe
         blit.dstSubresource = b.subresource;
         const auto corner = [](const Region& r) {
             return VkOffset3D{r.offset.x + static_cast<int32_t>(r.extent.width),
-                              r.offset.y + static_cast<int32_t>(r.extent.height), 1};
+                              r.offset.y + static_cast<int32_t>(r.extent.height),
+                              r.offset.z + static_cast<int32_t>(r.extent.depth)};
         };
         blit.srcOffsets[0] = a.offset;
         blit.srcOffsets[1] = corner(a);
@@ -258,12 +279,13 @@ VnResult vnGenerateMips(VnContext context, VnImage image) {
         if (VnResult result = transferImage(context, "vnGenerateMips", image, nullptr, object, region)) return result;
         const Image& target = context->recording->keep(object).image;
         if (region.subresource.aspectMask != VK_IMAGE_ASPECT_COLOR_BIT ||
-            target.format().color.type != ValueType::floating)
+            target.format().color.type != ValueType::floating || target.format().block != nullptr)
             return invalid(context->device, "vnGenerateMips",
                            std::string("format ") + target.format().name + " cannot be filtered");
         const auto corner = [&](uint32_t mip) {
             const VkExtent3D& e = target.level(mip).extent;
-            return VkOffset3D{static_cast<int32_t>(e.width), static_cast<int32_t>(e.height), 1};
+            return VkOffset3D{static_cast<int32_t>(e.width), static_cast<int32_t>(e.height),
+                              static_cast<int32_t>(e.depth)};
         };
         for (uint32_t mip = 1; mip < target.info().mipLevels; ++mip) {
             VkImageBlit blit{};
@@ -286,6 +308,8 @@ VnResult vnClearImage(VnContext context, VnImage image, const VkClearColorValue*
         if (!value) return invalid(context->device, "vnClearImage", "value is NULL");
         if (region.subresource.aspectMask != VK_IMAGE_ASPECT_COLOR_BIT)
             return invalid(context->device, "vnClearImage", "the image has no colour; clear depth in a pass");
+        if (object->image.format().block)
+            return invalid(context->device, "vnClearImage", "the image is block-compressed");
         const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, object->image.info().mipLevels, 0,
                                             object->image.info().arrayLayers};
         context->recording->commands.record(

@@ -26,6 +26,7 @@ namespace {
     X(wideLines)                               \
     X(largePoints)                             \
     X(alphaToOne)                              \
+    X(samplerAnisotropy)                       \
     X(textureCompressionETC2)                  \
     X(textureCompressionASTC_LDR)              \
     X(textureCompressionBC)                    \
@@ -82,6 +83,16 @@ namespace {
     X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderSharedFloat32AtomicAdd, true)             \
     X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderSharedFloat64Atomics, true)               \
     X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderSharedFloat64AtomicAdd, true)             \
+    X(VkPhysicalDeviceCustomBorderColorFeaturesEXT, customBorderColors, true)                       \
+    X(VkPhysicalDeviceCustomBorderColorFeaturesEXT, customBorderColorWithoutFormat, true)           \
+    X(VkPhysicalDeviceBorderColorSwizzleFeaturesEXT, borderColorSwizzle, true)                      \
+    X(VkPhysicalDeviceBorderColorSwizzleFeaturesEXT, borderColorSwizzleFromImage, true)             \
+    X(VkPhysicalDeviceNonSeamlessCubeMapFeaturesEXT, nonSeamlessCubeMap, true)                      \
+    X(VkPhysicalDeviceImageViewMinLodFeaturesEXT, minLod, true)                                     \
+    X(VkPhysicalDeviceImage2DViewOf3DFeaturesEXT, image2DViewOf3D, true)                            \
+    X(VkPhysicalDeviceImage2DViewOf3DFeaturesEXT, sampler2DViewOf3D, true)                          \
+    X(VkPhysicalDevice4444FormatsFeaturesEXT, formatA4R4G4B4, true)                                 \
+    X(VkPhysicalDevice4444FormatsFeaturesEXT, formatA4B4G4R4, true)                                 \
     X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderImageFloat32Atomics, false)               \
     X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderImageFloat32AtomicAdd, false)             \
     X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, sparseImageFloat32Atomics, false)               \

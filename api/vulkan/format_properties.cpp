@@ -36,12 +36,17 @@ constexpr VkImageUsageFlags kKnownUsages = [] {
 
 constexpr VkImageCreateFlags kKnownFlags =
     VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT | VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT |
-    VK_IMAGE_CREATE_BLOCK_TEXEL_VIEW_COMPATIBLE_BIT | VK_IMAGE_CREATE_EXTENDED_USAGE_BIT;
+    VK_IMAGE_CREATE_BLOCK_TEXEL_VIEW_COMPATIBLE_BIT | VK_IMAGE_CREATE_EXTENDED_USAGE_BIT |
+    VK_IMAGE_CREATE_2D_VIEW_COMPATIBLE_BIT_EXT;
+// Usages that views of another format may bring to an image whose own format has them not.
+constexpr VkImageUsageFlags kExtendedUsages = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
 
 bool flagsFit(VkImageType type, VkImageCreateFlags flags) {
     if ((flags & ~kKnownFlags) != 0) return false;
     if ((flags & VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT) != 0 && type != VK_IMAGE_TYPE_2D) return false;
-    return (flags & VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT) == 0 || type == VK_IMAGE_TYPE_3D;
+    constexpr VkImageCreateFlags kSlices =
+        VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT | VK_IMAGE_CREATE_2D_VIEW_COMPATIBLE_BIT_EXT;
+    return (flags & kSlices) == 0 || type == VK_IMAGE_TYPE_3D;
 }
 
 VkSampleCountFlags sampleCounts(VkFormatFeatureFlags features, VkImageType type, VkImageTiling tiling,
@@ -84,10 +89,10 @@ VkResult imageFormatProperties(const PhysicalDevice& device, VkFormat format, Vk
         return VK_ERROR_FORMAT_NOT_SUPPORTED;
     }
     if ((usage & ~kKnownUsages) != 0) return VK_ERROR_FORMAT_NOT_SUPPORTED;
+    constexpr VkImageCreateFlags kExtended = VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | VK_IMAGE_CREATE_EXTENDED_USAGE_BIT;
+    const VkImageUsageFlags extended = (flags & kExtended) == kExtended ? kExtendedUsages : 0;
     for (const UsageNeed& need : kUsageNeeds) {
-        // A format list with MUTABLE_FORMAT and EXTENDED_USAGE would relax this; neither flag is offered
-        // together.
-        if ((usage & need.usage) != 0 && (features & need.anyOf) == 0) return VK_ERROR_FORMAT_NOT_SUPPORTED;
+        if ((usage & need.usage & ~extended) != 0 && (features & need.anyOf) == 0) return VK_ERROR_FORMAT_NOT_SUPPORTED;
     }
     const bool depthStencil = (features & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT) != 0;
     if (depthStencil && type == VK_IMAGE_TYPE_3D) return VK_ERROR_FORMAT_NOT_SUPPORTED;

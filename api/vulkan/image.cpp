@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "api/vulkan/allocation.h"
+#include "api/vulkan/chain.h"
 #include "api/vulkan/device.h"
 #include "api/vulkan/entry_points.h"
 #include "api/vulkan/format_properties.h"
@@ -136,6 +137,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateImageView(VkDevice device, const VkImageVie
         info.format = pCreateInfo->format;
         info.components = pCreateInfo->components;
         info.range = pCreateInfo->subresourceRange;
+        if (const auto* p = findInChain<VkImageViewMinLodCreateInfoEXT>(pCreateInfo->pNext)) info.minLod = p->minLod;
         const uint32_t mip = std::min(info.range.baseMipLevel, image.info().mipLevels - 1);
         const uint32_t layers = seesSlices(image, info.type) ? image.level(mip).extent.depth : image.info().arrayLayers;
         if (info.range.levelCount == VK_REMAINING_MIP_LEVELS && info.range.baseMipLevel < image.info().mipLevels) {
@@ -154,15 +156,9 @@ VKAPI_ATTR void VKAPI_CALL DestroyImageView(VkDevice, VkImageView imageView, con
     destroyHandle(pAllocator, imageView);
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL CreateSampler(VkDevice device, const VkSamplerCreateInfo* pCreateInfo,
+VKAPI_ATTR VkResult VKAPI_CALL CreateSampler(VkDevice, const VkSamplerCreateInfo* pCreateInfo,
                                              const VkAllocationCallbacks* pAllocator, VkSampler* pSampler) {
-    return guarded([&] {
-        if (pCreateInfo->anisotropyEnable != VK_FALSE) {
-            return object(device)->report("vkCreateSampler", VK_ERROR_FEATURE_NOT_PRESENT,
-                                          "anisotropyEnable: samplerAnisotropy is not supported");
-        }
-        return createHandle(pAllocator, pSampler, makeSamplerState(*pCreateInfo));
-    });
+    return guarded([&] { return createHandle(pAllocator, pSampler, makeSamplerState(*pCreateInfo)); });
 }
 
 VKAPI_ATTR void VKAPI_CALL DestroySampler(VkDevice, VkSampler sampler, const VkAllocationCallbacks* pAllocator) {

@@ -109,7 +109,7 @@ VkPhysicalDeviceLimits deviceLimits(const VkPhysicalDeviceFeatures& features, co
     limits.maxDrawIndexedIndexValue = UINT32_MAX;
     limits.maxDrawIndirectCount = features.multiDrawIndirect ? UINT32_MAX : 1;
     limits.maxSamplerLodBias = kMaxSamplerLodBias;
-    limits.maxSamplerAnisotropy = 1;
+    limits.maxSamplerAnisotropy = kMaxSamplerAnisotropy;
     limits.maxViewports = features.multiViewport ? kMaxViewports : 1;
     limits.maxViewportDimensions[0] = limits.maxViewportDimensions[1] = kMaxImageDimension2D;
     limits.viewportBoundsRange[0] = -2.0f * kMaxImageDimension2D;
@@ -175,6 +175,16 @@ void fillPropertyChain(void* chain) {
         p->sampleLocationCoordinateRange[1] = 1 - 1.0f / (1u << kSampleLocationBits);
         p->sampleLocationSubPixelBits = kSampleLocationBits;
         p->variableSampleLocations = VK_TRUE;
+    }
+    if (auto* p = findInChain<VkPhysicalDeviceCustomBorderColorPropertiesEXT>(chain)) {
+        p->maxCustomBorderColorSamplers = UINT32_MAX;
+    }
+    if (auto* p = findInChain<VkPhysicalDeviceSamplerFilterMinmaxProperties>(chain)) {
+        p->filterMinmaxSingleComponentFormats = VK_TRUE;
+        p->filterMinmaxImageComponentMapping = VK_TRUE;
+    }
+    if (auto* p = findInChain<VkPhysicalDevicePointClippingProperties>(chain)) {
+        p->pointClippingBehavior = VK_POINT_CLIPPING_BEHAVIOR_ALL_CLIP_PLANES;
     }
     if (auto* p = findInChain<VkPhysicalDeviceFloatControlsProperties>(chain)) setFloatControls(*p);
     if (auto* p = findInChain<VkPhysicalDeviceShaderIntegerDotProductProperties>(chain)) {

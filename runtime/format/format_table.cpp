@@ -1,5 +1,6 @@
 // The table of formats: the tables of "Required Format Support" in the Vulkan specification, plus what comes for free
 // with the general conversions.
+#include <algorithm>
 #include <array>
 
 #include "runtime/format/format.h"
@@ -21,6 +22,7 @@ struct Shape {
 constexpr Shape kR8{1, false, {{8, 0}}};
 constexpr Shape kRg8{2, false, {{8, 0}, {8, 8}}};
 constexpr Shape kRgb8{3, false, {{8, 0}, {8, 8}, {8, 16}}};
+constexpr Shape kBgr8{3, false, {{8, 16}, {8, 8}, {8, 0}}};
 constexpr Shape kRgba8{4, false, {{8, 0}, {8, 8}, {8, 16}, {8, 24}}};
 constexpr Shape kBgra8{4, false, {{8, 16}, {8, 8}, {8, 0}, {8, 24}}};
 constexpr Shape kAbgr8Pack32{4, true, {{8, 0}, {8, 8}, {8, 16}, {8, 24}}};
@@ -38,6 +40,8 @@ constexpr Shape kRgbx16{8, false, {{16, 0}, {16, 16}, {16, 32}}};
 constexpr Shape kRgbx32{16, false, {{32, 0}, {32, 32}, {32, 64}}};
 constexpr Shape kRgba4{2, true, {{4, 12}, {4, 8}, {4, 4}, {4, 0}}};
 constexpr Shape kBgra4{2, true, {{4, 4}, {4, 8}, {4, 12}, {4, 0}}};
+constexpr Shape kArgb4{2, true, {{4, 8}, {4, 4}, {4, 0}, {4, 12}}};
+constexpr Shape kAbgr4{2, true, {{4, 0}, {4, 4}, {4, 8}, {4, 12}}};
 constexpr Shape kR5g6b5{2, true, {{5, 11}, {6, 5}, {5, 0}}};
 constexpr Shape kB5g6r5{2, true, {{5, 0}, {6, 5}, {5, 11}}};
 constexpr Shape kRgb5a1{2, true, {{5, 11}, {5, 6}, {5, 1}, {1, 0}}};
@@ -55,7 +59,8 @@ struct Uses {
 constexpr VkFormatFeatureFlags kReadable = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_BLIT_SRC_BIT |
                                            VK_FORMAT_FEATURE_TRANSFER_SRC_BIT | VK_FORMAT_FEATURE_TRANSFER_DST_BIT;
 constexpr VkFormatFeatureFlags kTarget = VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT | VK_FORMAT_FEATURE_BLIT_DST_BIT;
-constexpr VkFormatFeatureFlags kFiltered = VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+constexpr VkFormatFeatureFlags kFiltered =
+    VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_MINMAX_BIT;
 constexpr VkFormatFeatureFlags kBlend = VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT;
 constexpr VkFormatFeatureFlags kStorage = VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
 constexpr VkFormatFeatureFlags kVertex = VK_FORMAT_FEATURE_VERTEX_BUFFER_BIT;
@@ -64,20 +69,19 @@ constexpr VkFormatFeatureFlags kStorageBuffer = VK_FORMAT_FEATURE_STORAGE_TEXEL_
 constexpr VkFormatFeatureFlags kBuffer = kVertex | kTexelBuffer;
 
 constexpr Uses kVertexOnly{0, kVertex};
-constexpr Uses kTexture{kReadable | kFiltered, 0};
-constexpr Uses kColor{kReadable | kFiltered | kTarget | kBlend, 0};
-constexpr Uses kColorVertex{kColor.image, kBuffer};
+constexpr Uses kBufferOnly{0, kBuffer};
+constexpr Uses kTexelsOnly{0, kTexelBuffer};
+constexpr Uses kTexture{kReadable | kFiltered, kBuffer};
+constexpr Uses kColor{kReadable | kFiltered | kTarget | kBlend, kBuffer};
+constexpr Uses kColorSrgb{kColor.image, kTexelBuffer};
 constexpr Uses kColorStorage{kColor.image | kStorage, kBuffer | kStorageBuffer};
-constexpr Uses kColorExtended{kColor.image | kStorage,
-                              kBuffer};  // a storage image by shaderStorageImageExtendedFormats
-constexpr Uses kColorTexelBuffer{kColor.image, kBuffer | kStorageBuffer};  // A8B8G8R8: no storage images
 constexpr Uses kInteger{kReadable | kTarget, kBuffer};
+constexpr Uses kIntegerTexture{kReadable, kBuffer};
 constexpr Uses kIntegerStorage{kInteger.image | kStorage, kBuffer | kStorageBuffer};
-constexpr Uses kIntegerExtended{kInteger.image | kStorage, kBuffer};
-constexpr Uses kIntegerTexelBuffer{kInteger.image, kBuffer | kStorageBuffer};
 constexpr Uses kIntegerAtomic{kIntegerStorage.image | VK_FORMAT_FEATURE_STORAGE_IMAGE_ATOMIC_BIT,
                               kIntegerStorage.buffer | VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_ATOMIC_BIT};
-constexpr VkFormatFeatureFlags kDepthStencil = kReadable | VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT;
+constexpr VkFormatFeatureFlags kDepthStencil =
+    kReadable | VK_FORMAT_FEATURE_BLIT_DST_BIT | VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT;
 
 constexpr ValueType valueType(ComponentKind kind) {
     return kind == uint ? ValueType::uint : kind == sint ? ValueType::sint : ValueType::floating;
@@ -220,80 +224,105 @@ VERNIER_BLOCK_FORMATS(VERNIER_BLOCK_CODEC)
     blockFormat(VK_FORMAT_##NAME, #NAME, k##NAME, SHAPE, KIND),
 #define VERNIER_BLOCK_ROW(...) VERNIER_ROW_OF(__VA_ARGS__)
 
-constexpr std::array kFormats{COLOR(R4G4B4A4_UNORM_PACK16, kRgba4, unorm, kColor),
-                              COLOR(B4G4R4A4_UNORM_PACK16, kBgra4, unorm, kColor),
-                              COLOR(R5G6B5_UNORM_PACK16, kR5g6b5, unorm, kColor),
-                              COLOR(B5G6R5_UNORM_PACK16, kB5g6r5, unorm, kColor),
-                              COLOR(R5G5B5A1_UNORM_PACK16, kRgb5a1, unorm, kColor),
-                              COLOR(B5G5R5A1_UNORM_PACK16, kBgr5a1, unorm, kColor),
-                              COLOR(A1R5G5B5_UNORM_PACK16, kA1rgb5, unorm, kColor),
-                              NORM(R8, kR8, , kColorExtended, kColorExtended),
-                              INT(R8, kR8, , kIntegerExtended),
-                              COLOR(R8_SRGB, kR8, srgb, kColor),
-                              NORM(R8G8, kRg8, , kColorExtended, kColorExtended),
-                              INT(R8G8, kRg8, , kIntegerExtended),
-                              COLOR(R8G8_SRGB, kRg8, srgb, kColor),
-                              NORM(R8G8B8, kRgb8, , kVertexOnly, kVertexOnly),
-                              INT(R8G8B8, kRgb8, , kVertexOnly),
-                              NORM(R8G8B8A8, kRgba8, , kColorStorage, kColorStorage),
-                              INT(R8G8B8A8, kRgba8, , kIntegerStorage),
-                              COLOR(R8G8B8A8_SRGB, kRgba8, srgb, kColor),
-                              NORM(B8G8R8A8, kBgra8, , kColorVertex, kColorVertex),
-                              INT(B8G8R8A8, kBgra8, , kInteger),
-                              COLOR(B8G8R8A8_SRGB, kBgra8, srgb, kColor),
-                              NORM(A8B8G8R8, kAbgr8Pack32, _PACK32, kColorTexelBuffer, kColorTexelBuffer),
-                              INT(A8B8G8R8, kAbgr8Pack32, _PACK32, kIntegerTexelBuffer),
-                              COLOR(A8B8G8R8_SRGB_PACK32, kAbgr8Pack32, srgb, kColor),
-                              NORM(A2R10G10B10, kA2rgb10, _PACK32, kColorVertex, kVertexOnly),
-                              INT(A2R10G10B10, kA2rgb10, _PACK32, kInteger),
-                              NORM(A2B10G10R10, kA2bgr10, _PACK32, kColorExtended, kVertexOnly),
-                              INT(A2B10G10R10, kA2bgr10, _PACK32, kIntegerExtended),
-                              NORM(R16, kR16, , kColorExtended, kColorExtended),
-                              INT(R16, kR16, , kIntegerExtended),
-                              COLOR(R16_SFLOAT, kR16, sfloat, kColorExtended),
-                              NORM(R16G16, kRg16, , kColorExtended, kColorExtended),
-                              INT(R16G16, kRg16, , kIntegerExtended),
-                              COLOR(R16G16_SFLOAT, kRg16, sfloat, kColorExtended),
-                              NORM(R16G16B16, kRgb16, , kVertexOnly, kVertexOnly),
-                              INT(R16G16B16, kRgb16, , kVertexOnly),
-                              COLOR(R16G16B16_SFLOAT, kRgb16, sfloat, kVertexOnly),
-                              NORM(R16G16B16A16, kRgba16, , kColorExtended, kColorExtended),
-                              INT(R16G16B16A16, kRgba16, , kIntegerStorage),
-                              COLOR(R16G16B16A16_SFLOAT, kRgba16, sfloat, kColorStorage),
-                              INT(R32, kR32, , kIntegerAtomic),
-                              COLOR(R32_SFLOAT, kR32, sfloat, kColorStorage),
-                              INT(R32G32, kRg32, , kIntegerStorage),
-                              COLOR(R32G32_SFLOAT, kRg32, sfloat, kColorStorage),
-                              INT(R32G32B32, kRgb32, , kVertexOnly),
-                              COLOR(R32G32B32_SFLOAT, kRgb32, sfloat, kVertexOnly),
-                              INT(R32G32B32A32, kRgba32, , kIntegerStorage),
-                              COLOR(R32G32B32A32_SFLOAT, kRgba32, sfloat, kColorStorage),
-                              COLOR(B10G11R11_UFLOAT_PACK32, kB10gr11, ufloat, kColorExtended),
-                              COLOR(E5B9G9R9_UFLOAT_PACK32, kE5bgr9, ufloat, kTexture),
-                              DEPTH_STENCIL(D16_UNORM, 2, part(16, 0, unorm), kNoPart, false),
-                              DEPTH_STENCIL(X8_D24_UNORM_PACK32, 4, part(24, 0, unorm), kNoPart, true),
-                              DEPTH_STENCIL(D32_SFLOAT, 4, part(32, 0, sfloat), kNoPart, false),
-                              DEPTH_STENCIL(S8_UINT, 1, kNoPart, part(8, 0, uint), false),
-                              DEPTH_STENCIL(D24_UNORM_S8_UINT, 4, part(24, 0, unorm), part(8, 24, uint), false),
-                              DEPTH_STENCIL(D32_SFLOAT_S8_UINT, 8, part(32, 0, sfloat), part(8, 32, uint), false),
-                              VERNIER_BLOCK_FORMATS(VERNIER_BLOCK_ROW)};
+constexpr std::array kPlainFormats{
+    COLOR(R4G4B4A4_UNORM_PACK16, kRgba4, unorm, kColor),
+    COLOR(B4G4R4A4_UNORM_PACK16, kBgra4, unorm, kColor),
+    COLOR(A4R4G4B4_UNORM_PACK16, kArgb4, unorm, kColor),
+    COLOR(A4B4G4R4_UNORM_PACK16, kAbgr4, unorm, kColor),
+    COLOR(R5G6B5_UNORM_PACK16, kR5g6b5, unorm, kColor),
+    COLOR(B5G6R5_UNORM_PACK16, kB5g6r5, unorm, kColor),
+    COLOR(R5G5B5A1_UNORM_PACK16, kRgb5a1, unorm, kColor),
+    COLOR(B5G5R5A1_UNORM_PACK16, kBgr5a1, unorm, kColor),
+    COLOR(A1R5G5B5_UNORM_PACK16, kA1rgb5, unorm, kColor),
+    NORM(R8, kR8, , kColorStorage, kColorStorage),
+    INT(R8, kR8, , kIntegerStorage),
+    COLOR(R8_SRGB, kR8, srgb, kColorSrgb),
+    NORM(R8G8, kRg8, , kColorStorage, kColorStorage),
+    INT(R8G8, kRg8, , kIntegerStorage),
+    COLOR(R8G8_SRGB, kRg8, srgb, kColorSrgb),
+    NORM(R8G8B8, kRgb8, , kBufferOnly, kBufferOnly),
+    INT(R8G8B8, kRgb8, , kBufferOnly),
+    NORM(B8G8R8, kBgr8, , kBufferOnly, kBufferOnly),
+    INT(B8G8R8, kBgr8, , kBufferOnly),
+    COLOR(R8G8B8_SRGB, kRgb8, srgb, kTexelsOnly),
+    COLOR(B8G8R8_SRGB, kBgr8, srgb, kTexelsOnly),
+    NORM(R8G8B8A8, kRgba8, , kColorStorage, kColorStorage),
+    INT(R8G8B8A8, kRgba8, , kIntegerStorage),
+    COLOR(R8G8B8A8_SRGB, kRgba8, srgb, kColorSrgb),
+    NORM(B8G8R8A8, kBgra8, , kColorStorage, kColorStorage),
+    INT(B8G8R8A8, kBgra8, , kIntegerStorage),
+    COLOR(B8G8R8A8_SRGB, kBgra8, srgb, kColorSrgb),
+    NORM(A8B8G8R8, kAbgr8Pack32, _PACK32, kColorStorage, kColorStorage),
+    INT(A8B8G8R8, kAbgr8Pack32, _PACK32, kIntegerStorage),
+    COLOR(A8B8G8R8_SRGB_PACK32, kAbgr8Pack32, srgb, kColorSrgb),
+    NORM(A2R10G10B10, kA2rgb10, _PACK32, kColor, kColor),
+    INT(A2R10G10B10, kA2rgb10, _PACK32, kInteger),
+    NORM(A2B10G10R10, kA2bgr10, _PACK32, kColorStorage, kColor),
+    INT(A2B10G10R10, kA2bgr10, _PACK32, kIntegerStorage),
+    NORM(R16, kR16, , kColorStorage, kColorStorage),
+    INT(R16, kR16, , kIntegerStorage),
+    COLOR(R16_SFLOAT, kR16, sfloat, kColorStorage),
+    NORM(R16G16, kRg16, , kColorStorage, kColorStorage),
+    INT(R16G16, kRg16, , kIntegerStorage),
+    COLOR(R16G16_SFLOAT, kRg16, sfloat, kColorStorage),
+    NORM(R16G16B16, kRgb16, , kBufferOnly, kBufferOnly),
+    INT(R16G16B16, kRgb16, , kBufferOnly),
+    COLOR(R16G16B16_SFLOAT, kRgb16, sfloat, kBufferOnly),
+    NORM(R16G16B16A16, kRgba16, , kColorStorage, kColorStorage),
+    INT(R16G16B16A16, kRgba16, , kIntegerStorage),
+    COLOR(R16G16B16A16_SFLOAT, kRgba16, sfloat, kColorStorage),
+    INT(R32, kR32, , kIntegerAtomic),
+    COLOR(R32_SFLOAT, kR32, sfloat, kColorStorage),
+    INT(R32G32, kRg32, , kIntegerStorage),
+    COLOR(R32G32_SFLOAT, kRg32, sfloat, kColorStorage),
+    INT(R32G32B32, kRgb32, , kIntegerTexture),
+    COLOR(R32G32B32_SFLOAT, kRgb32, sfloat, kTexture),
+    INT(R32G32B32A32, kRgba32, , kIntegerStorage),
+    COLOR(R32G32B32A32_SFLOAT, kRgba32, sfloat, kColorStorage),
+    COLOR(B10G11R11_UFLOAT_PACK32, kB10gr11, ufloat, kColorStorage),
+    COLOR(E5B9G9R9_UFLOAT_PACK32, kE5bgr9, ufloat, kTexture),
+    DEPTH_STENCIL(D16_UNORM, 2, part(16, 0, unorm), kNoPart, false),
+    DEPTH_STENCIL(X8_D24_UNORM_PACK32, 4, part(24, 0, unorm), kNoPart, true),
+    DEPTH_STENCIL(D32_SFLOAT, 4, part(32, 0, sfloat), kNoPart, false),
+    DEPTH_STENCIL(S8_UINT, 1, kNoPart, part(8, 0, uint), false),
+    DEPTH_STENCIL(D24_UNORM_S8_UINT, 4, part(24, 0, unorm), part(8, 24, uint), false),
+    DEPTH_STENCIL(D32_SFLOAT_S8_UINT, 8, part(32, 0, sfloat), part(8, 32, uint), false),
+};
+
+constexpr std::array kBlockFormats{VERNIER_BLOCK_FORMATS(VERNIER_BLOCK_ROW)};
+
+constexpr auto kFormats = [] {
+    std::array<FormatInfo, kPlainFormats.size() + kBlockFormats.size()> all{};
+    std::copy(kPlainFormats.begin(), kPlainFormats.end(), all.begin());
+    std::copy(kBlockFormats.begin(), kBlockFormats.end(), all.begin() + kPlainFormats.size());
+    return all;
+}();
 static_assert(kFormats.size() < 256);
 
 constexpr size_t kHighestFormat = VK_FORMAT_ASTC_12x12_SRGB_BLOCK;
 
+/// Where a format's place in kIndex is: those of extensions follow those of Vulkan 1.0.
+constexpr size_t slotOf(uint32_t number) {
+    if (number <= kHighestFormat) return number;
+    if (number == VK_FORMAT_A4R4G4B4_UNORM_PACK16) return kHighestFormat + 1;
+    if (number == VK_FORMAT_A4B4G4R4_UNORM_PACK16) return kHighestFormat + 2;
+    return 0;  // VK_FORMAT_UNDEFINED
+}
+
 /// Index into kFormats plus one; 0 = absent.
 constexpr auto kIndex = [] {
-    std::array<uint8_t, kHighestFormat + 1> index{};
-    for (size_t i = 0; i < kFormats.size(); ++i) index[kFormats[i].format] = static_cast<uint8_t>(i + 1);
+    std::array<uint8_t, kHighestFormat + 3> index{};
+    for (size_t i = 0; i < kFormats.size(); ++i) {
+        index[slotOf(static_cast<uint32_t>(kFormats[i].format))] = static_cast<uint8_t>(i + 1);
+    }
     return index;
 }();
 
 }  // namespace
 
 const FormatInfo* findFormat(VkFormat format) {
-    const auto number = static_cast<uint32_t>(format);
-    if (number > kHighestFormat || kIndex[number] == 0) return nullptr;
-    return &kFormats[kIndex[number] - 1u];
+    const uint8_t index = kIndex[slotOf(static_cast<uint32_t>(format))];
+    return index == 0 ? nullptr : &kFormats[index - 1u];
 }
 
 FormatRange allFormats() {

@@ -215,7 +215,7 @@ void selectRows(FormatOps& ops) {
             choose<ComponentKind::sfloat, 2, 4, 6, 8, 12, 16>(ops);
             break;
         case ComponentKind::srgb:
-            choose<ComponentKind::srgb, 1, 2, 4>(ops);
+            choose<ComponentKind::srgb, 1, 2, 3, 4>(ops);
             break;
         case ComponentKind::ufloat:
             choose<ComponentKind::ufloat, 4>(ops);

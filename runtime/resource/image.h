@@ -69,6 +69,7 @@ struct ImageViewInfo {
     VkFormat format = VK_FORMAT_UNDEFINED;
     VkComponentMapping components{};
     VkImageSubresourceRange range{};  // counts resolved: no VK_REMAINING_*
+    float minLod = 0;                 // VkImageViewMinLodCreateInfoEXT: counted in levels of the image
 };
 
 /// A view of another type than 3D on a 3D image: its layers are the slices (VK_KHR_maintenance1).

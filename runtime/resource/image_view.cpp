@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 
 #include "runtime/resource/image.h"
@@ -18,8 +19,13 @@ bool typeFits(VkImageViewType view, const ImageInfo& image) {
             return image.type == VK_IMAGE_TYPE_3D;
         case VK_IMAGE_VIEW_TYPE_2D:
         case VK_IMAGE_VIEW_TYPE_2D_ARRAY:
-            // VK_KHR_maintenance1: the slices of a 3D image seen as layers.
-            if (image.type == VK_IMAGE_TYPE_3D) return (image.flags & VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT) != 0;
+            // The slices of a 3D image seen as layers (VK_KHR_maintenance1), or one of them
+            // (VK_EXT_image_2d_view_of_3d).
+            if (image.type == VK_IMAGE_TYPE_3D) {
+                const VkImageCreateFlags one =
+                    view == VK_IMAGE_VIEW_TYPE_2D ? VK_IMAGE_CREATE_2D_VIEW_COMPATIBLE_BIT_EXT : 0;
+                return (image.flags & (VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT | one)) != 0;
+            }
             [[fallthrough]];
         default:
             return image.type == VK_IMAGE_TYPE_2D;
@@ -76,6 +82,8 @@ Result<ImageView> ImageView::create(const Image& image, const ImageViewInfo& inf
     const bool seesBlocks = format->block == nullptr && image.format().block != nullptr;
     if (seesBlocks && (info.range.levelCount != 1 || info.range.layerCount != 1))
         return wrong("a view of blocks has one mip level and one layer");
+    if (!(info.minLod >= 0) || info.minLod > static_cast<float>(info.range.baseMipLevel + info.range.levelCount - 1))
+        return wrong("minLod " + std::to_string(info.minLod) + " is not one of its levels");
     if (!image.bound()) return wrong("the image has no memory bound");
 
     ImageView view;
@@ -91,6 +99,7 @@ Result<ImageView> ImageView::create(const Image& image, const ImageViewInfo& inf
     texture.swizzle = info.components;
     texture.levelCount = info.range.levelCount;
     texture.layerCount = info.range.layerCount;
+    texture.minLod = std::max(0.0f, info.minLod - static_cast<float>(info.range.baseMipLevel));
     texture.samples = image.info().samples;
     texture.texelPitch = format->bytesPerTexel;
     texture.block = format->block;

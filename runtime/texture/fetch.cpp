@@ -44,6 +44,7 @@ void forEachTexel(const TextureView& view, const FetchRequest& request, Read rea
         if (request.mask != nullptr && request.mask[i] == 0) continue;
         const uint32_t levelIndex = at(request.lod, i), sample = at(request.sample, i);
         if (levelIndex >= view.levelCount || sample >= view.samples) continue;
+        if (levelIndex < static_cast<uint32_t>(view.minLod)) continue;
         const TextureLevel& level = view.levels[levelIndex];
         const uint32_t x = at(request.coord[0], i, request.offset[0]);
         const uint32_t y = shape.y ? at(request.coord[1], i, request.offset[1]) : 0;

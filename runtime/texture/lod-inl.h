@@ -154,8 +154,10 @@ HWY_INLINE LevelChoice chooseLevels(const TextureView& view, const SamplerState&
     LevelChoice choice;
     choice.lambda = clampOrLowV(lambdaPrime, lowest, splatFloat(sampler.maxLod));
     const auto last = static_cast<int32_t>(view.levelCount) - 1;
-    const VF d = clampOrLowV(choice.lambda, hn::Zero(df), splatFloat(static_cast<float>(last)));
-    if (sampler.mipmapMode == VK_SAMPLER_MIPMAP_MODE_LINEAR) {
+    const bool linear = sampler.mipmapMode == VK_SAMPLER_MIPMAP_MODE_LINEAR;
+    const float first = linear ? view.minLod : static_cast<float>(static_cast<int32_t>(view.minLod));
+    const VF d = clampOrLowV(choice.lambda, splatFloat(first), splatFloat(static_cast<float>(last)));
+    if (linear) {
         const VF whole = hn::Floor(d);
         choice.high = hn::ConvertTo(di, whole);
         choice.low = hn::Min(hn::Add(choice.high, splatInt(1)), splatInt(last));

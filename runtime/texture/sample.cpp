@@ -1,5 +1,6 @@
 // Which sampling routine a view and a sampler get: one per kind of texel, shape of image and pair of address
 // modes.
+#include "runtime/texture/sample_extended.h"
 #include "runtime/texture/texture.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -8,8 +9,6 @@
 
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-
-#include <limits>
 
 #include "runtime/texture/sampler-inl.h"
 
@@ -36,18 +35,6 @@ void runQueryLod(const TextureView& view, const SamplerState& sampler, const Sam
 Shape shapeOf(VkImageViewType type) {
     if (type == VK_IMAGE_VIEW_TYPE_3D) return Shape::volume;
     return type == VK_IMAGE_VIEW_TYPE_CUBE || type == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY ? Shape::cube : Shape::flat;
-}
-
-/// Gathers address texels by a signed 32-bit offset from the level's first one.
-bool offsetsFitInt32(const TextureView& view) {
-    for (uint32_t i = 0; i < view.levelCount; ++i) {
-        const TextureLevel& level = view.levels[i];
-        const uint64_t slices = view.type == VK_IMAGE_VIEW_TYPE_3D ? level.depth : view.layerCount;
-        const uint64_t end = (slices - 1) * level.slicePitch + uint64_t{level.height} * level.rowPitch;
-        constexpr uint64_t kLimit = std::numeric_limits<int32_t>::max();
-        if (end > kLimit || (slices > 1 && level.slicePitch > kLimit) || level.rowPitch > kLimit) return false;
-    }
-    return true;
 }
 
 template <bool kSrgb>
@@ -84,10 +71,14 @@ SampleFn selectSampleRoutine(const TextureView& view, const SamplerState& sample
                 return runSample<BlockSource<4>, Shape::flat, Wrap::any>;
         }
     }
-    bool fourBytes = words && !sampler.compareEnable;
-    for (const Component& part : layout.rgba) fourBytes = fourBytes && part.bits == 8 && part.offset % 8 == 0;
-    if (fourBytes && first.kind == ComponentKind::unorm) return selectRgba8<false>(view, sampler);
-    if (fourBytes && first.kind == ComponentKind::srgb) return selectRgba8<true>(view, sampler);
+    switch (rgba8Kind(view, sampler)) {
+        case Rgba8Kind::unorm:
+            return selectRgba8<false>(view, sampler);
+        case Rgba8Kind::srgb:
+            return selectRgba8<true>(view, sampler);
+        case Rgba8Kind::none:
+            break;
+    }
     switch (shapeOf(view.type)) {
         case Shape::volume:
             return runSample<AnySource<4>, Shape::volume, Wrap::any>;
@@ -141,6 +132,7 @@ auto queryLodSelector(Isa isa) {
 }  // namespace
 
 SampleFn selectSampler(const TextureView& view, const SamplerState& sampler, Isa isa) {
+    if (isExtended(view, sampler)) return selectExtendedSampler(view, sampler, isa);
     return sampleSelector(isa)(view, sampler);
 }
 

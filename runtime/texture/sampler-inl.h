@@ -23,8 +23,9 @@ struct Coordinates {
     VF dref;
 };
 
-/// Everything of one call that does not change from vector to vector.
-template <class Source, Shape kShape, Wrap kWrap>
+/// Everything of one call that does not change from vector to vector. kExtended: anisotropy, reduction modes other than
+/// the average, cubes with seams; all others have no trace of them.
+template <class Source, Shape kShape, Wrap kWrap, bool kExtended = false>
 class Sampler {
   public:
     Sampler(const TextureView& view, const SamplerState& sampler, const SampleRequest& request)
@@ -81,13 +82,22 @@ class Sampler {
         return loadLanes(request_.coord[axis], first, count);
     }
 
-    HWY_INLINE Coordinates coordinates(uint32_t first, uint32_t count) const {
+    bool isOneDimensional() const {
+        return view_.type == VK_IMAGE_VIEW_TYPE_1D || view_.type == VK_IMAGE_VIEW_TYPE_1D_ARRAY;
+    }
+
+    /// `shift`: added to s, t, r; nullptr: nothing is.
+    HWY_INLINE Coordinates coordinates(uint32_t first, uint32_t count, const VF* shift = nullptr) const {
         Coordinates at;
         at.s = coordinate(0, first, count);
         // A 1D image is one row, met in the middle.
-        const bool oneDimensional = view_.type == VK_IMAGE_VIEW_TYPE_1D || view_.type == VK_IMAGE_VIEW_TYPE_1D_ARRAY;
-        at.t = oneDimensional ? splatFloat(0.5f) : coordinate(1, first, count);
+        at.t = isOneDimensional() ? splatFloat(0.5f) : coordinate(1, first, count);
         at.r = kShape == Shape::flat ? hn::Zero(F32()) : coordinate(2, first, count);
+        if (shift != nullptr) {
+            at.s = hn::Add(at.s, shift[0]);
+            if (!isOneDimensional()) at.t = hn::Add(at.t, shift[1]);
+            if constexpr (kShape != Shape::flat) at.r = hn::Add(at.r, shift[2]);
+        }
         at.slice = hn::Zero(I32());
         at.dref = hn::Zero(F32());
         if (view_.layerCount > 1 && kShape != Shape::volume) {
@@ -126,7 +136,15 @@ class Sampler {
         return sum;
     }
 
-    HWY_NOINLINE VF derivativeLambda(uint32_t first, uint32_t count) const {
+    /// A pixel seen in the texture: the derivatives of s, t, r along the framebuffer's axes, and the squared lengths of
+    /// both in texels of the base level.
+    struct Footprint {
+        VF dx[3], dy[3];
+        VF x2, y2;
+    };
+
+    HWY_INLINE Footprint footprint(uint32_t first, uint32_t count) const {
+        Footprint print;
         VF at[3], dx[3], dy[3];
         for (int i = 0; i < 3; ++i) {
             const bool gradients = request_.lodMode == LodMode::gradients;
@@ -134,9 +152,10 @@ class Sampler {
             dx[i] = gradients ? loadLanes(request_.gradX[i], first, count) : quadDx(at[i]);
             dy[i] = gradients ? loadLanes(request_.gradY[i], first, count) : quadDy(at[i]);
         }
-        if (view_.levels[0].height == 1 && view_.type != VK_IMAGE_VIEW_TYPE_2D &&
-            view_.type != VK_IMAGE_VIEW_TYPE_2D_ARRAY && kShape == Shape::flat) {
-            dx[1] = dy[1] = hn::Zero(F32());
+        if (isOneDimensional()) dx[1] = dy[1] = hn::Zero(F32());
+        for (int i = 0; i < 3; ++i) {
+            print.dx[i] = dx[i];
+            print.dy[i] = dy[i];
         }
         if constexpr (kShape == Shape::cube) {
             const FaceChoice choice = chooseFace(at[0], at[1], at[2]);
@@ -144,9 +163,29 @@ class Sampler {
             projectDerivative(v, onFace(choice, dx[0], dx[1], dx[2]), dx[0], dx[1]);
             projectDerivative(v, onFace(choice, dy[0], dy[1], dy[2]), dy[0], dy[1]);
         }
-        const VF x2 = gradientLength2(dx[0], dx[1], dx[2]), y2 = gradientLength2(dy[0], dy[1], dy[2]);
-        const VF rho2 = hn::IfThenElse(hn::Gt(x2, y2), x2, y2);
-        return hn::Mul(log2V(rho2), splatFloat(0.5f));
+        print.x2 = gradientLength2(dx[0], dx[1], dx[2]);
+        print.y2 = gradientLength2(dy[0], dy[1], dy[2]);
+        return print;
+    }
+
+    /// "Scale Factor Operation": the squares of rho max, of the ratio of anisotropy eta, and of rho max / eta.
+    struct Scale {
+        VF major2, eta2, rho2;
+    };
+
+    HWY_INLINE Scale scaleOf(const Footprint& print) const {
+        const VF major2 = hn::IfThenElse(hn::Gt(print.x2, print.y2), print.x2, print.y2);
+        if (!(sampler_.maxAnisotropy > 1.0f)) return {major2, splatFloat(1.0f), major2};
+        const VF minor2 = hn::IfThenElse(hn::Gt(print.x2, print.y2), print.y2, print.x2);
+        const VF limit2 = splatFloat(sampler_.maxAnisotropy * sampler_.maxAnisotropy);
+        const Mask limited = hn::Gt(major2, hn::Mul(minor2, limit2));
+        const VF ratio2 = hn::Div(major2, minor2);
+        const VF eta2 = hn::IfThenElse(limited, limit2, clampOrLowV(ratio2, splatFloat(1.0f), limit2));
+        return {major2, eta2, hn::IfThenElse(limited, hn::Div(major2, limit2), minor2)};
+    }
+
+    HWY_NOINLINE VF derivativeLambda(uint32_t first, uint32_t count) const {
+        return hn::Mul(log2V(scaleOf(footprint(first, count)).rho2), splatFloat(0.5f));
     }
 
     HWY_INLINE VF lambda(uint32_t first, uint32_t count) const {
@@ -166,7 +205,7 @@ class Sampler {
     HWY_INLINE void load(const TextureLevel& level, const TexelPosition (&at)[kTaps], const VI (&inside)[kTaps],
                          VF dref, Texel (&texels)[kTaps]) const {
         source_.load(view_, level, at, neededComponents_, texels);
-        if constexpr (kWrap == Wrap::any && kShape != Shape::cube) {
+        if constexpr (kWrap == Wrap::any && (kShape != Shape::cube || kExtended)) {
             unrolled<kTaps>([&](auto t) VERNIER_INLINE_LAMBDA {
                 const auto isInside = hn::MaskFromVec(hn::BitCast(U32(), inside[t]));
                 unrolled<Source::kPlanes>([&](auto p) VERNIER_INLINE_LAMBDA {
@@ -215,15 +254,20 @@ class Sampler {
         TexelPosition position[1];
         VI inside[1];
         Texel texel[1];
-        if constexpr (kShape == Shape::cube) {
+        if constexpr (kShape == Shape::cube && !kExtended) {
             nearestTap<Wrap::clampToEdge>(at.s, faceAxis(level), x);
             nearestTap<Wrap::clampToEdge>(at.t, faceAxis(level), y);
+        } else if (kShape == Shape::cube && !sampler_.nonSeamlessCube) {
+            nearestTap<Wrap::any>(at.s, faceAxis(level), x);
+            nearestTap<Wrap::any>(at.t, faceAxis(level), y);
         } else {
             nearestTap<kWrap>(at.s, axis(0, level.width), x);
             nearestTap<kWrap>(at.t, axis(1, level.height), y);
         }
         position[0] = {x.index[0], y.index[0], at.slice};
-        if constexpr (kWrap == Wrap::any && kShape != Shape::cube) inside[0] = hn::And(x.inside[0], y.inside[0]);
+        if constexpr (kWrap == Wrap::any && (kShape != Shape::cube || kExtended)) {
+            inside[0] = hn::And(x.inside[0], y.inside[0]);
+        }
         if constexpr (kShape == Shape::volume) {
             nearestTap<kWrap>(at.r, axis(2, level.depth), z);
             position[0].slice = z.index[0];
@@ -238,12 +282,15 @@ class Sampler {
                                VF& wy) const {
         TexelPosition position[4];
         VI inside[4];
-        if constexpr (kShape == Shape::cube) {
+        if (kShape == Shape::cube && !(kExtended && sampler_.nonSeamlessCube)) {
             VI corner[4];
+            unrolled<4>([&](auto t) VERNIER_INLINE_LAMBDA { inside[t] = hn::Set(I32(), -1); });
             cubeTaps(level, at, position, corner, wx, wy);
             load(level, position, inside, at.dref, texels);
             for (int t = 0; t < 4; ++t) fillCorner(corner[t], texels[t], texels[t ^ 1], texels[t ^ 2], texels[t ^ 3]);
-        } else {
+            return;
+        }
+        if constexpr (kShape != Shape::cube || kExtended) {
             AxisTaps x, y;
             linearTaps<kWrap>(at.s, axis(0, level.width), x);
             linearTaps<kWrap>(at.t, axis(1, level.height), y);
@@ -275,9 +322,8 @@ class Sampler {
                 load(level, position, inside, at.dref, texels);
                 blendSquare(texels, x.weight, y.weight, slices[k]);
             }
-            unrolled<Source::kPlanes>([&](auto p) VERNIER_INLINE_LAMBDA {
-                result[p] = lerpPlane<Source>(slices[0][p], slices[1][p], z.weight);
-            });
+            unrolled<Source::kPlanes>(
+                [&](auto p) VERNIER_INLINE_LAMBDA { result[p] = combine(slices[0][p], slices[1][p], z.weight); });
         } else {
             Texel texels[4];
             VF wx, wy;
@@ -286,12 +332,29 @@ class Sampler {
         }
     }
 
-    static HWY_INLINE void blendSquare(const Texel (&texels)[4], VF wx, VF wy, Texel& result) {
+    HWY_INLINE void blendSquare(const Texel (&texels)[4], VF wx, VF wy, Texel& result) const {
         unrolled<Source::kPlanes>([&](auto p) VERNIER_INLINE_LAMBDA {
-            const VU top = lerpPlane<Source>(texels[0][p], texels[1][p], wx);
-            const VU bottom = lerpPlane<Source>(texels[2][p], texels[3][p], wx);
-            result[p] = lerpPlane<Source>(top, bottom, wy);
+            const VU top = combine(texels[0][p], texels[1][p], wx);
+            const VU bottom = combine(texels[2][p], texels[3][p], wx);
+            result[p] = combine(top, bottom, wy);
         });
+    }
+
+    /// Two texels by the reduction mode; `weight`: of b, less than 1.
+    HWY_INLINE VU combine(VU a, VU b, VF weight) const {
+        if constexpr (kExtended) {
+            if (sampler_.reduction != VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE) {
+                return hn::IfThenElse(hn::RebindMask(U32(), hn::Eq(weight, hn::Zero(F32()))), a, extreme(a, b));
+            }
+        }
+        return lerpPlane<Source>(a, b, weight);
+    }
+
+    /// The lesser or the greater of two texels; not a NaN if one of them is a number.
+    HWY_INLINE VU extreme(VU a, VU b) const {
+        const VF fa = floatOf(a), fb = floatOf(b);
+        const Mask better = sampler_.reduction == VK_SAMPLER_REDUCTION_MODE_MIN ? hn::Lt(fb, fa) : hn::Gt(fb, fa);
+        return hn::IfThenElse(hn::RebindMask(U32(), hn::Or(better, hn::Ne(fa, fa))), b, a);
     }
 
     // --- Cubes
@@ -402,24 +465,78 @@ class Sampler {
     }
 
     HWY_INLINE void sampleVector(uint32_t first, uint32_t count) const {
-        const Coordinates at = coordinates(first, count);
         Texel texel;
+        if constexpr (kExtended) {
+            const bool derivatives = request_.lodMode == LodMode::implicitLod || request_.lodMode == LodMode::gradients;
+            if (sampler_.maxAnisotropy > 1.0f && derivatives) {
+                anisotropic(first, count, texel);
+                write(texel, first, count);
+                return;
+            }
+        }
+        const Coordinates at = coordinates(first, count);
         if (view_.levelCount == 1 && sampler_.magFilter == sampler_.minFilter) {
             sampleLevel(view_.levels[0], at, hn::MaskFromVec(hn::Zero(F32())), texel);
         } else {
-            const LevelChoice choice =
-                chooseLevels(view_, sampler_, lowestLod(sampler_, request_, first, count), lambda(first, count));
-            const Mask magnified = hn::Not(hn::Gt(choice.lambda, hn::Zero(F32())));
-            sampleLevels(choice.high, at, magnified, texel);
-            if (!hn::AllTrue(F32(), hn::Eq(choice.weight, hn::Zero(F32())))) {
-                Texel less;
-                sampleLevels(choice.low, at, magnified, less);
-                unrolled<Source::kPlanes>([&](auto p) VERNIER_INLINE_LAMBDA {
-                    texel[p] = lerpPlane<Source>(texel[p], less[p], choice.weight);
-                });
-            }
+            sampleChoice(
+                chooseLevels(view_, sampler_, lowestLod(sampler_, request_, first, count), lambda(first, count)), at,
+                texel);
         }
         write(texel, first, count);
+    }
+
+    HWY_INLINE void sampleChoice(const LevelChoice& choice, const Coordinates& at, Texel& texel) const {
+        const Mask magnified = hn::Not(hn::Gt(choice.lambda, hn::Zero(F32())));
+        sampleLevels(choice.high, at, magnified, texel);
+        if (hn::AllTrue(F32(), hn::Eq(choice.weight, hn::Zero(F32())))) return;
+        Texel less;
+        sampleLevels(choice.low, at, magnified, less);
+        unrolled<Source::kPlanes>([&](auto p)
+                                      VERNIER_INLINE_LAMBDA { texel[p] = combine(texel[p], less[p], choice.weight); });
+    }
+
+    /// "Texel Anisotropic Filtering": the mean of N samples along the longer axis of the footprint. N = ceil(eta), but
+    /// no more than the footprint is texels of the base level long: between its texels there is nothing to miss.
+    HWY_NOINLINE void anisotropic(uint32_t first, uint32_t count, Texel& result) const {
+        const Footprint print = footprint(first, count);
+        const Scale scale = scaleOf(print);
+        const VF zero = hn::Zero(F32()), one = splatFloat(1.0f), half = splatFloat(0.5f);
+        const LevelChoice choice =
+            chooseLevels(view_, sampler_, lowestLod(sampler_, request_, first, count), lambda(first, count));
+        const VF needed2 = hn::Min(scale.eta2, hn::Max(scale.major2, one));
+        const VF samples = clampOrLowV(hn::Ceil(hn::Sqrt(needed2)), one, splatFloat(kMaxSamplerAnisotropy));
+        const Mask alongX = hn::Gt(print.x2, print.y2);
+        VF major[3];
+        for (int i = 0; i < 3; ++i) major[i] = hn::IfThenElse(alongX, print.dx[i], print.dy[i]);
+        // The mean as the first sample plus the mean of the differences from it: equal samples stay what they are.
+        Texel reference, sum;
+        const float most = hn::GetLane(hn::MaxOfLanes(F32(), samples));
+        for (float i = 1; i <= most; ++i) {
+            const VF place = hn::Sub(hn::Div(splatFloat(i), hn::Add(samples, one)), half);
+            const Mask active = hn::Le(splatFloat(i), samples);
+            VF shift[3];
+            for (int k = 0; k < 3; ++k) shift[k] = hn::IfThenElse(active, hn::Mul(place, major[k]), zero);
+            Texel texel;
+            sampleChoice(choice, coordinates(first, count, shift), texel);
+            const auto take = hn::RebindMask(U32(), active);
+            unrolled<Source::kPlanes>([&](auto p) VERNIER_INLINE_LAMBDA {
+                if (i == 1) {
+                    reference[p] = texel[p];
+                    sum[p] = hn::Zero(U32());
+                } else if (sampler_.reduction != VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE) {
+                    reference[p] = hn::IfThenElse(take, extreme(reference[p], texel[p]), reference[p]);
+                } else {
+                    const VF a = floatOf(reference[p]), b = floatOf(texel[p]);
+                    Mask none = hn::Eq(a, b);
+                    if constexpr (!Source::kFinite) none = hn::Or(none, hn::And(hn::IsInf(a), hn::IsFinite(b)));
+                    const VF difference = hn::IfThenElse(none, zero, hn::Sub(b, a));
+                    sum[p] = hn::IfThenElse(take, bitsOf(hn::Add(floatOf(sum[p]), difference)), sum[p]);
+                }
+            });
+        }
+        unrolled<Source::kPlanes>([&](auto p) VERNIER_INLINE_LAMBDA {
+            result[p] = bitsOf(hn::Add(floatOf(reference[p]), hn::Div(floatOf(sum[p]), samples)));
+        });
     }
 
     HWY_INLINE void write(const Texel& texel, uint32_t first, uint32_t count) const {

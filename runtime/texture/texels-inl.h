@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 #include "runtime/texture/block_cache.h"
 #include "runtime/texture/lod-inl.h"
@@ -102,6 +103,35 @@ struct Rgba8Source {
         texel[3] = bitsOf(kSrgb ? decodeUnormV(codes[3], 8) : toFloatV(codes[3]));
     }
 };
+
+/// Gathers address texels by a signed 32-bit offset from the level's first one.
+inline bool offsetsFitInt32(const TextureView& view) {
+    for (uint32_t i = 0; i < view.levelCount; ++i) {
+        const TextureLevel& level = view.levels[i];
+        const uint64_t slices = view.type == VK_IMAGE_VIEW_TYPE_3D ? level.depth : view.layerCount;
+        const uint64_t end = (slices - 1) * level.slicePitch + uint64_t{level.height} * level.rowPitch;
+        constexpr uint64_t kLimit = std::numeric_limits<int32_t>::max();
+        if (end > kLimit || (slices > 1 && level.slicePitch > kLimit) || level.rowPitch > kLimit) return false;
+    }
+    return true;
+}
+
+enum class Rgba8Kind : uint8_t { none, unorm, srgb };
+
+/// Whether an Rgba8Source reads the view, and which.
+inline Rgba8Kind rgba8Kind(const TextureView& view, const SamplerState& sampler) {
+    const TexelLayout& layout = view.ops.layout;
+    if (layout.bytes != 4 || view.texelPitch != 4 || view.block != nullptr || sampler.compareEnable) {
+        return Rgba8Kind::none;
+    }
+    for (const Component& part : layout.rgba) {
+        if (part.bits != 8 || part.offset % 8 != 0) return Rgba8Kind::none;
+    }
+    const ComponentKind kind = layout.rgba[0].kind;
+    return kind == ComponentKind::unorm  ? Rgba8Kind::unorm
+           : kind == ComponentKind::srgb ? Rgba8Kind::srgb
+                                         : Rgba8Kind::none;
+}
 
 /// One component in four bytes: a float, or (kFixed24) the low 24 bits of the texel as unorm.
 template <bool kFixed24>

@@ -11,7 +11,10 @@
 //   linear filters with its weight cube          ties of the largest axis: z, then y; texels beyond an edge
 //   come from the neighbouring face, the one
 //                 beyond a corner is the mean of the corner's three
-//   anisotropy    none
+//   anisotropy    N samples evenly along the longer gradient, N = ceil(min(longer / shorter, the sampler's maximum)),
+//                 but at most ceil(longer gradient in texels of the base level); lambda = log2(longer / that ratio);
+//                 integer formats and explicit levels of detail take one
+//   reduction     minimum and maximum over the texels of the average that have a weight, of both levels
 //   out of range  texel fetches outside the image give 0, with alpha 1 where the format has no alpha
 //   huge, infinite or NaN coordinates give some texel of the image, never an access outside it
 #pragma once
@@ -52,6 +55,7 @@ struct TextureView {
                                         // interleaved; of a compressed format from a block to the next
     const BlockCodec* block = nullptr;  // of a compressed format
     uint64_t samplePitch = 0;           // bytes from a sample of a texel to the next
+    float minLod = 0;  // levels below are not sampled; a fetch of a level below floor(minLod) reads nothing
     std::array<TextureLevel, kMaxTextureLevels> levels;  // [0] is the view's base level
     FormatOps ops;  // formatOps(format, aspect, isa), the isa given to the select functions
 };
@@ -69,10 +73,16 @@ struct SamplerState {
     VkCompareOp compareOp = VK_COMPARE_OP_ALWAYS;
     VkClearColorValue borderColor{};
     bool unnormalizedCoordinates = false;
+    float maxAnisotropy = 1;  // more than 1: anisotropic filtering; at most kMaxSamplerAnisotropy
+    VkSamplerReductionMode reduction = VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
+    bool nonSeamlessCube = false;  // the faces of a cube are wrapped by the address modes, as if each were alone
 };
 
-inline constexpr float kMaxSamplerLodBias = 15.0f;  // limits.maxSamplerLodBias
+inline constexpr float kMaxSamplerLodBias = 15.0f;     // limits.maxSamplerLodBias
+inline constexpr float kMaxSamplerAnisotropy = 16.0f;  // limits.maxSamplerAnisotropy
 
+/// With the structures of its pNext chain: custom border colour, reduction mode. A custom border colour without its
+/// structure is zero.
 SamplerState makeSamplerState(const VkSamplerCreateInfo& info);
 
 enum class LodMode : uint8_t {

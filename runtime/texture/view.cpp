@@ -67,6 +67,19 @@ SamplerState makeSamplerState(const VkSamplerCreateInfo& info) {
     state.compareEnable = info.compareEnable == VK_TRUE;
     state.compareOp = info.compareOp;
     state.unnormalizedCoordinates = info.unnormalizedCoordinates == VK_TRUE;
+    state.nonSeamlessCube = (info.flags & VK_SAMPLER_CREATE_NON_SEAMLESS_CUBE_MAP_BIT_EXT) != 0;
+    if (info.anisotropyEnable == VK_TRUE) {
+        state.maxAnisotropy = info.maxAnisotropy > 1.0f ? std::min(info.maxAnisotropy, kMaxSamplerAnisotropy) : 1.0f;
+    }
+    const bool customBorder =
+        info.borderColor == VK_BORDER_COLOR_FLOAT_CUSTOM_EXT || info.borderColor == VK_BORDER_COLOR_INT_CUSTOM_EXT;
+    for (auto* s = static_cast<const VkBaseInStructure*>(info.pNext); s != nullptr; s = s->pNext) {
+        if (s->sType == VK_STRUCTURE_TYPE_SAMPLER_CUSTOM_BORDER_COLOR_CREATE_INFO_EXT && customBorder) {
+            state.borderColor = reinterpret_cast<const VkSamplerCustomBorderColorCreateInfoEXT*>(s)->customBorderColor;
+        } else if (s->sType == VK_STRUCTURE_TYPE_SAMPLER_REDUCTION_MODE_CREATE_INFO) {
+            state.reduction = reinterpret_cast<const VkSamplerReductionModeCreateInfo*>(s)->reductionMode;
+        }
+    }
     switch (info.borderColor) {
         case VK_BORDER_COLOR_FLOAT_OPAQUE_BLACK:
             state.borderColor = {.float32 = {0, 0, 0, 1}};
@@ -81,7 +94,7 @@ SamplerState makeSamplerState(const VkSamplerCreateInfo& info) {
             state.borderColor = {.uint32 = {1, 1, 1, 1}};
             break;
         default:
-            break;  // the two transparent blacks are zero
+            break;  // the two transparent blacks are zero; custom colours have been set
     }
     return state;
 }
@@ -150,6 +163,11 @@ Status checkSampling(const TextureView& view, const SamplerState& sampler) {
     if (sampler.compareEnable && view.aspect != VK_IMAGE_ASPECT_DEPTH_BIT) {
         return invalidArgument(std::string("SamplerState.compareEnable is set for ") + info.name +
                                ": only depth can be compared");
+    }
+    if (sampler.reduction != VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE &&
+        (sampler.reduction > VK_SAMPLER_REDUCTION_MODE_MAX || sampler.compareEnable)) {
+        return invalidArgument(fieldError("SamplerState", "reduction", static_cast<uint32_t>(sampler.reduction),
+                                          "must be one that exists, and an average when the sampler compares"));
     }
     if (sampler.unnormalizedCoordinates) {
         const bool flat = view.type == VK_IMAGE_VIEW_TYPE_1D || view.type == VK_IMAGE_VIEW_TYPE_2D;

@@ -170,9 +170,11 @@ VN_API VnResult vnMapBuffer(VnDevice device, VnBuffer buffer, void** memory);
 
 typedef struct VnImageDesc {
     uint32_t _start;
-    VkFormat format; /* 0: VK_FORMAT_R8G8B8A8_UNORM */
-    uint32_t width;  /* texels; 1 .. VnDeviceInfo::maxImageSize */
-    uint32_t height;
+    VkFormat format;     /* 0: VK_FORMAT_R8G8B8A8_UNORM */
+    uint32_t dimensions; /* 1, 2 or 3; 0: 2 */
+    uint32_t width;      /* texels; 1 .. VnDeviceInfo::maxImageSize, of 3D images 1 .. 2048 */
+    uint32_t height;     /* of 1D images 0 or 1 */
+    uint32_t depth;      /* slices of a 3D image; 0: 1 */
     uint32_t mipLevels; /* 0: 1; VN_ALL_MIPS: down to 1x1 */
     uint32_t layers;    /* of an array; 0: 1 */
     uint32_t samples;   /* 1, 2, 4, 8 or 16; 0: 1. More than 1: one mip level, no initial contents */
@@ -186,11 +188,13 @@ VN_API VnResult vnDestroyImage(VnDevice device, VnImage image);
 typedef struct VnViewDesc {
     uint32_t _start;
     VnImage image;
-    VkFormat format;                /* 0: the image's; else one of the same texel size */
+    VkFormat format;                /* 0: the image's; else one of the same texel size, or block size and footprint */
     VkImageAspectFlags aspect;      /* 0: colour, or depth where there is depth */
     uint32_t baseMip, mipCount;     /* mipCount 0: all that are left */
     uint32_t baseLayer, layerCount; /* layerCount 0: all that are left */
     int array;                      /* nonzero: an array view even of one layer; more layers always make one */
+    int slices;                     /* nonzero: the slices of a 3D image as layers of a 2D view, counted by baseLayer and
+                                       layerCount; needs mipCount 1. Without it a view of a 3D image is 3D */
     VkComponentMapping swizzle;     /* 0: identity */
     uint32_t _end;
 } VnViewDesc;
@@ -210,7 +214,12 @@ typedef struct VnSamplerDesc {
     float maxLod;      /* levels; 0: no limit. For the base level alone use a view of one level */
     int compareEnable; /* nonzero: a shadow sampler */
     VkCompareOp compareOp;
-    VkBorderColor borderColor; /* 0: transparent black */
+    VkBorderColor borderColor;           /* 0: transparent black; one of the two CUSTOM colours: the next field */
+    VkClearColorValue customBorderColor; /* as the member that the format's texels are read by */
+    float maxAnisotropy;                 /* samples per pixel along its longer side, up to 16; 0 or 1: off */
+    VkSamplerReductionMode reduction;    /* 0: weighted average; minimum or maximum of the texels of a linear filter */
+    int unnormalized;                    /* nonzero: coordinates in texels; 1D and 2D views of one level, equal filters */
+    int seams;                           /* nonzero: the faces of cubes are filtered each for itself */
     uint32_t _end;
 } VnSamplerDesc;
 
@@ -413,6 +422,10 @@ VN_API VnResult vnBindBuffer(VnContext context, uint32_t set, uint32_t binding, 
 /* A combined image and sampler. For a separate texture or sampler, or a storage image, the other handle is {0}. */
 VN_API VnResult vnBindTexture(VnContext context, uint32_t set, uint32_t binding, uint32_t element, VnView view,
                               VnSampler sampler);
+/* A range of a buffer as texels of `format` (samplerBuffer, imageBuffer and their kind). `offset` is a multiple of 16
+ * bytes; `size` 0: to the end. {0} unbinds. */
+VN_API VnResult vnBindTexelBuffer(VnContext context, uint32_t set, uint32_t binding, uint32_t element, VnBuffer buffer,
+                                  VkFormat format, uint64_t offset, uint64_t size);
 /* Bytes `offset` .. `offset + size` of the push-constant block; multiples of 4, at most 256 in all. */
 VN_API VnResult vnPushConstants(VnContext context, uint32_t offset, const void* data, uint32_t size);
 
@@ -453,16 +466,19 @@ VN_API VnResult vnDispatchIndirect(VnContext context, VnBuffer buffer, uint64_t 
 VN_API VnResult vnUpdateBuffer(VnContext context, VnBuffer buffer, uint64_t offset, const void* data, uint64_t size);
 VN_API VnResult vnFillBuffer(VnContext context, VnBuffer buffer, uint64_t offset, uint64_t size, uint32_t value);
 
-/* A rectangle of one mip level of one layer. */
+/* A rectangle of one mip level of one layer, or a box of one level of a 3D image. Of a block-compressed image its edges
+ * lie between blocks or at the edges of the level. */
 typedef struct VnRegion {
     uint32_t mip, layer;
     uint32_t x, y;             /* texels */
     uint32_t width, height;    /* texels; 0: to the edge of the level */
+    uint32_t z, depth;         /* slices of a 3D image; depth 0: to the last one */
     VkImageAspectFlags aspect; /* 0: colour, or depth where there is depth */
 } VnRegion;
 
-/* Rows of `data` are tightly packed texels in the image's format, `size` bytes in all (of a combined depth-stencil
- * format: of one aspect, as in vkCmdCopyBufferToImage). `region` NULL: level 0 of layer 0. */
+/* Rows of `data` are tightly packed texels in the image's format (of compressed formats: rows of blocks), slice by slice,
+ * `size` bytes in all (of a combined depth-stencil format: of one aspect, as in vkCmdCopyBufferToImage). `region` NULL:
+ * level 0 of layer 0. */
 VN_API VnResult vnUpdateImage(VnContext context, VnImage image, const VnRegion* region, const void* data,
                               uint64_t size);
 /* The reverse: waits for all work of the context, then fills `data`. */
@@ -471,10 +487,11 @@ VN_API VnResult vnReadBuffer(VnContext context, VnBuffer buffer, uint64_t offset
 
 VN_API VnResult vnCopyBuffer(VnContext context, VnBuffer source, uint64_t sourceOffset, VnBuffer destination,
                              uint64_t destinationOffset, uint64_t size);
-/* The regions have the same size; the formats the same texel size. */
+/* The regions have the same size, counted in blocks where a format is compressed; the formats have the same texel (or
+ * block) size. */
 VN_API VnResult vnCopyImage(VnContext context, VnImage source, const VnRegion* sourceRegion, VnImage destination,
                             const VnRegion* destinationRegion);
-/* Scales and converts between colour formats, or between equal depth formats with VK_FILTER_NEAREST. */
+/* Scales and converts between colour formats (to compressed ones never), or between equal depth formats with VK_FILTER_NEAREST. */
 VN_API VnResult vnBlitImage(VnContext context, VnImage source, const VnRegion* sourceRegion, VnImage destination,
                             const VnRegion* destinationRegion, VkFilter filter);
 VN_API VnResult vnResolveImage(VnContext context, VnImage source, VnImage destination);
