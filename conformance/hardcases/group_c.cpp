@@ -13,8 +13,6 @@
 namespace vernier::conformance::hardcases {
 namespace {
 
-using exact::Rational;
-
 constexpr VkExtent2D kTarget{64, 64};
 
 // Pairs of triangles (a, b, c) and (b, a, d): the shared edge is opposite vertex 2 in both. Near, far, or the eye plane
@@ -35,12 +33,10 @@ std::vector<std::vector<ClipTriangle>> clippedPairs() {
 // what may be covered.
 Verdict judgePair(const std::vector<ClipTriangle>& pair, std::span<const uint32_t> counts, int subPixelBits) {
     const VkViewport viewport = viewportOf(kTarget);
-    const auto first = exactTriangle(pair[0], viewport), second = exactTriangle(pair[1], viewport);
+    const TriangleSides first(pair[0], viewport, subPixelBits), second(pair[1], viewport, subPixelBits);
     for (uint32_t y = 0; y < kTarget.height; ++y) {
         for (uint32_t x = 0; x < kTarget.width; ++x) {
-            const Rational px = x + exact::fraction(1, 2), py = y + exact::fraction(1, 2);
-            const SampleSides a = sidesOf(pair[0], first, px, py, subPixelBits),
-                              b = sidesOf(pair[1], second, px, py, subPixelBits);
+            const SampleSides a = first.at(x, y), b = second.at(x, y);
             const auto others = [](const SampleSides& s) { return std::max({s.edge[0], s.edge[1], s.clip}); };
             const bool sharedOpen = a.edge[2] == Side::open || b.edge[2] == Side::open;
             const Side inA = std::max(others(a), sharedOpen ? Side::inside : a.edge[2]);

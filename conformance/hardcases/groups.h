@@ -10,6 +10,8 @@
     X('W', homogeneousCases, "w near zero and guard band")      \
     X('I', interpolationCases, "Interpolation and perspective") \
     X('D', depthCases, "Depth precision, bias, clamp")          \
+    X('S', stencilCases, "Stencil")                             \
+    X('M', multisampleCases, "Multisampling")                   \
     X('B', blendingCases, "Blending, rounding, formats")
 
 namespace vernier::conformance::hardcases {

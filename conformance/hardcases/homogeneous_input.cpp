@@ -2,6 +2,9 @@
 
 #include "conformance/scenes/recorder.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace vernier::conformance::hardcases {
 namespace {
 
@@ -44,14 +47,6 @@ void main() {
 }
 )";
 
-/// A linear function of the sample: inside where positive.
-Side sideOf(const std::array<Rational, 3>& line, const Rational& x, const Rational& y, const Rational& subUnit) {
-    const Rational value = line[0] * x + line[1] * y + line[2];
-    const Rational reach = (abs(line[0]) + abs(line[1])) * subUnit;
-    if (abs(value) <= reach) return Side::open;
-    return value > 0 ? Side::inside : Side::outside;
-}
-
 }  // namespace
 
 exact::HomogeneousTriangle<Rational> exactTriangle(const ClipTriangle& triangle, const VkViewport& viewport) {
@@ -64,22 +59,46 @@ exact::HomogeneousTriangle<Rational> exactTriangle(const ClipTriangle& triangle,
     return exact::HomogeneousTriangle<Rational>(v);
 }
 
-SampleSides sidesOf(const ClipTriangle& clip, const exact::HomogeneousTriangle<Rational>& triangle, const Rational& x,
-                    const Rational& y, int subPixelBits) {
-    SampleSides sides;
-    const Rational subUnit = exact::powerOfTwo(-subPixelBits);
-    const int orientation = sgn(triangle.determinant);
-    std::array<Rational, 3> nearLine, farLine;
+TriangleSides::TriangleSides(const ClipTriangle& clip, const VkViewport& viewport, int subPixelBits)
+    : subUnit_(std::ldexp(1.0, -subPixelBits)) {
+    const exact::HomogeneousTriangle<Rational> shape = exactTriangle(clip, viewport);
+    orientation_ = sgn(shape.determinant);
+    std::array<std::array<Rational, 3>, 2> cuts;
     for (size_t i = 0; i < 3; ++i) {
         std::array<Rational, 3> line;
         for (size_t c = 0; c < 3; ++c) {
-            line[c] = triangle.edge[i][c] * orientation;
-            nearLine[c] += line[c] * exact::rational(clip[i][2]);
-            farLine[c] += line[c] * (exact::rational(clip[i][3]) - exact::rational(clip[i][2]));
+            line[c] = shape.edge[i][c] * orientation_;
+            cuts[0][c] += line[c] * exact::rational(clip[i][2]);
+            cuts[1][c] += line[c] * (exact::rational(clip[i][3]) - exact::rational(clip[i][2]));
         }
-        sides.edge[i] = sideOf(line, x, y, subUnit);
+        edges_[i] = lineOf(line);
     }
-    for (const auto& line : {nearLine, farLine}) sides.clip = std::max(sides.clip, sideOf(line, x, y, subUnit));
+    for (size_t i = 0; i < 2; ++i) cuts_[i] = lineOf(cuts[i]);
+}
+
+TriangleSides::Line TriangleSides::lineOf(const std::array<Rational, 3>& coefficients) {
+    Line line{coefficients, {}};
+    for (size_t i = 0; i < 3; ++i) line.nearly[i] = coefficients[i].get_d();
+    return line;
+}
+
+Side TriangleSides::sideOf(const Line& line, uint32_t x, uint32_t y) const {
+    const double px = x + 0.5, py = y + 0.5;
+    const auto& [a, b, c] = line.nearly;
+    const double value = a * px + b * py + c, reach = (std::abs(a) + std::abs(b)) * subUnit_;
+    const double noise = 0x1p-48 * (std::abs(a * px) + std::abs(b * py) + std::abs(c));
+    if (std::abs(value) > reach + noise) return value > 0 ? Side::inside : Side::outside;
+    if (std::abs(value) < reach - noise) return Side::open;
+    const Rational exactly =
+        line.exactly[0] * exact::rational(px) + line.exactly[1] * exact::rational(py) + line.exactly[2];
+    if (abs(exactly) <= (abs(line.exactly[0]) + abs(line.exactly[1])) * exact::rational(subUnit_)) return Side::open;
+    return exactly > 0 ? Side::inside : Side::outside;
+}
+
+SampleSides TriangleSides::at(uint32_t x, uint32_t y) const {
+    SampleSides sides;
+    for (size_t i = 0; i < 3; ++i) sides.edge[i] = sideOf(edges_[i], x, y);
+    for (const Line& cut : cuts_) sides.clip = std::max(sides.clip, sideOf(cut, x, y));
     return sides;
 }
 
@@ -87,16 +106,14 @@ void judgeSides(CaseInput& input, size_t scene, const std::vector<ClipTriangle>&
     input.judge({scene}, [=](std::span<const Drawn* const> images, const Declared& declared) -> Verdict {
         const auto counts = readCounts(*images[0], extent);
         if (!counts) return Verdict::wrong(counts.error().message);
-        std::vector<exact::HomogeneousTriangle<Rational>> shapes;
-        for (const ClipTriangle& t : triangles) shapes.push_back(exactTriangle(t, viewportOf(extent)));
+        std::vector<TriangleSides> sides;
+        for (const ClipTriangle& t : triangles) sides.emplace_back(t, viewportOf(extent), declared.subPixelBits);
         for (uint32_t y = 0; y < extent.height; ++y) {
             for (uint32_t x = 0; x < extent.width; ++x) {
                 uint32_t low = 0, high = 0;
-                for (size_t i = 0; i < triangles.size(); ++i) {
-                    if (sgn(shapes[i].determinant) == 0) continue;
-                    const Side side = sidesOf(triangles[i], shapes[i], x + exact::fraction(1, 2),
-                                              y + exact::fraction(1, 2), declared.subPixelBits)
-                                          .worst();
+                for (const TriangleSides& each : sides) {
+                    if (each.orientation() == 0) continue;
+                    const Side side = each.at(x, y).worst();
                     low += side == Side::inside;
                     high += side != Side::outside;
                 }

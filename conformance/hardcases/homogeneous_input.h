@@ -4,6 +4,8 @@
 #include "conformance/hardcases/coverage_input.h"
 #include "conformance/oracle/homogeneous.h"
 
+#include <algorithm>
+
 namespace vernier::conformance::hardcases {
 
 using ClipTriangle = std::array<ClipPosition, 3>;
@@ -19,8 +21,31 @@ struct SampleSides {
     Side clip = Side::inside;    // near and far together
     Side worst() const { return std::max({edge[0], edge[1], edge[2], clip}); }
 };
-SampleSides sidesOf(const ClipTriangle& clip, const exact::HomogeneousTriangle<exact::Rational>& triangle,
-                    const exact::Rational& x, const exact::Rational& y, int subPixelBits);
+
+/// Answers for the samples of one triangle. Rationals decide; doubles answer where they are far enough from 0 to be
+/// sure.
+class TriangleSides {
+  public:
+    TriangleSides(const ClipTriangle& clip, const VkViewport& viewport, int subPixelBits);
+    /// Of the homogeneous determinant: > 0 clockwise on the screen, 0 without area.
+    int orientation() const { return orientation_; }
+    /// At the centre of a pixel.
+    SampleSides at(uint32_t x, uint32_t y) const;
+
+  private:
+    /// A linear function of the place that is positive inside.
+    struct Line {
+        std::array<exact::Rational, 3> exactly;
+        std::array<double, 3> nearly;
+    };
+    static Line lineOf(const std::array<exact::Rational, 3>& coefficients);
+    Side sideOf(const Line& line, uint32_t x, uint32_t y) const;
+
+    std::array<Line, 3> edges_;
+    std::array<Line, 2> cuts_;  // near, far
+    int orientation_ = 0;
+    double subUnit_;
+};
 
 /// Adds a judge: every sample is covered by at least the triangles that it lies inside of, and at most by those that it
 /// does not lie outside of. Where nothing is open the count is exact.

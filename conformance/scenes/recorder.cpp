@@ -116,6 +116,11 @@ PipelineRecorder& PipelineRecorder::depthClamp() {
     return *this;
 }
 
+PipelineRecorder& PipelineRecorder::alphaToCoverage() {
+    state().alphaToCoverage = true;
+    return *this;
+}
+
 PipelineRecorder& PipelineRecorder::targets(uint32_t count) {
     state().blend.assign(count, unblended());
     return *this;

@@ -47,6 +47,7 @@ class PipelineRecorder {
     PipelineRecorder& samples(VkSampleCountFlagBits samples);
     PipelineRecorder& sampleMask(uint32_t mask);
     PipelineRecorder& depthClamp();
+    PipelineRecorder& alphaToCoverage();
     /// The number of colour attachments (1 unless said); all unblended, all components written.
     PipelineRecorder& targets(uint32_t count);
     PipelineRecorder& blend(const VkPipelineColorBlendAttachmentState& state, uint32_t target = 0);
