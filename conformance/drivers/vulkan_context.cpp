@@ -195,6 +195,13 @@ VkFormatProperties VulkanContext::formatProperties(VkFormat format) const {
     return properties;
 }
 
+VkSampleCountFlags VulkanContext::sampleCounts(VkFormat format, VkImageUsageFlags usage) const {
+    VkImageFormatProperties properties{};
+    const VkResult result = vkGetPhysicalDeviceImageFormatProperties(physicalDevice_, format, VK_IMAGE_TYPE_2D,
+                                                                     VK_IMAGE_TILING_OPTIMAL, usage, 0, &properties);
+    return result == VK_SUCCESS ? properties.sampleCounts : 0;
+}
+
 Result<uint32_t> VulkanContext::memoryType(uint32_t typeBits, VkMemoryPropertyFlags flags) const {
     for (uint32_t i = 0; i < memory_.memoryTypeCount; ++i) {
         if ((typeBits >> i & 1) != 0 && (memory_.memoryTypes[i].propertyFlags & flags) == flags) return i;

@@ -68,6 +68,8 @@ class VulkanContext {
     const VkPhysicalDeviceProperties& properties() const { return properties_; }
     const VkPhysicalDeviceFeatures& features() const { return features_; }
     VkFormatProperties formatProperties(VkFormat format) const;
+    /// The sample counts that optimally tiled 2D images of this format and use may have.
+    VkSampleCountFlags sampleCounts(VkFormat format, VkImageUsageFlags usage) const;
     /// Whether the queue runs compute work.
     bool hasCompute() const { return compute_; }
     /// Whether viewports may have negative heights.

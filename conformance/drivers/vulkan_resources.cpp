@@ -122,6 +122,10 @@ Status VulkanResources::createImage(const SceneImage& scene) {
     info.arrayLayers = scene.arrayLayers;
     info.samples = scene.samples;
     info.usage = scene.usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    if ((context_.sampleCounts(info.format, info.usage) & info.samples) == 0) {
+        return unsupported("image '" + scene.name + "': " + std::string(sceneFormat(scene.format)->name) + " with " +
+                           std::to_string(info.samples) + " samples");
+    }
     VERNIER_TRY_VK(vkCreateImage(device, &info, nullptr, &image.handle));
     cleanup_.add([device, handle = image.handle] { vkDestroyImage(device, handle, nullptr); });
     VkMemoryRequirements requirements{};
