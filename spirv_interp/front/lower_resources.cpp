@@ -53,6 +53,7 @@ uint32_t Lowering::resourceOf(uint32_t variable) {
         resource.set = module_.decorationOr(variable, spv::Decoration::DescriptorSet, Decoration::kNoMember, 0);
         resource.binding = module_.decorationOr(variable, spv::Decoration::Binding, Decoration::kNoMember, 0);
     }
+    resource.aliased = module_.hasDecoration(variable, spv::Decoration::Aliased);
     // Two variables of one binding are one resource: a store through either makes it written for both.
     const auto same = std::find_if(program_.resources.begin(), program_.resources.end(), [&](const ir::Resource& r) {
         return r.kind == resource.kind && r.set == resource.set && r.binding == resource.binding;
@@ -64,6 +65,7 @@ uint32_t Lowering::resourceOf(uint32_t variable) {
         same->arraySize =
             same->arraySize == 0 || resource.arraySize == 0 ? 0 : std::max(same->arraySize, resource.arraySize);
         same->byteSize = std::max(same->byteSize, resource.byteSize);
+        same->aliased = same->aliased || resource.aliased;
     }
     return index;
 }

@@ -52,6 +52,13 @@ void markWritten(const Program& program, uint32_t resource, std::vector<bool>& w
     }
 }
 
+/// What is written through one of the resources that share memory is written for all of them.
+void spreadAliases(const Program& program, std::vector<bool>& written) {
+    bool any = false;
+    for (size_t r = 0; r < written.size(); ++r) any = any || (written[r] && program.resources[r].aliased);
+    for (size_t r = 0; any && r < written.size(); ++r) written[r] = written[r] || program.resources[r].aliased;
+}
+
 }  // namespace
 
 void analyse(Program& program) {
@@ -111,6 +118,7 @@ void analyse(Program& program) {
             }
         }
     }
+    spreadAliases(program, written);
     program.usesQuads = program.usesQuads && program.stage == Stage::fragment;
     for (size_t r = 0; r < written.size(); ++r) {
         // Work-group memory is no memory of the draw, whoever writes it; nor does it outlive the work-group.

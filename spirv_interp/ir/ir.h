@@ -146,6 +146,7 @@ struct Resource {
     uint32_t set = 0, binding = 0;
     uint32_t arraySize = 1;  // descriptors; 0 = runtime-sized
     uint32_t byteSize = 0;   // push constants and work-group memory
+    bool aliased = false;    // shares memory with the other resources that say so
     bool readOnly = false;   // no store or atomic reaches it
 };
 

@@ -188,6 +188,7 @@ class Parser {
         in.expect("x", "'x'");
         r.arraySize = static_cast<uint32_t>(in.number(~0u));
         if (in.acceptWord("bytes")) r.byteSize = static_cast<uint32_t>(in.number(~0u));
+        r.aliased = in.acceptWord("aliased");
         r.readOnly = in.acceptWord("read");
     }
 

@@ -137,6 +137,7 @@ std::string print(const Program& program) {
         out += "resource " + number(i) + " " + std::string(nameOf(r.kind)) + " " + number(r.set) + "." +
                number(r.binding) + " x" + number(r.arraySize);
         if (r.byteSize != 0) out += " bytes " + number(r.byteSize);
+        if (r.aliased) out += " aliased";
         if (r.readOnly) out += " read";
         out += "\n";
     }

@@ -419,6 +419,62 @@ OpReturn
               42);
 }
 
+/// Loads from one buffer before and after a store to another; `decorations` of %from and %to.
+std::string aliasing(const std::string& decorations) {
+    return R"(
+OpCapability Shader
+OpExtension "SPV_KHR_storage_buffer_storage_class"
+OpMemoryModel Logical GLSL450
+OpEntryPoint GLCompute %main "main"
+OpExecutionMode %main LocalSize 1 1 1
+OpDecorate %words ArrayStride 4
+OpDecorate %block Block
+OpMemberDecorate %block 0 Offset 0
+OpDecorate %from DescriptorSet 0
+OpDecorate %from Binding 0
+OpDecorate %to DescriptorSet 0
+OpDecorate %to Binding 1
+)" + decorations +
+           R"(
+%void = OpTypeVoid
+%fn = OpTypeFunction %void
+%uint = OpTypeInt 32 0
+%zero = OpConstant %uint 0
+%one = OpConstant %uint 1
+%words = OpTypeRuntimeArray %uint
+%block = OpTypeStruct %words
+%pointer = OpTypePointer StorageBuffer %block
+%word = OpTypePointer StorageBuffer %uint
+%from = OpVariable %pointer StorageBuffer
+%to = OpVariable %pointer StorageBuffer
+%main = OpFunction %void None %fn
+%entry = OpLabel
+%source = OpAccessChain %word %from %zero %zero
+%target = OpAccessChain %word %to %zero %zero
+%next = OpAccessChain %word %to %zero %one
+%before = OpLoad %uint %source
+%more = OpIAdd %uint %before %one
+OpStore %target %more
+%after = OpLoad %uint %source
+OpStore %next %after
+OpReturn
+OpFunctionEnd
+)";
+}
+
+TEST_F(Lowering, StoresReachAliasedBuffers) {
+    const auto loads = [](const std::string& decorations) {
+        const std::string text = ir::print(load(assemble(aliasing(decorations)), ir::Stage::compute));
+        size_t count = 0;
+        for (size_t at = text.find("loadBuffer"); at != std::string::npos; at = text.find("loadBuffer", at + 1))
+            ++count;
+        return count;
+    };
+    EXPECT_EQ(loads(""), 1u);
+    EXPECT_EQ(loads("OpDecorate %from Aliased\n"), 1u);
+    EXPECT_EQ(loads("OpDecorate %from Aliased\nOpDecorate %to Aliased\n"), 2u);
+}
+
 TEST_F(Lowering, RefusesOtherRoundingModes) {
     const Words words = assemble(R"(
 OpCapability Shader
