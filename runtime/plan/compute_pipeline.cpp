@@ -45,8 +45,9 @@ Result<std::shared_ptr<const ComputePipeline>> ComputePipeline::create(const Com
     std::shared_ptr<ComputePipeline> pipeline(new ComputePipeline);
     pipeline->accuracy_ = desc.accuracy;
     pipeline->isa_ = desc.isa;
-    pipeline->ir_ = *desc.program;
-    auto compiled = BatchProgram::compile(pipeline->ir_, {desc.isa, desc.accuracy.math, 0});
+    BatchOptions options{desc.isa, desc.accuracy.math};
+    options.verified = true;
+    auto compiled = BatchProgram::compile(*desc.program, options);
     if (!compiled) return Error{compiled.error().code, "compute shader: " + compiled.error().message};
     pipeline->program_ = std::move(compiled).value();
     return std::shared_ptr<const ComputePipeline>(std::move(pipeline));
@@ -58,7 +59,7 @@ std::string ComputePipeline::explain() const {
         text += (runs ? "runs      " : "left out  ") + what + ": " + why + "\n";
     };
     const BatchStatistics& statistics = program_->statistics();
-    const auto& size = ir_.localSize;
+    const auto& size = ir().localSize;
     line(true, "compute program, once per invocation, " + std::to_string(statistics.lanes) + " at a time",
          "work-groups of " + std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " +
              std::to_string(size[2]) + "; " + std::to_string(statistics.instructions) + " instructions; " +
@@ -69,12 +70,12 @@ std::string ComputePipeline::explain() const {
     if (statistics.workGroupRateInstructions > 0)
         line(true, std::to_string(statistics.workGroupRateInstructions) + " instructions, once per work-group",
              "their values are the same for its invocations");
-    if (!ir_.hasBarriers) line(false, "waiting at barriers", "there are none");
-    if (const uint32_t bytes = sharedBytes(ir_); bytes > 0)
+    if (!ir().hasBarriers) line(false, "waiting at barriers", "there are none");
+    if (const uint32_t bytes = sharedBytes(ir()); bytes > 0)
         line(true, "memory of the work-group, " + std::to_string(bytes) + " bytes", "the invocations share variables");
     else
         line(false, "memory of the work-group", "no variable is shared");
-    if (!ir_.hasSideEffects) line(false, "the whole program", "it writes nothing that can be read");
+    if (!ir().hasSideEffects) line(false, "the whole program", "it writes nothing that can be read");
     return text;
 }
 

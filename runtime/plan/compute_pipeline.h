@@ -28,10 +28,10 @@ class ComputePipeline {
 
     const Accuracy& accuracy() const { return accuracy_; }
     Isa isa() const { return isa_; }
-    const ir::Program& ir() const { return ir_; }
+    const ir::Program& ir() const { return program_->source(); }
     const std::shared_ptr<const BatchProgram>& program() const { return program_; }
-    const std::array<uint32_t, 3>& localSize() const { return ir_.localSize; }
-    uint32_t invocations() const { return ir_.localSize[0] * ir_.localSize[1] * ir_.localSize[2]; }  // of a work-group
+    const std::array<uint32_t, 3>& localSize() const { return ir().localSize; }
+    uint32_t invocations() const { return localSize()[0] * localSize()[1] * localSize()[2]; }  // of a work-group
 
     /// What a dispatch with this pipeline will run, at what rate and accuracy, and why; one fact a line.
     std::string explain() const;
@@ -40,7 +40,6 @@ class ComputePipeline {
     ComputePipeline() = default;
     Accuracy accuracy_;
     Isa isa_ = Isa::sse4;
-    ir::Program ir_;
     std::shared_ptr<const BatchProgram> program_;
 };
 

@@ -20,22 +20,20 @@ Result<std::shared_ptr<const ShaderProgram>> ShaderProgram::create(const ShaderP
     const std::shared_ptr<ShaderProgram> program(new ShaderProgram);
     program->accuracy_ = desc.accuracy;
     program->isa_ = desc.isa;
-    program->vertexIr_ = *desc.vertex;
     const bool hasFragment = desc.fragment != nullptr;
-    if (hasFragment) program->fragmentIr_ = *desc.fragment;
-    ir::Program none = emptyFragment();
+    ir::Program vertexIr = *desc.vertex, fragmentIr = hasFragment ? *desc.fragment : emptyFragment();
     ir::LinkFacts facts;
-    if (Status status = ir::linkStages(program->vertexIr_, hasFragment ? program->fragmentIr_ : none, &facts); !status)
-        return status.error();
+    if (Status status = ir::linkStages(vertexIr, fragmentIr, &facts); !status) return status.error();
     program->removedVaryings_ = facts.removedOutputs;
     program->liftedOperations_ = facts.liftedOperations;
 
-    const BatchOptions options{desc.isa, desc.accuracy.math, 0};
-    auto compiled = BatchProgram::compile(program->vertexIr_, options);
+    BatchOptions options{desc.isa, desc.accuracy.math};
+    options.verified = true;
+    auto compiled = BatchProgram::compile(std::move(vertexIr), options);
     if (!compiled) return Error{compiled.error().code, "vertex shader: " + compiled.error().message};
     program->vertex_ = std::move(compiled).value();
     if (hasFragment) {
-        auto fragment = BatchProgram::compile(program->fragmentIr_, options);
+        auto fragment = BatchProgram::compile(std::move(fragmentIr), options);
         if (!fragment) return Error{fragment.error().code, "fragment shader: " + fragment.error().message};
         program->fragment_ = std::move(fragment).value();
     }

@@ -26,9 +26,9 @@ class ShaderProgram {
 
     const Accuracy& accuracy() const { return accuracy_; }
     Isa isa() const { return isa_; }
-    const ir::Program& vertexIr() const { return vertexIr_; }
+    const ir::Program& vertexIr() const { return vertex_->source(); }
     /// nullptr without a fragment stage.
-    const ir::Program* fragmentIr() const { return fragment_ ? &fragmentIr_ : nullptr; }
+    const ir::Program* fragmentIr() const { return fragment_ ? &fragment_->source() : nullptr; }
     const std::shared_ptr<const BatchProgram>& vertex() const { return vertex_; }
     const std::shared_ptr<const BatchProgram>& fragment() const { return fragment_; }
     /// Vertex outputs that linking removed because nobody reads them, for explain().
@@ -40,7 +40,6 @@ class ShaderProgram {
     ShaderProgram() = default;
     Accuracy accuracy_;
     Isa isa_ = Isa::sse4;
-    ir::Program vertexIr_, fragmentIr_;
     std::shared_ptr<const BatchProgram> vertex_, fragment_;
     uint32_t removedVaryings_ = 0, liftedOperations_ = 0;
 };

@@ -27,11 +27,9 @@ struct DestroyContext {
     void operator()(spv_context context) const { spvContextDestroy(context); }
 };
 
-}  // namespace
-
-Status checkModule(std::span<const uint32_t> words) {
-    if (words.size() < Module::kFirstInstruction)
-        return invalidArgument("SPIR-V: the module is shorter than its header");
+/// The names of ids in messages take longer to make than the rest of the validation: they are for modules that are
+/// known to be wrong.
+Status validate(std::span<const uint32_t> words, bool names) {
     const std::unique_ptr<std::remove_pointer_t<spv_context>, DestroyContext> context(
         spvContextCreate(environmentOf(words[1])));
     // What features of the device may allow and every program can have: LocalSizeId (maintenance4) and any layout of
@@ -43,6 +41,7 @@ Status checkModule(std::span<const uint32_t> words) {
     spvValidatorOptionsSetUniformBufferStandardLayout(options.get(), true);
     spvValidatorOptionsSetScalarBlockLayout(options.get(), true);
     spvValidatorOptionsSetWorkgroupScalarBlockLayout(options.get(), true);
+    spvValidatorOptionsSetFriendlyNames(options.get(), names);
     spv_diagnostic diagnostic = nullptr;
     spv_const_binary_t binary{words.data(), words.size()};
     if (spvValidateWithOptions(context.get(), options.get(), &binary, &diagnostic) == SPV_SUCCESS) {
@@ -57,6 +56,14 @@ Status checkModule(std::span<const uint32_t> words) {
     }
     spvDiagnosticDestroy(diagnostic);
     return invalidArgument(std::move(message));
+}
+
+}  // namespace
+
+Status checkModule(std::span<const uint32_t> words) {
+    if (words.size() < Module::kFirstInstruction)
+        return invalidArgument("SPIR-V: the module is shorter than its header");
+    return validate(words, false).ok() ? Status() : validate(words, true);
 }
 
 Result<ir::Program> lowerModule(const ShaderSource& source) {

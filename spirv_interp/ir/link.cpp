@@ -38,16 +38,19 @@ uint32_t dropUnreadOutputs(Program& vertex, const Program& fragment) {
     return static_cast<uint32_t>(std::count(read.begin(), read.end(), false));
 }
 
-/// Inputs that are read one by one and that nothing writes become 0.
-void zeroUnwrittenInputs(Program& fragment, const std::vector<bool>& written) {
+/// Inputs that are read one by one and that nothing writes become 0. Returns whether there are any.
+bool zeroUnwrittenInputs(Program& fragment, const std::vector<bool>& written) {
+    bool any = false;
     for (Block& block : fragment.blocks) {
         for (Inst& inst : block.insts) {
             if (inst.op == Op::inputIndexed || immKind(inst.op) != ImmKind::input || written[inst.imm]) continue;
             inst.op = Op::constant;
             inst.operandCount = 0;
             inst.imm = 0;
+            any = true;
         }
     }
+    return any;
 }
 
 /// Writes 0 to `slot` before every return.
@@ -94,16 +97,19 @@ Status linkStages(Program& vertex, Program& fragment, LinkFacts* facts) {
                                    std::string(typeName(input.type)));
         }
     }
-    zeroUnwrittenInputs(fragment, written);
-    optimise(fragment);
+    // Programs come optimised: only what changes here is worth another look.
+    if (zeroUnwrittenInputs(fragment, written)) optimise(fragment);
+    bool vertexChanged = false;
     for (const InterfaceSlot& input : fragment.inputs) {
-        if (isVarying(input) && findSlot(vertex.outputs, input) == nullptr) writeZero(vertex, input);
+        if (!isVarying(input) || findSlot(vertex.outputs, input) != nullptr) continue;
+        writeZero(vertex, input);
+        vertexChanged = true;
     }
     const uint32_t lifted = liftFlat(vertex, fragment);
     if (lifted != 0) optimise(fragment);
     const uint32_t removed = dropUnreadOutputs(vertex, fragment);
     if (facts != nullptr) *facts = {removed, lifted};
-    optimise(vertex);
+    if (vertexChanged || lifted != 0 || removed != 0) optimise(vertex);
     return {};
 }
 

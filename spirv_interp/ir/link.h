@@ -14,10 +14,10 @@ struct LinkFacts {
 /// Outputs of `vertex` that `fragment` does not read are removed with the code behind them (built-in ones stay). Inputs
 /// of `fragment` that nothing writes become 0; where such an input is part of an array indexed at run time, `vertex`
 /// gets an output that is 0 instead, so that afterwards every user input of `fragment` has the output of the same
-/// location, component and type. Both programs are optimised again and verify. An invalidArgument Error when an output
-/// and the input of the same place differ in type ("Interface Matching" in the Vulkan specification); the programs are
-/// then unchanged.
-/// Work on flat inputs moves from `fragment` to `vertex` where that pays (ir/lift_flat.h).
+/// location, component and type. Both programs come as optimise() leaves them, go so, and verify. An invalidArgument
+/// Error when an output and the input of the same place differ in type ("Interface Matching" in the Vulkan
+/// specification); the programs are then unchanged. Work on flat inputs moves from `fragment` to `vertex` where that
+/// pays (ir/lift_flat.h).
 Status linkStages(Program& vertex, Program& fragment, LinkFacts* facts = nullptr);
 
 }  // namespace vernier::ir
