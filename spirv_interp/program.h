@@ -71,6 +71,10 @@ struct BatchOptions {
     Isa isa = Isa::sse4;
     MathTier tier = MathTier::standard;
     uint32_t lanes = 0;  // at most so many (16, 32, 64 or 128); the instruction set may allow fewer. 0: all it allows
+    /// Where to count how often each block of the batch code is run, for measurements: the listing names the blocks
+    /// (countBlock), and those beyond the end of this are not counted. Running is then not thread-safe.
+    std::span<uint64_t> blockRuns{};
+    bool verified = false;  // the program is as loadShader or linkStages left it, and not verified once more
 };
 
 struct BatchStatistics {
@@ -88,8 +92,9 @@ class BatchProgram {
   public:
     virtual ~BatchProgram() = default;
     /// `program` must verify and be in loop-closed form. Thread-safe. Defined in batch/.
-    static Result<std::shared_ptr<const BatchProgram>> compile(const ir::Program& program, const BatchOptions& options);
+    static Result<std::shared_ptr<const BatchProgram>> compile(ir::Program program, const BatchOptions& options);
 
+    virtual const ir::Program& source() const = 0;
     virtual const BatchStatistics& statistics() const = 0;
     virtual std::string disassemble() const = 0;
     uint32_t lanes() const { return statistics().lanes; }

@@ -1,8 +1,8 @@
 #include "bench/compute/kernel.h"
 
 #include <algorithm>
-
-#include "conformance/tool/rendering.h"
+#include <fstream>
+#include <iterator>
 
 namespace vernier::bench {
 namespace {
@@ -108,10 +108,10 @@ const Kernel* findKernel(std::string_view name) {
 Result<std::string> readKernelSource(std::span<const std::string_view> files) {
     std::string source;
     for (const std::string_view file : files) {
-        const Result<std::string> text =
-            conformance::readFile(std::string(VERNIER_BENCH_KERNELS "/") + std::string(file));
-        if (!text) return text.error();
-        source += text.value();
+        const std::string path = std::string(VERNIER_BENCH_KERNELS "/") + std::string(file);
+        std::ifstream stream(path);
+        if (!stream) return invalidArgument(path + ": cannot be read");
+        source.append(std::istreambuf_iterator<char>(stream), {});
     }
     return source;
 }

@@ -84,6 +84,9 @@ constexpr FormSet formSet(Op op) {
         case Op::iand:
         case Op::ior:
         case Op::ixor:
+        case Op::xor3:
+        case Op::andOr:
+        case Op::integerMultiplyAdd:
         case Op::foeq:
         case Op::fone:
         case Op::fueq:
@@ -91,6 +94,19 @@ constexpr FormSet formSet(Op op) {
         case Op::ieq:
         case Op::ine:
             return FormSet::commutative;
+        case Op::shiftRightAnd:
+        case Op::shiftRightXor:
+        case Op::shiftLeftXor:
+        case Op::shiftLeftAdd:
+        case Op::shiftLeftOr:
+        case Op::rotateLeft:
+        case Op::xorShiftRight:
+        case Op::xorShiftLeft:
+        case Op::xorShiftMultiply:
+        case Op::convertMultiply:
+        case Op::convertMultiplyAdd:
+        case Op::convertMultiplySubtract:
+            return FormSet::byScalar;
         case Op::frem:
         case Op::fmod:
         case Op::fsmoothstep:
@@ -185,6 +201,7 @@ struct Frame {
     uint32_t localStride = 0;
     uint32_t* imageScratch = nullptr;  // kImageScratchRows * kMaxLanes words
     BatchContext::Interpolator interpolator;
+    uint64_t* blockRuns = nullptr;                     // BatchOptions::blockRuns
     alignas(64) uint32_t accumulator[kMaxLanes] = {};  // between instructions, where calls are not turned into jumps
 
     template <class T>

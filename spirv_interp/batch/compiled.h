@@ -30,14 +30,14 @@ Code encode(const MachineCode& machine, const Allocation& allocation, const Scal
 
 class CompiledProgram final : public BatchProgram {
   public:
-    CompiledProgram(const ir::Program& source, LoweredProgram lowered, const BatchOptions& options, bool packed,
+    CompiledProgram(ir::Program source, LoweredProgram lowered, const BatchOptions& options, bool packed,
                     bool withListing = false);
 
+    const ir::Program& source() const override { return source_; }
     const BatchStatistics& statistics() const override { return statistics_; }
     /// Compiles once more, with listings.
     std::string disassemble() const override;
 
-    const ir::Program& source() const { return source_; }
     const Code& batch() const { return batch_; }
     const Code& workGroup() const { return workGroup_; }
     const Code& draw() const { return draw_; }
@@ -47,6 +47,7 @@ class CompiledProgram final : public BatchProgram {
     /// A batch holds several work-groups if it has room for them.
     bool packed() const { return packed_; }
     const MaskFunctions& masks() const { return masks_; }
+    uint64_t* blockRuns() const { return options_.blockRuns.data(); }
     /// Where a piece begins for the lanes of a frame, and how it runs from there.
     static const Inst* beginning(const Frame& frame, const Code& code) {
         return frame.lanes > kLaneGroup ? code.full.data() : code.narrow.data();

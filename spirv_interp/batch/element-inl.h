@@ -8,8 +8,10 @@
 
 #include <hwy/highway.h>
 
+#include <array>
 #include <bit>
 #include <cstdint>
+#include <tuple>
 #include <type_traits>
 
 #include "base/simd-inl.h"
@@ -34,6 +36,14 @@ namespace hn = hwy::HWY_NAMESPACE;
 template <class M>
 HWY_INLINE VU boolRow(M mask) {
     return hn::VecFromMask(kU32, hn::RebindMask(kU32, mask));
+}
+
+/// Shift counts are taken modulo the width.
+HWY_INLINE VU shiftedLeft(VU a, VU b) {
+    return hn::Shl(a, hn::And(b, hn::Set(kU32, 31u)));
+}
+HWY_INLINE VU shiftedRight(VU a, VU b) {
+    return hn::Shr(a, hn::And(b, hn::Set(kU32, 31u)));
 }
 
 /// An operand: a row that is read vector by vector, or a scalar that is in a register for the whole loop.
@@ -111,6 +121,35 @@ HWY_INLINE void writeLane(const Frame& frame, uint32_t offset, uint32_t lane, T 
     }
 }
 
+/// The values of a lane group, in memory: loops over them are for the compiler to turn into vector code.
+template <class T>
+struct LaneValues {
+    static HWY_INLINE void load(const Frame& frame, uint32_t offset, uint32_t lane, T* values) {
+        const auto* low = frame.row<uint32_t>(offset) + lane;
+        if constexpr (sizeof(T) == 8) {
+            const auto* high = frame.row<uint32_t>(offset + frame.rowBytes) + lane;
+            for (uint32_t k = 0; k < kLaneGroup; ++k) values[k] = std::bit_cast<T>(uint64_t{high[k]} << 32 | low[k]);
+        } else {
+            for (uint32_t k = 0; k < kLaneGroup; ++k) values[k] = std::bit_cast<T>(low[k]);
+        }
+    }
+    static HWY_INLINE void store(const Frame& frame, uint32_t offset, uint32_t lane, const T* values) {
+        auto* low = frame.row<uint32_t>(offset) + lane;
+        if constexpr (std::is_same_v<T, bool>) {
+            for (uint32_t k = 0; k < kLaneGroup; ++k) low[k] = values[k] ? ~0u : 0u;
+        } else if constexpr (sizeof(T) == 8) {
+            auto* high = frame.row<uint32_t>(offset + frame.rowBytes) + lane;
+            for (uint32_t k = 0; k < kLaneGroup; ++k)
+                low[k] = static_cast<uint32_t>(std::bit_cast<uint64_t>(values[k]));
+            for (uint32_t k = 0; k < kLaneGroup; ++k) {
+                high[k] = static_cast<uint32_t>(std::bit_cast<uint64_t>(values[k]) >> 32);
+            }
+        } else {
+            for (uint32_t k = 0; k < kLaneGroup; ++k) low[k] = std::bit_cast<uint32_t>(values[k]);
+        }
+    }
+};
+
 /// An operation given as a function of one lane; 4-byte types are rows, 8-byte types pairs of rows, bool is a
 /// b1 row.
 template <auto kFunction>
@@ -136,8 +175,13 @@ struct LaneRunner<kFunction> {
     }
     template <size_t... kIndex>
     static HWY_INLINE void call(Frame& frame, const Inst* inst, std::index_sequence<kIndex...>) {
-        for (uint32_t lane = 0; lane < frame.lanes; ++lane) {
-            writeLane<R>(frame, (*inst)[0], lane, kFunction(readLane<A>(frame, (*inst)[kIndex + 1], lane)...));
+        for (uint32_t lane = 0; lane < frame.lanes; lane += kLaneGroup) {
+            // All operands are taken over before a result is written: it may lie where one of them does.
+            std::tuple<std::array<A, kLaneGroup>...> from;
+            (LaneValues<A>::load(frame, (*inst)[kIndex + 1], lane, std::get<kIndex>(from).data()), ...);
+            std::array<R, kLaneGroup> result;
+            for (uint32_t k = 0; k < kLaneGroup; ++k) result[k] = kFunction(std::get<kIndex>(from)[k]...);
+            LaneValues<R>::store(frame, (*inst)[0], lane, result.data());
         }
     }
 };

@@ -69,20 +69,21 @@ template <size_t kTerms, Source kFactor>
 struct Dot {
     static constexpr size_t kInsts = instsFor(1 + 2 * kTerms);
 
-    template <size_t K>
-    static HWY_INLINE VF at(const std::byte* rows, const uint32_t* scalars, const Inst* inst) {
-        VF sum = hn::Add(product<K, 0>(rows, scalars, inst), product<K, 1>(rows, scalars, inst));
-        if constexpr (kTerms > 2) sum = hn::Add(sum, product<K, 2>(rows, scalars, inst));
-        if constexpr (kTerms > 3) sum = hn::Add(sum, product<K, 3>(rows, scalars, inst));
+    template <size_t K, Source kSource>
+    static HWY_INLINE VF at(const std::byte* rows, const uint32_t* scalars, const Inst* inst, VU accumulator) {
+        VF sum = hn::Add(product<K, 0, kSource>(rows, scalars, inst, accumulator),
+                         product<K, 1>(rows, scalars, inst, accumulator));
+        if constexpr (kTerms > 2) sum = hn::Add(sum, product<K, 2>(rows, scalars, inst, accumulator));
+        if constexpr (kTerms > 3) sum = hn::Add(sum, product<K, 3>(rows, scalars, inst, accumulator));
         return sum;
     }
 
   private:
-    template <size_t K, size_t kTerm>
-    static HWY_INLINE VF product(const std::byte* rows, const uint32_t* scalars, const Inst* inst) {
-        const VU none = hn::Zero(kU32);
-        const VF a = StripOperand<float, Source::row>::at<K>(rows, scalars, (*inst)[1 + 2 * kTerm], none);
-        return hn::Mul(a, StripOperand<float, kFactor>::template at<K>(rows, scalars, (*inst)[2 + 2 * kTerm], none));
+    template <size_t K, size_t kTerm, Source kSource = Source::row>
+    static HWY_INLINE VF product(const std::byte* rows, const uint32_t* scalars, const Inst* inst, VU accumulator) {
+        const VF a = StripOperand<float, kSource>::template at<K>(rows, scalars, (*inst)[1 + 2 * kTerm], accumulator);
+        return hn::Mul(
+            a, StripOperand<float, kFactor>::template at<K>(rows, scalars, (*inst)[2 + 2 * kTerm], accumulator));
     }
 };
 

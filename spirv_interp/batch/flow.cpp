@@ -44,6 +44,11 @@ const Inst* helperLanes(Frame& frame, const Inst* inst) {
     return inst + 1;
 }
 
+HWY_INLINE const Inst* countBlock(Frame& frame, const Inst* inst) {
+    ++frame.blockRuns[inst->operand[0]];
+    return inst + 1;
+}
+
 HWY_INLINE const Inst* enter(Frame& frame, const Inst* inst) {
     LaneMask& mask = frame.masks[inst->operand[0]];
     if (mask.empty()) return jump(inst, inst->operand[1]);
@@ -263,6 +268,7 @@ void addFlow(HandlerTables& tables) {
     tables.fullLanes = kStripVectors * kVectorLanes;
     addPlain<keepScalar>(tables, Op::keepScalar);
     addForward<moveScalar>(tables, Op::moveScalar);
+    addForward<countBlock>(tables, Op::countBlock);
     addPlain<helperLanes>(tables, Op::helperLanes);
     addForward<enter>(tables, Op::enter);
     addPlain<repeat>(tables, Op::repeat);

@@ -39,6 +39,7 @@ inline constexpr size_t kForms = 2 * size_t{Form::kUnstored};
 enum class FormSet : uint8_t {
     general,
     commutative,  // operands 0 and 1 may change places: fewer forms are needed
+    byScalar,     // operand 1 is a scalar and operand 0 is none
     rare,         // rows and scalars only, result stored: keeps the code small
 };
 
@@ -52,6 +53,7 @@ constexpr bool hasForm(size_t operands, FormSet set, Form form) {
     if (form.count(Source::scalar, operands) == operands) return form.stored;
     const size_t accumulators = form.count(Source::accumulator, operands);
     if (set == FormSet::rare) return accumulators == 0 && form.stored;
+    if (set == FormSet::byScalar) return a != Source::scalar && b == Source::scalar && accumulators < 2;
     if (set == FormSet::commutative) {
         const auto rank = [](Source source) {
             return source == Source::accumulator ? 0 : source == Source::row ? 1 : 2;

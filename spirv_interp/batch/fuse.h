@@ -1,9 +1,7 @@
-// Superinstructions: several IR instructions in one dispatch, with the bits they would give one by one. Found
-// for additions and subtractions whose operands are products, and for masks and exclusive ors of shifts, used nowhere
-// else.
+// Superinstructions: several IR instructions in one dispatch, with the bits they would give one by one. Which there are
+// was chosen from what shaders execute: docs/superinstructions.md.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "spirv_interp/batch/bytecode.h"
@@ -13,16 +11,31 @@ namespace vernier::batch {
 
 struct Fusion {
     Op op = Op::multiplyAdd;
-    std::vector<ir::ValueId> operands;  // without the destination
+    /// Without the destination. ir::kNoValue: a shift by nothing, or a mask of all bits.
+    std::vector<ir::ValueId> operands;
 };
 
-/// By value: it exists only inside the superinstruction of its one user. `definition` and `uses` are by
-/// value.
-std::vector<bool> fusedValues(const ir::Program& program, const std::vector<const ir::Inst*>& definition,
-                              const std::vector<uint32_t>& uses, const std::vector<bool>& scalar);
+/// The superinstructions of a program.
+class Fusions {
+  public:
+    Fusions() = default;
+    /// `definition` and `uses` are by value, `scalar` tells the values that are the same in all lanes. What becomes
+    /// part of a superinstruction is in a row, has one use, and that in the same block.
+    Fusions(const ir::Program& program, const std::vector<const ir::Inst*>& definition,
+            const std::vector<uint32_t>& uses, const std::vector<bool>& scalar);
 
-/// The superinstruction that ends in `inst`, made of values that are `fused` (empty: none are).
-std::optional<Fusion> findFusion(const ir::Program& program, const std::vector<const ir::Inst*>& definition,
-                                 const std::vector<bool>& fused, const std::vector<bool>& scalar, const ir::Inst& inst);
+    /// Whether a value exists only inside the superinstruction of its one user.
+    bool isInner(ir::ValueId value) const { return value < inner_.size() && inner_[value]; }
+    /// The superinstruction that gives a value, or nullptr.
+    const Fusion* of(ir::ValueId value) const {
+        return value < fusionOf_.size() && fusionOf_[value] != kNone ? &fusions_[fusionOf_[value]] : nullptr;
+    }
+
+  private:
+    static constexpr uint32_t kNone = ~0u;
+    std::vector<bool> inner_;
+    std::vector<Fusion> fusions_;
+    std::vector<uint32_t> fusionOf_;
+};
 
 }  // namespace vernier::batch

@@ -10,6 +10,7 @@ using AddHandlers = void (*)(HandlerTables&);
 
 void addFloatOps(Isa isa, HandlerTables& tables);             // float_ops.cpp: FLOAT operations, dot products
 void addIntegerOps(Isa isa, HandlerTables& tables);           // integer_ops.cpp: INTEGER operations
+void addFusedOps(Isa isa, HandlerTables& tables);             // fused_ops.cpp: FUSED operations, unpacking
 void addLaneOps(Isa isa, HandlerTables& tables);              // lane_ops.cpp: LANES operations
 void addWide(Isa isa, HandlerTables& tables);                 // wide.cpp: 64-bit values
 void addMath(Isa isa, MathTier tier, HandlerTables& tables);  // math.cpp: transcendental functions

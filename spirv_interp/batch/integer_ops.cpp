@@ -35,21 +35,9 @@ VERNIER_ELEMENT(iand, uint32_t, uint32_t, (V a, V b), return hn::And(a, b);)
 VERNIER_ELEMENT(ior, uint32_t, uint32_t, (V a, V b), return hn::Or(a, b);)
 VERNIER_ELEMENT(ixor, uint32_t, uint32_t, (V a, V b), return hn::Xor(a, b);)
 VERNIER_ELEMENT(inot, uint32_t, uint32_t, (V a), return hn::Not(a);)
-/// Shift counts are taken modulo the width.
-HWY_INLINE VU shiftedLeft(VU a, VU b) {
-    return hn::Shl(a, hn::And(b, hn::Set(kU32, 31u)));
-}
-HWY_INLINE VU shiftedRight(VU a, VU b) {
-    return hn::Shr(a, hn::And(b, hn::Set(kU32, 31u)));
-}
-
 VERNIER_ELEMENT(shl, uint32_t, uint32_t, (V a, V b), return shiftedLeft(a, b);)
 VERNIER_ELEMENT(lshr, uint32_t, uint32_t, (V a, V b), return shiftedRight(a, b);)
 VERNIER_ELEMENT(ashr, int32_t, int32_t, (V a, V b), return hn::Shr(a, hn::And(b, number(31)));)
-VERNIER_ELEMENT(shiftRightAnd, uint32_t, uint32_t, (V a, V b, V c), return hn::And(shiftedRight(a, b), c);)
-VERNIER_ELEMENT(shiftRightXor, uint32_t, uint32_t, (V a, V b, V c), return hn::Xor(shiftedRight(a, b), c);)
-VERNIER_ELEMENT(shiftLeftXor, uint32_t, uint32_t, (V a, V b, V c), return hn::Xor(shiftedLeft(a, b), c);)
-
 VERNIER_ELEMENT(foeq, float, uint32_t, (V a, V b), return boolRow(hn::Eq(a, b));)
 VERNIER_ELEMENT(fone, float, uint32_t, (V a, V b), return boolRow(hn::Or(hn::Lt(a, b), hn::Gt(a, b)));)
 VERNIER_ELEMENT(folt, float, uint32_t, (V a, V b), return boolRow(hn::Lt(a, b));)

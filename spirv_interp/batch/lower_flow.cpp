@@ -188,7 +188,7 @@ void Lowerer::lowerTerminator(ir::BlockId b) {
 
 void Lowerer::lowerBatch() {
     const auto count = static_cast<ir::BlockId>(program_.blocks.size());
-    fused_ = fusedValues(program_, facts_.definition, facts_.uses, facts_.scalar);
+    fusions_ = Fusions(program_, facts_.definition, facts_.uses, facts_.scalar);
     planBlocks();
     planOutputs();
     // Phis first: edges name them before their block comes. A loop's own phis live through all of its rounds.

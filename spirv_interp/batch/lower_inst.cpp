@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "spirv_interp/batch/fuse.h"
 #include "spirv_interp/batch/lowerer.h"
 #include "spirv_interp/batch/select.h"
 
@@ -89,17 +88,21 @@ void Lowerer::lowerWords(const ir::Inst& inst) {
 }
 
 bool Lowerer::lowerFused(const ir::Inst& inst) {
-    const std::optional<Fusion> fusion = findFusion(program_, facts_.definition, fused_, facts_.scalar, inst);
-    if (!fusion) return false;
-    // Sums of products have more operands, and forms of their own.
-    if (fusion->operands.size() == 3) {
-        emitVector(fusion->op, target(inst),
-                   {operandOf(fusion->operands[0]), operandOf(fusion->operands[1]), operandOf(fusion->operands[2])});
-        return true;
+    const Fusion* fusion = inst.result == ir::kNoValue ? nullptr : fusions_.of(inst.result);
+    if (fusion == nullptr) return false;
+    std::vector<Operand> operands;
+    for (size_t k = 0; k < fusion->operands.size(); ++k) {
+        const ir::ValueId value = fusion->operands[k];
+        const uint32_t neutral = k == 1 ? 0 : ~0u;
+        operands.push_back(value == ir::kNoValue ? Operand::scalar(scalars_.constant(neutral, false))
+                                                 : operandOf(value));
     }
-    std::vector<Operand> operands{target(inst)};
-    for (const ir::ValueId value : fusion->operands) operands.push_back(operandOf(value));
-    emit(fusion->op, std::move(operands));
+    if (isVectorOp(fusion->op)) {
+        emitVector(fusion->op, target(inst), std::move(operands));
+    } else {
+        operands.insert(operands.begin(), target(inst));
+        emit(fusion->op, std::move(operands));
+    }
     return true;
 }
 
@@ -109,7 +112,7 @@ void Lowerer::lowerInst(const ir::Inst& inst) {
     if (inst.result != ir::kNoValue) {
         if (isGiven(inst.result)) return;
         if (isScalar(inst.result) && takesScalars(program_, inst)) return lowerScalar(inst);
-        if (inst.result < fused_.size() && fused_[inst.result]) return;
+        if (fusions_.isInner(inst.result)) return;
     }
     if (lowerFused(inst)) return;
     switch (inst.op) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "spirv_interp/batch/fuse.h"
 #include "spirv_interp/batch/lower.h"
 #include "spirv_interp/batch/machine.h"
 #include "spirv_interp/batch/uniform.h"
@@ -148,7 +149,7 @@ class Lowerer {
     std::vector<uint32_t> registers_;  // by value
     uint32_t loop_ = kNone;            // header of the loop being lowered
     uint32_t line_ = 0;
-    std::vector<bool> fused_;     // values that only exist inside a superinstruction
+    Fusions fusions_;
     std::vector<bool> fallsIn_;   // blocks that run on from the block before, with its mask
     std::vector<bool> full_;      // blocks that every lane runs first
     std::vector<bool> endsLoop_;  // last blocks of loops

@@ -15,6 +15,7 @@ HandlerTables makeTables(Isa isa, MathTier tier) {
     HandlerTables tables;
     addFloatOps(isa, tables);
     addIntegerOps(isa, tables);
+    addFusedOps(isa, tables);
     addFlow(isa, tables);
     addLaneOps(isa, tables);
     addWide(isa, tables);
@@ -62,6 +63,32 @@ bool packs(const ir::Program& program, uint32_t lanes) {
     return !shares && workGroupSize(program) * 2 <= lanes;
 }
 
+/// Puts a countBlock in front of every block, up to `most` of them.
+void countBlocks(MachineCode& code, size_t most) {
+    std::vector<bool> begins(code.insts.size() + 1);
+    for (const uint32_t label : code.labels) begins[label] = true;
+    std::vector<MachineInst> counted;
+    std::vector<uint32_t> moved;  // by position: where it is now
+    uint32_t blocks = 0;
+    bool follows = true;  // a jump, or nothing
+    for (size_t k = 0; k < code.insts.size(); ++k) {
+        moved.push_back(static_cast<uint32_t>(counted.size()));
+        if ((begins[k] || follows) && blocks < most) {
+            MachineInst count;
+            count.op = Op::countBlock;
+            count.operands = {Operand::number(blocks++)};
+            counted.push_back(std::move(count));
+        }
+        MachineInst& inst = code.insts[k];
+        follows = std::any_of(inst.operands.begin(), inst.operands.end(),
+                              [](const Operand& operand) { return operand.kind == Operand::Kind::label; });
+        counted.push_back(std::move(inst));
+    }
+    moved.push_back(static_cast<uint32_t>(counted.size()));
+    for (uint32_t& label : code.labels) label = moved[label];
+    code.insts = std::move(counted);
+}
+
 /// The lanes of a batch: as many as were asked for and the instruction set has.
 uint32_t lanesFor(const BatchOptions& options) {
     const uint32_t full = handlerTables(options.isa, options.tier).fullLanes;
@@ -82,21 +109,23 @@ const HandlerTables& handlerTables(Isa isa, MathTier tier) {
     return tablesFor<Isa::sse4>(tier);
 }
 
-CompiledProgram::CompiledProgram(const ir::Program& source, LoweredProgram lowered, const BatchOptions& options,
-                                 bool packed, bool withListing)
-    : source_(source),
+CompiledProgram::CompiledProgram(ir::Program source, LoweredProgram lowered, const BatchOptions& options, bool packed,
+                                 bool withListing)
+    : source_(std::move(source)),
       options_(options),
       handlers_(handlerTables(options.isa, options.tier)),
       packed_(packed),
       masks_(maskFunctions(options.isa)) {
     uint32_t lanes = lanesFor(options);
-    if (options.lanes == 0 && source.stage == ir::Stage::compute && !packed) {
+    if (options.lanes == 0 && source_.stage == ir::Stage::compute && !packed) {
         // No wider than a work-group needs that has its batches for itself.
-        while (lanes > leastLanes(source) && lanes / 2 >= workGroupSize(source)) lanes /= 2;
+        while (lanes > leastLanes(source_) && lanes / 2 >= workGroupSize(source_)) lanes /= 2;
     }
     const auto encodePiece = [&](MachineCode& code, uint32_t most) {
         schedule(code);
-        return encode(code, allocate(code, handlers_.narrow), lowered.scalars, handlers_, most, withListing);
+        const Allocation allocation = allocate(code, handlers_.narrow);
+        if (&code == &lowered.batch && !options.blockRuns.empty()) countBlocks(code, options.blockRuns.size());
+        return encode(code, allocation, lowered.scalars, handlers_, most, withListing);
     };
     batch_ = encodePiece(lowered.batch, lanes);
     workGroup_ = encodePiece(lowered.workGroup, kLaneGroup);
@@ -129,8 +158,7 @@ std::string CompiledProgram::text() const {
 
 }  // namespace batch
 
-Result<std::shared_ptr<const BatchProgram>> BatchProgram::compile(const ir::Program& program,
-                                                                  const BatchOptions& options) {
+Result<std::shared_ptr<const BatchProgram>> BatchProgram::compile(ir::Program program, const BatchOptions& options) {
     constexpr uint32_t kLanes[] = {0, 16, 32, 64, 128};
     if (std::find(std::begin(kLanes), std::end(kLanes), options.lanes) == std::end(kLanes)) {
         return invalidArgument("BatchOptions::lanes is " + std::to_string(options.lanes) +
@@ -144,12 +172,14 @@ Result<std::shared_ptr<const BatchProgram>> BatchProgram::compile(const ir::Prog
         return unsupported("BatchOptions::isa is " + std::string(isaName(options.isa)) +
                            ", which this CPU does not have");
     }
-    if (Status status = ir::verify(program); !status.ok()) return status.error();
+    if (!options.verified) {
+        if (Status status = ir::verify(program); !status.ok()) return status.error();
+    }
     const bool packed = batch::packs(program, batch::lanesFor(options));
     auto lowered = batch::lower(program, packed);
     if (!lowered) return lowered.error();
     return std::shared_ptr<const BatchProgram>(
-        std::make_shared<batch::CompiledProgram>(program, std::move(lowered).value(), options, packed));
+        std::make_shared<batch::CompiledProgram>(std::move(program), std::move(lowered).value(), options, packed));
 }
 
 }  // namespace vernier

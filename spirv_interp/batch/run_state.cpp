@@ -43,6 +43,7 @@ RunState::RunState(SharedState& shared, const Code& code)
     frame.local = local_.get();
     frame.localStride = code.lanes;
     frame.imageScratch = shared.imageScratch.get();
+    frame.blockRuns = shared.compiled.blockRuns();
 }
 
 void RunState::begin(uint32_t lanes, const LaneMask& exec, const LaneMask& live) {

@@ -34,15 +34,31 @@ inline T umulHigh(T a, T b) {
     return static_cast<T>((static_cast<UnsignedDouble<T>>(a) * b) >> kBits<T>);
 }
 
+/// The quotient of integers of 32 bits, towards zero. A double has room for it and for how far it is from the next
+/// integer: the division rounds to no other. What vectors of doubles convert to is an integer of 64 bits at most.
+template <class T>
+inline T quotient(T a, T b) {
+    return static_cast<T>(static_cast<int64_t>(static_cast<double>(a) / static_cast<double>(b)));
+}
+/// Whether loops over quotients become vector code.
+inline constexpr bool kVectorQuotients = HWY_TARGET == HWY_AVX3;
+
 /// INT_MIN / -1 is INT_MIN; a division by zero gives 0, remainders included.
 template <class T>
 inline T sdiv(T a, T b) {
     using U = std::make_unsigned_t<T>;
+    if constexpr (kVectorQuotients && sizeof(T) == 4) return b == 0 ? 0 : quotient(a, b == 0 ? 1 : b);
     if (b == 0) return 0;
     return b == -1 ? static_cast<T>(U{0} - static_cast<U>(a)) : a / b;
 }
 template <class T>
 inline T srem(T a, T b) {
+    if constexpr (kVectorQuotients && sizeof(T) == 4) {
+        using U = std::make_unsigned_t<T>;
+        return b == 0 ? 0
+                      : static_cast<T>(static_cast<U>(a) -
+                                       static_cast<U>(quotient(a, b == 0 ? 1 : b)) * static_cast<U>(b));
+    }
     return b == 0 || b == -1 ? 0 : a % b;
 }
 template <class T>
@@ -52,10 +68,12 @@ inline T smod(T a, T b) {
 }
 template <class T>
 inline T udiv(T a, T b) {
+    if constexpr (kVectorQuotients && sizeof(T) == 4) return b == 0 ? 0 : quotient(a, b == 0 ? 1 : b);
     return b == 0 ? 0 : a / b;
 }
 template <class T>
 inline T umod(T a, T b) {
+    if constexpr (kVectorQuotients && sizeof(T) == 4) return b == 0 ? 0 : a - quotient(a, b == 0 ? 1 : b) * b;
     return b == 0 ? 0 : a % b;
 }
 

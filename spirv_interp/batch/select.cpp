@@ -79,6 +79,9 @@ bool isMovableOp(Op op) {
         case Op::dot3Scalar:
         case Op::dot4:
         case Op::dot4Scalar:
+        case Op::unpackMultiply:
+        case Op::unpackMultiplyAdd:
+        case Op::unpackMultiplySubtract:
             return true;
         default:
             return false;
@@ -95,7 +98,9 @@ std::optional<StripShape> stripShape(const MachineInst& inst) {
         case Op::dot2Scalar:
         case Op::dot3Scalar:
         case Op::dot4Scalar:
-            return StripShape{1, 0, true};
+        case Op::unpackMultiply:
+        case Op::unpackMultiplyAdd:
+        case Op::unpackMultiplySubtract:
         case Op::ddxFine:
         case Op::ddyFine:
         case Op::ddxCoarse:
@@ -121,6 +126,7 @@ std::optional<StripShape> stripShape(const MachineInst& inst) {
         case Op::skipEmpty:
         case Op::discard:
         case Op::moveScalar:
+        case Op::countBlock:
             return StripShape{0, 0, false};
         case Op::loadBuffer:  // of a scalar
             return result ? std::nullopt : std::optional(StripShape{0, 0, false});

@@ -142,12 +142,12 @@ struct Strip<std::index_sequence<K...>> {
         }
     }
 
-    /// An operation with operands of its own kind: E::at<K>(rows, scalars, inst) is vector K of the result, and it
-    /// takes E::kInsts Insts.
-    template <class E, bool kStored>
-    static const Inst* compound(Frame& frame, const Inst* inst, std::byte* rows, uint32_t* scalars, Vector<K>...) {
+    /// An operation with operands of its own kind: E::at<K, source>(rows, scalars, inst, accumulator) is vector K of
+    /// the result, and it takes E::kInsts Insts. Its first operand may be the accumulator.
+    template <class E, Source kSource, bool kStored>
+    static const Inst* compound(Frame& frame, const Inst* inst, std::byte* rows, uint32_t* scalars, Vector<K>... acc) {
         return finish<kStored>(frame, inst, inst + E::kInsts, rows, scalars,
-                               hn::BitCast(kU32, E::template at<K>(rows, scalars, inst))...);
+                               hn::BitCast(kU32, E::template at<K, kSource>(rows, scalars, inst, acc))...);
     }
 
     /// A plain handler that only ever goes on further down, and leaves the accumulator as it is.
@@ -210,8 +210,11 @@ template <class E>
 void addCompound(HandlerTables& tables, Op op) {
     const auto add = [op](auto strip, HandlerTable& table) {
         using S = decltype(strip);
-        table[static_cast<size_t>(op)][0] = S::erase(S::template compound<E, true>);
-        table[static_cast<size_t>(op)][Form::kUnstored] = S::erase(S::template compound<E, false>);
+        const auto enter = [&](Form form, Handler handler) { table[static_cast<size_t>(op)][form.index()] = handler; };
+        enter({}, S::erase(S::template compound<E, Source::row, true>));
+        enter({{}, false}, S::erase(S::template compound<E, Source::row, false>));
+        enter({{Source::accumulator}}, S::erase(S::template compound<E, Source::accumulator, true>));
+        enter({{Source::accumulator}, false}, S::erase(S::template compound<E, Source::accumulator, false>));
     };
     add(FullStrip(), tables.full);
     add(NarrowStrip(), tables.narrow);

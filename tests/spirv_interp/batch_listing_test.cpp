@@ -230,8 +230,8 @@ b0:
 input 0 r0
 output 0 r0
 batch:
-    0  shiftRightXor r0, r0, 0x0000000f, r0
-    1  shiftLeftXor acc, acc, 0x0000000f, r0
+    0  xorShiftRight acc, r0, 0x0000000f
+    1  xorShiftLeft acc, acc, 0x0000000f
     2  shiftRightAnd r0, acc, 0x0000000f, 0x000003ff
     3  end
 )");
