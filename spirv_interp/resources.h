@@ -20,7 +20,7 @@ struct BufferBinding {
 struct ImageCall {
     const ir::ImageOp* op = nullptr;
     uint32_t lanes = 0;
-    const uint32_t* mask = nullptr;       // ~0 or 0 per lane
+    const uint32_t* mask = nullptr;       // ~0 or 0 per lane; nullptr: all are active
     const uint32_t* coord[4] = {};        // f32 bits, or i32 for fetch/read/store
     const uint32_t* dref = nullptr;       // f32 bits
     const uint32_t* lodOrBias = nullptr;  // f32 bits; i32 for fetch

@@ -160,7 +160,9 @@ bool Assembler::run(std::span<const PreparedDraw> draws, uint64_t token, std::sp
                     const TileGrid& grid, Chunk& chunk) {
     bool finished = true;
     chunk.clear();
-    setup_.begin(chunk, grid);
+    uint32_t primitives = 0;
+    for (const PrimitiveRange& range : ranges) primitives += range.count;
+    setup_.begin(chunk, grid, primitives);
     for (const PrimitiveRange& range : ranges) {
         const PreparedDraw& draw = draws[range.draw];
         number(draw, range);

@@ -40,6 +40,7 @@ struct Primitive {
     bool front;
     bool affine;      // all w equal
     bool smallEdges;  // edge components below 2^kSmallEdgeBits: 32-bit edge functions
+    bool tiny;        // edge components up to 2^kTinyEdgeBits
     bool isPoint;
 };
 
@@ -48,6 +49,11 @@ struct Primitive {
 /// zero somewhere in it.
 inline constexpr int kSmallEdgeBits = 23;
 static_assert((int64_t{2} * kTileSize << kSmallEdgeBits) <= (int64_t{1} << 30));
+
+/// Edge components up to 2^12 (16 pixels at 8 sub-pixel bits) keep products with distances inside a tile (up to 2^6
+/// pixels, the primitive's own extent, and one pixel more), and their sums, in 32 bits as they are.
+inline constexpr int kTinyEdgeBits = 12, kTinySubPixelBits = 8;
+static_assert(int64_t{4} * (kTileSize + 17) << (kTinySubPixelBits + kTinyEdgeBits) < int64_t{1} << 31);
 
 /// A run of Chunk::entries that lie in one tile.
 struct TileRange {

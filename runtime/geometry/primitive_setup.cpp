@@ -53,12 +53,14 @@ TileGrid tileGridOf(const VkRect2D& area) {
     return grid;
 }
 
-void PrimitiveSetup::begin(Chunk& chunk, const TileGrid& grid) {
+void PrimitiveSetup::begin(Chunk& chunk, const TileGrid& grid, uint32_t primitives) {
     chunk_ = &chunk;
     grid_ = grid;
     entries_.clear();
     touched_.clear();
     if (perTile_.size() < grid.count()) perTile_.resize(grid.count(), 0);
+    // Most draws add a primitive for each of the chunk's; growing step by step would copy them several times.
+    if (primitives > chunk.primitives.capacity()) chunk.primitives.reserve(primitives);
 }
 
 void PrimitiveSetup::addPolygon(const PreparedDraw& draw, const PrimitiveInfo& info,
@@ -195,7 +197,9 @@ void PrimitiveSetup::addTriangle(const PreparedDraw& draw, const PrimitiveInfo& 
     const auto span = [](const std::array<int32_t, 3>& values) {
         return int64_t{std::max({values[0], values[1], values[2]})} - std::min({values[0], values[1], values[2]});
     };
-    p.smallEdges = std::max(span(p.x), span(p.y)) <= int64_t{1} << kSmallEdgeBits;
+    const int64_t extent = std::max(span(p.x), span(p.y));
+    p.smallEdges = extent <= int64_t{1} << kSmallEdgeBits;
+    p.tiny = bits <= kTinySubPixelBits && extent <= int64_t{1} << kTinyEdgeBits;
     bin(p, index, bits, draw.sampleAreas.empty());
 }
 

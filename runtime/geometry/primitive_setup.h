@@ -42,7 +42,8 @@ struct PrimitiveInfo {
 /// Fills one chunk. One per thread; keeps its scratch memory.
 class PrimitiveSetup {
   public:
-    void begin(Chunk& chunk, const TileGrid& grid);
+    /// `primitives`: how many are expected.
+    void begin(Chunk& chunk, const TileGrid& grid, uint32_t primitives);
     /// A convex polygon of at least three vertices, in order: culled, then drawn as the polygon mode says.
     void addPolygon(const PreparedDraw& draw, const PrimitiveInfo& info, std::span<const WindowVertex> polygon);
     /// A rectangle of the line width around the segment.

@@ -131,6 +131,77 @@ uint32_t coverTile(const TileEdges& edges, BlockCoverage* blocks) {
     return edges.smallEdges ? cover<int32_t>(edges, blocks) : cover<int64_t>(edges, blocks);
 }
 
+// --- Tiny primitives: few blocks, all in 32 bits
+
+using Tiny = hn::CappedTag<int32_t, 16>;
+constexpr uint32_t kTinyLanes = hn::MaxLanes(Tiny());
+/// A vector is part of a row of a block, or as many rows as it has room for.
+constexpr int32_t kTinyColumns = kTinyLanes < 8 ? kTinyLanes : 8, kTinyRows = kTinyLanes < 8 ? 1 : kTinyLanes / 8;
+
+struct TinyTable {
+    alignas(64) int32_t column[kTinyLanes], row[kTinyLanes];
+};
+
+constexpr TinyTable tinyTable() {
+    TinyTable table{};
+    for (uint32_t lane = 0; lane < kTinyLanes; ++lane) {
+        table.column[lane] = static_cast<int32_t>(lane % kTinyColumns);
+        table.row[lane] = static_cast<int32_t>(lane / kTinyColumns);
+    }
+    return table;
+}
+
+uint32_t coverTiny(const TinyInput& in, BlockCoverage* blocks) {
+    static constexpr TinyTable kTable = tinyTable();
+    const Tiny d;
+    using V = hn::Vec<Tiny>;
+    const Primitive& p = *in.primitive;
+    const int32_t left = std::max(p.bounds[0] - in.tileX, 0), right = std::min(p.bounds[2] - in.tileX, kTileSize - 1);
+    const int32_t top = std::max(p.bounds[1] - in.tileY, 0), bottom = std::min(p.bounds[3] - in.tileY, kTileSize - 1);
+    // The place of the sample of pixel (0, 0) of the tile.
+    const uint32_t sixteenth = in.subPixelBits - 4;
+    const int32_t originX = (in.tileX << in.subPixelBits) + (int32_t{in.position.x16} << sixteenth);
+    const int32_t originY = (in.tileY << in.subPixelBits) + (int32_t{in.position.y16} << sixteenth);
+    int32_t a[3], b[3], c[3];  // as in TileEdges
+    V slope[3], step[3];
+    for (int e = 0; e < 3; ++e) {
+        const int next = e == 2 ? 0 : e + 1;
+        const int32_t dx = p.x[next] - p.x[e], dy = p.y[next] - p.y[e];
+        a[e] = -dy;
+        b[e] = dx;
+        const int32_t value = dx * (originY - p.y[e]) - dy * (originX - p.x[e]) - (isTopLeft(dx, dy) ? 0 : 1);
+        c[e] = value >> in.subPixelBits;
+        slope[e] = hn::Add(hn::Mul(hn::Load(d, kTable.column), hn::Set(d, a[e])),
+                           hn::Mul(hn::Load(d, kTable.row), hn::Set(d, b[e])));
+        step[e] = hn::Set(d, b[e] * kTinyRows);
+    }
+    uint32_t count = 0;
+    for (int32_t by = top & ~7; by <= bottom; by += kBlockSize) {
+        const int32_t y0 = std::max(top - by, 0), y1 = std::min(bottom - by, 7), first = y0 & ~(kTinyRows - 1);
+        for (int32_t bx = left & ~7; bx <= right; bx += kBlockSize) {
+            uint64_t outside = 0;  // the sign bit of any edge
+            for (int32_t x = 0; x < kBlockSize; x += kTinyColumns) {
+                V edge[3];
+                for (int e = 0; e < 3; ++e)
+                    edge[e] = hn::Add(slope[e], hn::Set(d, c[e] + a[e] * (bx + x) + b[e] * (by + first)));
+                for (int32_t y = first; y <= y1; y += kTinyRows) {
+                    const V sign = hn::Or(hn::Or(edge[0], edge[1]), edge[2]);
+                    uint8_t bytes[8] = {};
+                    hn::StoreMaskBits(d, hn::Lt(sign, hn::Zero(d)), bytes);
+                    outside |= (bytes[0] | uint64_t{bytes[1]} << 8) << (8 * y + x);
+                    for (int e = 0; e < 3; ++e) edge[e] = hn::Add(edge[e], step[e]);
+                }
+            }
+            const uint64_t mask = ~outside & rectangleMask(std::max(left - bx, 0), y0, std::min(right - bx, 7), y1);
+            if (mask == 0) continue;
+            blocks[count].x = bx;
+            blocks[count].y = by;
+            blocks[count++].masks[0] = mask;
+        }
+    }
+    return count;
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace vernier
 HWY_AFTER_NAMESPACE();
@@ -139,6 +210,8 @@ HWY_AFTER_NAMESPACE();
 namespace vernier {
 
 CoverTileFn coverTileFunction(Isa isa){VERNIER_SELECT_ISA(isa, coverTile)}
+
+CoverTinyFn coverTinyFunction(Isa isa){VERNIER_SELECT_ISA(isa, coverTiny)}
 
 uint32_t coverWholeTile(uint32_t samples, BlockCoverage* blocks) {
     uint32_t count = 0;

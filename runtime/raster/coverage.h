@@ -29,6 +29,16 @@ inline void moveBlock(BlockCoverage* blocks, uint32_t from, uint32_t to, uint32_
 using CoverTileFn = uint32_t (*)(const TileEdges& edges, BlockCoverage* blocks);
 CoverTileFn coverTileFunction(Isa isa);
 
+/// The same for a primitive that is `tiny`, of a draw with one sample.
+struct TinyInput {
+    const Primitive* primitive;
+    int32_t tileX, tileY;
+    uint32_t subPixelBits;  // at most kTinySubPixelBits
+    SamplePosition position;
+};
+using CoverTinyFn = uint32_t (*)(const TinyInput& input, BlockCoverage* blocks);
+CoverTinyFn coverTinyFunction(Isa isa);
+
 /// All blocks of a tile, completely covered.
 uint32_t coverWholeTile(uint32_t samples, BlockCoverage* blocks);
 

@@ -88,10 +88,11 @@ struct Float32Stencil8 {
     }
 };
 
+alignas(64) constexpr float kColumns[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+
 template <class Format>
 uint32_t testBlocks(const DepthTestInput& in, BlockCoverage* blocks, uint32_t count) {
     const F8 f;
-    const hn::RebindToSigned<F8> i;
     using Value = typename Format::Value;
     const hn::DFromV<Value> dv;
     constexpr uint32_t kLanes = hn::MaxLanes(F8());
@@ -122,7 +123,9 @@ uint32_t testBlocks(const DepthTestInput& in, BlockCoverage* blocks, uint32_t co
                 for (uint32_t x = 0; x < 8; x += kLanes) {
                     const uint8_t bits = static_cast<uint8_t>((covered >> (8 * row) & 0xFF) >> x);
                     const uint8_t maskBytes[8] = {bits};
-                    const VF column = hn::ConvertTo(f, hn::Iota(i, blockX + static_cast<int32_t>(x) - planes.anchorX));
+                    // Whole numbers below 2^16: the sum is exact.
+                    const VF column =
+                        hn::Add(hn::Load(f, kColumns + x), hn::Set(f, static_cast<float>(blockX - planes.anchorX)));
                     const Value z = Format::encode(depthOf(f, planes, column, y, ox, oy));
                     std::byte* place = texels + x * Format::kTexelBytes;
                     const Value stored = Format::load(place);

@@ -125,6 +125,11 @@ VisibleStart lastReplacement(const PassTargets& targets, const TileInput& tile) 
 
 }  // namespace
 
+bool mayHideWork(const PassTargets& targets, std::span<const PreparedDraw> draws) {
+    return std::any_of(draws.begin(), draws.end(),
+                       [&](const PreparedDraw& draw) { return replacesEverything(targets, draw); });
+}
+
 VisibleStart visibleStart(const PassTargets& targets, const TileInput& tile) {
     const std::span<const TileWork> work = tile.work;
     const VisibleStart start = lastReplacement(targets, tile);

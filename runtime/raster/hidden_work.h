@@ -27,6 +27,9 @@ struct TileInput {
     std::span<const TileWork> work;
 };
 
+/// Whether some primitive of the draws may hide others: false saves looking at every tile.
+bool mayHideWork(const PassTargets& targets, std::span<const PreparedDraw> draws);
+
 VisibleStart visibleStart(const PassTargets& targets, const TileInput& tile);
 
 }  // namespace vernier

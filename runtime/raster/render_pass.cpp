@@ -16,8 +16,9 @@
 namespace vernier {
 namespace {
 
-/// Chunks processed before tiles are rendered: bounds the memory of binned primitives.
-constexpr uint32_t kChunksPerWave = 256;
+/// Chunks processed before tiles are rendered: bounds the memory of binned primitives, so that it stays in the caches
+/// between geometry and tiles, but leaves each tile enough primitives for its own colours and depths to stay there.
+constexpr uint32_t kChunksPerWave = 64;
 /// Recorded primitives after which the pass renders what it has, so that a long pass does not hold all its
 /// draws.
 constexpr uint64_t kPrimitivesPerFlush = uint64_t{kChunksPerWave} * kChunkPrimitives;
@@ -194,6 +195,7 @@ void RenderPass::Impl::loadTile(const PixelRect& rect, bool colorsReplaced) cons
 
 void RenderPass::Impl::runTiles() {
     const auto count = static_cast<uint32_t>(activeTiles.size());
+    const bool mayHide = !exactCounts && mayHideWork(targets, draws);
     pool.parallelFor(count, [&](uint32_t index, uint32_t worker) {
         Worker& self = *workers[worker];
         const CycleCount cycles(self.rasterCycles);
@@ -202,7 +204,7 @@ void RenderPass::Impl::runTiles() {
         const bool cleared = !loaded && targets.depthStencil.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR;
         const TileInput input{rect, grid.x0 + static_cast<int32_t>(tile % grid.columns) * kTileSize,
                               grid.y0 + static_cast<int32_t>(tile / grid.columns) * kTileSize, draws, tileWork[tile]};
-        const VisibleStart start = exactCounts ? VisibleStart{} : visibleStart(targets, input);
+        const VisibleStart start = mayHide ? visibleStart(targets, input) : VisibleStart{};
         if (!loaded) loadTile(rect, start.replacesColors && targets.layers == 1);
         if (tileWork[tile].empty()) return;
         self.renderer.render(rect, input.tileX, input.tileY, cleared, draws, nextToken, tileWork[tile], start.item,

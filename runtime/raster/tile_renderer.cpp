@@ -123,6 +123,9 @@ void TileRenderer::draw(const Primitive& primitive, const Chunk& chunk, const Pr
     uint32_t count = 0;
     if (coversTile) {
         count = coverWholeTile(plan.samples, blocks_.data());
+    } else if (primitive.tiny && plan.samples == 1) {
+        const TinyInput input{&primitive, tileX_, tileY_, draw.subPixelBits, draw.positions[0]};
+        count = coverTinyFunction(draw.call.pipeline->isa())(input, blocks_.data());
     } else {
         const TileEdges edges = tileEdges(primitive, tileX_, tileY_, draw.subPixelBits, plan.samples, draw.positions);
         count = coverTileFunction(draw.call.pipeline->isa())(edges, blocks_.data());

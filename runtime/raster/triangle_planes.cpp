@@ -6,12 +6,6 @@
 namespace vernier {
 namespace {
 
-/// Points exactly on the edge a -> b of a clockwise triangle (y down) belong to it when the edge is a left
-/// edge (going up) or a top edge (horizontal, going right).
-bool isTopLeft(int64_t dx, int64_t dy) {
-    return dy < 0 || (dy == 0 && dx > 0);
-}
-
 /// Above this, |gradient of lambda| * extent, the terms of lambda cancel: float would keep fewer than 20
 /// bits.
 constexpr double kThin = 16;

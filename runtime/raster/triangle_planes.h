@@ -25,6 +25,12 @@ struct TileEdges {
 TileEdges tileEdges(const Primitive& primitive, int32_t tileX, int32_t tileY, uint32_t subPixelBits, uint32_t samples,
                     const SamplePosition* positions);
 
+/// Points exactly on the edge a -> b of a clockwise triangle (y down) belong to it when the edge is a left
+/// edge (going up) or a top edge (horizontal, going right).
+constexpr bool isTopLeft(int64_t dx, int64_t dy) {
+    return dy < 0 || (dy == 0 && dx > 0);
+}
+
 /// Barycentric coordinates and depth as functions of the position. All of them are taken relative to the
 /// primitive's own first vertex (its anchor), so that the error does not grow with the distance from the
 /// framebuffer's origin. With d = pixel - anchor + (offset - fraction), where offset is the place inside the

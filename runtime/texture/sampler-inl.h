@@ -45,7 +45,21 @@ class Sampler {
     }
 
     void sample() const {
-        forEachVector([&](uint32_t first, uint32_t count) HWY_ATTR { sampleVector(first, count); });
+        const bool usesLambda = view_.levelCount > 1 || sampler_.magFilter != sampler_.minFilter;
+        if (!usesLambda || request_.lodMode != LodMode::implicitLod || sampler_.unnormalizedCoordinates) {
+            forEachVector([&](uint32_t first, uint32_t count) HWY_ATTR {
+                sampleVector(first, count, usesLambda ? lambda(first, count) : hn::Zero(F32()));
+            });
+            return;
+        }
+        alignas(64) float implicit[kMaxSampleLanes + 4 * kVectorLanes];
+        for (uint32_t first = 0; first < request_.lanes; first += 4 * kVectorLanes)
+            quadLambdas(first, implicit + first);
+        forEachVector([&](uint32_t first, uint32_t count) HWY_ATTR {
+            sampleVector(first, count, biasedLambda(sampler_, request_, first, count, [&]() HWY_ATTR {
+                             return hn::Load(F32(), implicit + first);
+                         }));
+        });
     }
 
     void gather() const {
@@ -188,6 +202,23 @@ class Sampler {
         return hn::Mul(log2V(scaleOf(footprint(first, count)).rho2), splatFloat(0.5f));
     }
 
+    /// The same for four vectors of lanes at once, with derivatives over quads: these are equal in all lanes of a quad,
+    /// so that one vector holds the quads of all four.
+    HWY_NOINLINE void quadLambdas(uint32_t first, float* lambdas) const {
+        const F32 df;
+        const VI place = hn::And(hn::Iota(I32(), 0), splatInt(3));
+        VF squares = hn::Zero(df);
+        unrolled<4>([&](auto k) VERNIER_INLINE_LAMBDA {
+            const uint32_t lane = first + k * kVectorLanes;
+            if (lane >= request_.lanes) return;
+            const VF square = scaleOf(footprint(lane, request_.lanes - lane)).rho2;
+            squares = hn::IfThenElse(hn::RebindMask(df, hn::Eq(place, splatInt(k))), square, squares);
+        });
+        const VF result = hn::Mul(log2V(squares), splatFloat(0.5f));
+        unrolled<4>([&](auto k)
+                        VERNIER_INLINE_LAMBDA { hn::Store(hn::Broadcast<k>(result), df, lambdas + k * kVectorLanes); });
+    }
+
     HWY_INLINE VF lambda(uint32_t first, uint32_t count) const {
         if (sampler_.unnormalizedCoordinates) return hn::Zero(F32());
         return biasedLambda(sampler_, request_, first, count,
@@ -296,6 +327,10 @@ class Sampler {
             linearTaps<kWrap>(at.t, axis(1, level.height), y);
             wx = x.weight;
             wy = y.weight;
+            if constexpr (kWrap != Wrap::any) {
+                source_.loadSquare(level, x, y, at.slice, texels);
+                return;
+            }
             unrolled<4>([&](auto t) VERNIER_INLINE_LAMBDA {
                 position[t] = {x.index[t & 1], y.index[t >> 1], at.slice};
                 if constexpr (kWrap == Wrap::any) inside[t] = hn::And(x.inside[t & 1], y.inside[t >> 1]);
@@ -448,6 +483,11 @@ class Sampler {
             sampleLevel(view_.levels[0], at, magnified, result);
             return;
         }
+        const auto only = static_cast<uint32_t>(hn::GetLane(levels));
+        if (hn::AllTrue(I32(), hn::Eq(levels, splatInt(static_cast<int32_t>(only))))) {
+            sampleLevel(view_.levels[only], at, magnified, result);
+            return;
+        }
         alignas(64) int32_t index[kVectorLanes];
         hn::Store(levels, I32(), index);
         unrolled<Source::kPlanes>([&](auto p) VERNIER_INLINE_LAMBDA { result[p] = hn::Zero(U32()); });
@@ -464,7 +504,8 @@ class Sampler {
         }
     }
 
-    HWY_INLINE void sampleVector(uint32_t first, uint32_t count) const {
+    /// `lambdaPrime`: read where there are levels or filters to choose from, and the filter is isotropic.
+    HWY_INLINE void sampleVector(uint32_t first, uint32_t count, VF lambdaPrime) const {
         Texel texel;
         if constexpr (kExtended) {
             const bool derivatives = request_.lodMode == LodMode::implicitLod || request_.lodMode == LodMode::gradients;
@@ -478,9 +519,8 @@ class Sampler {
         if (view_.levelCount == 1 && sampler_.magFilter == sampler_.minFilter) {
             sampleLevel(view_.levels[0], at, hn::MaskFromVec(hn::Zero(F32())), texel);
         } else {
-            sampleChoice(
-                chooseLevels(view_, sampler_, lowestLod(sampler_, request_, first, count), lambda(first, count)), at,
-                texel);
+            sampleChoice(chooseLevels(view_, sampler_, lowestLod(sampler_, request_, first, count), lambdaPrime), at,
+                         texel);
         }
         write(texel, first, count);
     }

@@ -65,6 +65,32 @@ HWY_INLINE VU loadWord(const TextureLevel& level, const TexelPosition& at) {
     }
 }
 
+/// The texels of a 2x2 footprint, tap 2j + i at (x[i], y[j]); the offsets fit int32. Texels that lie side by side in
+/// memory are read two at a time: a gather costs by the number of places it reads.
+HWY_INLINE void loadWordSquare(const TextureLevel& level, const AxisTaps& x, const AxisTaps& y, VI slice,
+                               VU (&words)[4]) {
+    if (HWY_UNLIKELY(!hn::AllTrue(I32(), hn::Eq(x.index[1], hn::Add(x.index[0], splatInt(1)))))) {
+        unrolled<4>([&](auto t) VERNIER_INLINE_LAMBDA {
+            words[t] = loadWord<false>(level, TexelPosition{x.index[t & 1], y.index[t >> 1], slice});
+        });
+        return;
+    }
+    const hn::RepartitionToWide<U32> d64;
+    const hn::RebindToSigned<decltype(d64)> i64;
+    const hn::Half<I32> half;
+    const auto* base = reinterpret_cast<const uint64_t*>(level.data);
+    const VI first =
+        hn::Add(hn::Mul(slice, splatInt(static_cast<int32_t>(level.slicePitch))), hn::ShiftLeft<2>(x.index[0]));
+    unrolled<2>([&](auto j) VERNIER_INLINE_LAMBDA {
+        const VI offset = hn::Add(hn::Mul(y.index[j], splatInt(static_cast<int32_t>(level.rowPitch))), first);
+        const VU low = hn::BitCast(U32(), hn::GatherOffset(d64, base, hn::PromoteTo(i64, hn::LowerHalf(half, offset))));
+        const VU high =
+            hn::BitCast(U32(), hn::GatherOffset(d64, base, hn::PromoteTo(i64, hn::UpperHalf(half, offset))));
+        words[2 * j] = hn::ConcatEven(U32(), high, low);
+        words[2 * j + 1] = hn::ConcatOdd(U32(), high, low);
+    });
+}
+
 /// Four 8-bit components in any order. unorm stays in codes until finish(); sRGB is decoded at once.
 template <bool kSrgb, bool kWide>
 struct Rgba8Source {
@@ -86,6 +112,15 @@ struct Rgba8Source {
     HWY_INLINE void load(const TextureView&, const TextureLevel& level, const TexelPosition (&at)[kTaps], uint32_t,
                          Texel (&texels)[kTaps]) const {
         unrolled<kTaps>([&](auto t) VERNIER_INLINE_LAMBDA { unpack(loadWord<kWide>(level, at[t]), texels[t]); });
+    }
+
+    static constexpr bool kWords = !kWide;
+    /// Of the four texels of loadWordSquare().
+    HWY_INLINE void loadSquare(const TextureLevel& level, const AxisTaps& x, const AxisTaps& y, VI slice,
+                               Texel (&texels)[4]) const {
+        VU words[4];
+        loadWordSquare(level, x, y, slice, words);
+        unrolled<4>([&](auto t) VERNIER_INLINE_LAMBDA { unpack(words[t], texels[t]); });
     }
 
     HWY_INLINE VU finish(VU plane) const {

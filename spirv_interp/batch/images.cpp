@@ -28,7 +28,6 @@ class ImageRunner {
           active_(site.effects ? frame.masks[kCurrentMask] & frame.live : frame.masks[kCurrentMask]) {
         call_.op = &op_;
         call_.lanes = frame.lanes;
-        call_.mask = frame.imageScratch;
         set(call_.coord, site.coord);
         set(call_.ddx, site.ddx);
         set(call_.ddy, site.ddy);
@@ -66,8 +65,18 @@ class ImageRunner {
         return offset == ImageSite::kNone ? 0 : frame_.row<uint32_t>(offset)[lane];
     }
 
+    /// All lanes hold the same word.
+    bool isUniform(uint32_t offset) const {
+        if (offset == ImageSite::kNone) return true;
+        const uint32_t* row = frame_.row<uint32_t>(offset);
+        uint32_t differences = 0;
+        for (uint32_t lane = 1; lane < frame_.lanes; ++lane) differences |= row[lane] ^ row[0];
+        return differences == 0;
+    }
+
     /// The lanes of `left` that use the same descriptors as its first.
     LaneMask groupOf(const LaneMask& left) const {
+        if (isUniform(site_.imageIndex) && isUniform(site_.samplerIndex)) return left;
         const uint32_t first = laneOf(left);
         LaneMask group;
         left.forEach([&](uint32_t lane) {
@@ -82,7 +91,12 @@ class ImageRunner {
         const uint32_t lane = laneOf(group);
         const ImageBinding binding =
             bindingOf(frame_, op_, indexAt(site_.imageIndex, lane), indexAt(site_.samplerIndex, lane));
-        for (uint32_t k = 0; k < frame_.lanes; ++k) frame_.imageScratch[k] = group.test(k) ? ~0u : 0u;
+        if (group == LaneMask::first(frame_.lanes)) {
+            call_.mask = nullptr;
+        } else {
+            call_.mask = frame_.imageScratch;
+            for (uint32_t k = 0; k < frame_.lanes; ++k) frame_.imageScratch[k] = group.test(k) ? ~0u : 0u;
+        }
         for (uint32_t k = 0; k < 4; ++k) {
             uint32_t* row = const_cast<uint32_t*>(rowAt(site_.result[k]));
             call_.result[k] = row == nullptr || whole ? row : frame_.imageScratch + (k + 1) * kMaxLanes;

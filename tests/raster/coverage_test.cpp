@@ -49,6 +49,7 @@ Primitive primitiveOf(Point a, Point b, Point c, int32_t tileX, int32_t tileY) {
     p.bounds = {static_cast<int16_t>(tileX), static_cast<int16_t>(tileY), static_cast<int16_t>(tileX + kTileSize - 1),
                 static_cast<int16_t>(tileY + kTileSize - 1)};
     p.smallEdges = extent <= int64_t{1} << kSmallEdgeBits;
+    p.tiny = extent <= int64_t{1} << kTinyEdgeBits;
     return p;
 }
 
@@ -74,6 +75,20 @@ void expectExact(Isa isa, Point a, Point b, Point c, int32_t tileX, int32_t tile
                     << tileY + y << " sample " << s;
             }
         }
+    }
+}
+
+/// What is found of a tiny primitive is what the general routine finds.
+void expectSameWhenTiny(Isa isa, const Primitive& primitive, int32_t tileX, int32_t tileY, uint32_t bits,
+                        SamplePosition position) {
+    BlockCoverage general[kBlocksPerTile], tiny[kBlocksPerTile];
+    const TileEdges edges = tileEdges(primitive, tileX, tileY, bits, 1, &position);
+    const uint32_t count = coverTileFunction(isa)(edges, general);
+    ASSERT_EQ(coverTinyFunction(isa)({&primitive, tileX, tileY, bits, position}, tiny), count);
+    for (uint32_t n = 0; n < count; ++n) {
+        EXPECT_EQ(tiny[n].x, general[n].x);
+        EXPECT_EQ(tiny[n].y, general[n].y);
+        EXPECT_EQ(tiny[n].masks[0], general[n].masks[0]);
     }
 }
 
@@ -104,6 +119,48 @@ TEST_P(CoverageTest, RandomTrianglesOfAllSizes) {
             expectExact(GetParam(), v[0], v[1], v[2], tileX, tileY, bits, n % 3 == 0 ? 4 : n % 3);
             if (HasFatalFailure()) return;
         }
+    }
+}
+
+TEST_P(CoverageTest, TinyPrimitives) {
+    std::mt19937 random(5);
+    for (int n = 0; n < 20000; ++n) {
+        const uint32_t bits = n % 2 == 0 ? 8 : 4 + random() % 5;
+        const int32_t tileX = static_cast<int32_t>(random() % 256) * kTileSize;
+        const int32_t tileY = static_cast<int32_t>(random() % 256) * kTileSize;
+        // Around the tile and its edges, up to the largest extent; on whole pixels, half pixels, and anywhere.
+        const int64_t grid = int64_t{1} << (n % 3 == 0 ? bits : n % 3 == 1 ? bits - 1 : 0);
+        const int64_t range = int64_t{1} << (1 + random() % kTinyEdgeBits);
+        const auto origin = [&](int32_t tile) {
+            return ((int64_t{tile} - 17 + static_cast<int64_t>(random() % 98)) << bits);
+        };
+        const int64_t x = origin(tileX), y = origin(tileY);
+        const auto coordinate = [&](int64_t from) {
+            return (from + static_cast<int64_t>(random()) % (range + 1)) / grid * grid;
+        };
+        Point v[3];
+        for (Point& p : v) p = {coordinate(x), coordinate(y)};
+        if (edge(v[0], v[1], v[2]) == 0) continue;
+        Primitive primitive = primitiveOf(v[0], v[1], v[2], tileX, tileY);
+        if (!primitive.tiny) continue;
+        // As setup bounds them, and cut by a scissor.
+        for (int axis = 0; axis < 2; ++axis) {
+            const auto& c = axis == 0 ? primitive.x : primitive.y;
+            const auto pixel = [&](int32_t sub) { return static_cast<int16_t>(sub >> bits); };
+            primitive.bounds[static_cast<size_t>(axis)] = pixel(std::min({c[0], c[1], c[2]}));
+            primitive.bounds[static_cast<size_t>(axis) + 2] =
+                static_cast<int16_t>(pixel(std::max({c[0], c[1], c[2]})) - (n % 5 == 0 ? 2 : 0));
+        }
+        const auto outside = [&](size_t axis, int32_t tile) {
+            return primitive.bounds[axis] > tile + kTileSize - 1 || primitive.bounds[axis + 2] < tile ||
+                   primitive.bounds[axis] > primitive.bounds[axis + 2];
+        };
+        if (outside(0, tileX) || outside(1, tileY)) continue;
+        const SamplePosition position =
+            n % 4 == 0 ? SamplePosition{static_cast<uint8_t>(random() % 16), static_cast<uint8_t>(random() % 16)}
+                       : samplePositions(1)[0];
+        expectSameWhenTiny(GetParam(), primitive, tileX, tileY, bits, position);
+        if (HasFailure()) return;
     }
 }
 
