@@ -21,6 +21,7 @@ Result<std::vector<uint32_t>> compileGlsl(VkShaderStageFlagBits stage, const std
 
 Result<BatchFunction> BatchFunction::compile(const Function& function, MathTier tier, Isa isa) {
     const std::string source = R"(#version 450
+#extension GL_EXT_shader_explicit_arithmetic_types_float16 : enable
 layout(location = 0) flat in vec3 u;
 layout(location = 1) flat in vec3 v;
 layout(location = 0) out float result;

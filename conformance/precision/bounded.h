@@ -1,6 +1,7 @@
 // A value with the greatest error that Vulkan permits it to have: the precisions of the Vulkan specification,
 // "Precision and Operation of SPIR-V Instructions" (single precision), as arithmetic. An instruction whose precision is
 // "inherited from" a formula has the error that the formula has in this type.
+// The conditions are free of branches, so that loops over these functions can be vectorised.
 #pragma once
 
 #include <algorithm>
@@ -11,11 +12,20 @@
 
 namespace vernier::precision {
 
-/// The distance of the two floats around x ("ULP" in the specification).
+/// The distance of the two numbers around x ("ULP" in the specification) of a format with so many fraction bits and
+/// normal numbers from 2^(1 - bias) to 2^(bias + 1).
+template <uint32_t kFraction, uint32_t kBias>
+double ulpOfFormat(double x) {
+    // By the exponent's bits, kept within the normal range.
+    const uint64_t exponent =
+        std::clamp<uint64_t>(std::bit_cast<uint64_t>(x) >> 52 & 0x7FF, 1023 + 1 - kBias, 1023 + kBias);
+    return std::bit_cast<double>((exponent - kFraction) << 52);
+}
 inline double floatUlp(double x) {
-    // By the exponent's bits, kept within float's normal range.
-    const uint64_t exponent = std::clamp<uint64_t>(std::bit_cast<uint64_t>(x) >> 52 & 0x7FF, 1023 - 126, 1023 + 127);
-    return std::bit_cast<double>((exponent - 23) << 52);
+    return ulpOfFormat<23, 127>(x);
+}
+inline double halfUlp(double x) {
+    return ulpOfFormat<10, 15>(x);
 }
 
 struct Bounded {
@@ -47,20 +57,19 @@ inline Bounded operator*(const Bounded& a, const Bounded& b) {
 /// 2.5 ULP for divisors in [2^-126, 2^126].
 inline Bounded operator/(const Bounded& a, const Bounded& b) {
     const double quotient = a.value / b.value, least = std::fabs(b.value) - b.error;
-    if (!(least >= 0x1p-126 && std::fabs(b.value) + b.error <= 0x1p126)) return {quotient, kUnknown};
+    const bool stated = (least >= 0x1p-126) & (std::fabs(b.value) + b.error <= 0x1p126);
     const double error = (a.error + std::fabs(quotient) * b.error) / least;
-    return {quotient, error + 2.5 * floatUlp(std::fabs(quotient) + error)};
+    return {quotient, stated ? error + 2.5 * floatUlp(std::fabs(quotient) + error) : kUnknown};
 }
 inline Bounded inversesqrt(const Bounded& x) {
     const double value = 1 / std::sqrt(x.value);
-    if (!(x.value - x.error > 0)) return {value, kUnknown};
     const double error = 1 / std::sqrt(x.value - x.error) - value;
-    return {value, error + 2 * floatUlp(value + error)};
+    return {value, x.value - x.error > 0 ? error + 2 * floatUlp(value + error) : kUnknown};
 }
 inline Bounded sqrt(const Bounded& x) {
-    Bounded root = Bounded(1) / inversesqrt(x);
-    if (x.value == 0 && x.error == 0) root = {0, 0};
-    return root;
+    const Bounded root = Bounded(1) / inversesqrt(x);
+    const bool zero = (x.value == 0) & (x.error == 0);
+    return {zero ? 0 : root.value, zero ? 0 : root.error};
 }
 inline Bounded exp2(const Bounded& x) {
     const double value = std::exp2(x.value), error = value * std::expm1(kLn2 * x.error);
@@ -72,17 +81,17 @@ inline Bounded exp(const Bounded& x) {
 }
 /// 2^-21 in [1/2, 2], else 3 ULP.
 inline double logPrecision(double x, double value) {
-    return x >= 0.5 && x <= 2 ? 0x1p-21 : 3 * floatUlp(value);
+    return (x >= 0.5) & (x <= 2) ? 0x1p-21 : 3 * floatUlp(value);
 }
 inline Bounded log(const Bounded& x) {
     const double value = std::log(x.value);
-    if (!(x.value - x.error > 0)) return {value, kUnknown};
-    return {value, value - std::log(x.value - x.error) + logPrecision(x.value, value)};
+    const double error = value - std::log(x.value - x.error) + logPrecision(x.value, value);
+    return {value, x.value - x.error > 0 ? error : kUnknown};
 }
 inline Bounded log2(const Bounded& x) {
     const double value = std::log2(x.value);
-    if (!(x.value - x.error > 0)) return {value, kUnknown};
-    return {value, value - std::log2(x.value - x.error) + logPrecision(x.value, value)};
+    const double error = value - std::log2(x.value - x.error) + logPrecision(x.value, value);
+    return {value, x.value - x.error > 0 ? error : kUnknown};
 }
 /// 2^-11 in [-pi, pi].
 inline Bounded sin(const Bounded& x) {
@@ -94,10 +103,9 @@ inline Bounded cos(const Bounded& x) {
 /// 4096 ULP.
 inline Bounded atan2(const Bounded& y, const Bounded& x) {
     const double value = std::atan2(y.value, x.value), square = x.value * x.value + y.value * y.value;
-    double error = 0;
-    if (x.error + y.error > 0) error = (std::fabs(x.value) * y.error + std::fabs(y.value) * x.error) / square;
-    if (!(error < M_PI)) return {value, kUnknown};
-    return {value, error + 4096 * floatUlp(value)};
+    const double slope = (std::fabs(x.value) * y.error + std::fabs(y.value) * x.error) / square;
+    const double error = x.error + y.error > 0 ? slope : 0;
+    return {value, error < M_PI ? error + 4096 * floatUlp(value) : kUnknown};
 }
 inline Bounded atan(const Bounded& x) {
     return atan2(x, Bounded(1));

@@ -5,8 +5,10 @@
 #include <array>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "conformance/precision/bounded.h"
+#include "conformance/precision/word.h"
 #include "spirv_interp/program.h"
 #include "spirv_interp/reference/number.h"
 
@@ -26,27 +28,58 @@ struct Promise {
 /// Which operands are tried.
 enum class Domain : uint8_t {
     floats,      // every float, by stride (one operand)
+    codes,       // all 2^16 (one operand)
     stratified,  // random bits, moderate numbers, all magnitudes, near one
     moderate,    // [-8, 8] and magnitudes 2^-10 to 2^10
+    halves,      // random codes of halves
 };
+
+/// Computes results[i] from operands[k][i]; all kMaxOperands rows can be read.
+using Row = void (*)(const double* const* operands, size_t count, double* results);
+
+/// The loops of a formula for one call, in a form that compilers vectorise: of its values, and of its errors.
+template <class Formula>
+Row valueRow(Formula) {
+    return [](const double* const* x, size_t count, double* results) {
+        for (size_t i = 0; i < count; ++i) {
+            const double call[kMaxOperands] = {x[0][i], x[1][i], x[2][i], x[3][i], x[4][i], x[5][i]};
+            results[i] = Formula{}(static_cast<const double*>(call));
+        }
+    };
+}
+template <class Formula>
+Row errorRow(Formula) {
+    return [](const double* const* x, size_t count, double* results) {
+        for (size_t i = 0; i < count; ++i) {
+            const Bounded call[kMaxOperands] = {x[0][i], x[1][i], x[2][i], x[3][i], x[4][i], x[5][i]};
+            results[i] = Formula{}(static_cast<const Bounded*>(call)).error;
+        }
+    };
+}
 
 struct Function {
     std::string name;
-    std::string glsl;  // in the floats a, b, c or the vectors u and v
+    std::string glsl;  // a float (or the bits of the result as one) in the floats a, b, c or the vectors u and v
     uint32_t operands = 1;
     Domain domain = Domain::floats;
+    Word operand = Word::float32, result = Word::float32;
     std::string limitText;  // Vulkan's limit in words
 
-    double (*approximate)(const double*) = nullptr;  // good to 2^-25 ULP of float, unless `cancels`
+    Row approximate = nullptr;  // good to 2^-25 ULP of float, unless `cancels`
+    /// nullptr: what `approximate` gives is exact, or as good.
     reference::Real (*exact)(const reference::Real*) = nullptr;
-    Bounded (*permitted)(const Bounded*) = nullptr;  // by Vulkan
-    bool cancels = false;                            // the formula loses digits: only exact() tells the error
-    bool (*covers)(const double*) = nullptr;         // operands for which the result is defined; nullptr: all
-    std::array<Promise, 4> promises;                 // by tier
+    Row permitted = nullptr;                  // the errors that Vulkan permits; nullptr: it states none
+    bool cancels = false;                     // the formula loses digits: only exact() tells the error
+    bool (*covers)(const double*) = nullptr;  // operands for which the result is defined; nullptr: all
+    std::array<Promise, 4> promises;          // by tier
     /// Multiplies the promises: errors that grow with the operands by nature (pow).
     double (*scale)(const double*) = nullptr;
 };
 
 std::span<const Function> functions();
+
+/// Appends the conversions between formats, and the functions of 16-bit floats.
+void addConversions(std::vector<Function>& all);
+void addHalves(std::vector<Function>& all);
 
 }  // namespace vernier::precision

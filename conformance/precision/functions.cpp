@@ -1,3 +1,5 @@
+#include "conformance/precision/vector_math.h"
+// After the declarations of vector functions.
 #include "conformance/precision/function.h"
 
 #include <vector>
@@ -35,9 +37,9 @@ Function make(const char* name, const char* glsl, uint32_t operands, const char*
     f.operands = operands;
     f.domain = operands == 1 ? Domain::floats : Domain::stratified;
     f.limitText = limit;
-    f.approximate = exact;
+    f.approximate = valueRow(exact);
     f.exact = exact;
-    f.permitted = permitted;
+    f.permitted = errorRow(permitted);
     f.promises = promises;
     return f;
 }
@@ -94,7 +96,7 @@ void addExponential(std::vector<Function>& all) {
                        VERNIER_FORMULA(sqrt(x[0]))));
     all.push_back(make("inversesqrt", "inversesqrt(a)", 1, "2 ULP", kUsual, VERNIER_FORMULA(T(1) / sqrt(x[0])),
                        [](const auto* x) { return x[0]; }));
-    all.back().permitted = [](const Bounded* x) { return inversesqrt(x[0]); };
+    all.back().permitted = errorRow([](const Bounded* x) { return inversesqrt(x[0]); });
     all.back().promises[1] = {1.5, 0};
     all.back().covers = [](const double* x) { return x[0] > 0; };
 }
@@ -111,29 +113,32 @@ void addArithmetic(std::vector<Function>& all) {
     all.back().cancels = true;
     all.push_back(make("fract", "fract(a)", 1, "correctly rounded", kInherited, VERNIER_FORMULA(x[0] - floor(x[0])),
                        [](const auto* x) { return x[0]; }));
-    all.back().permitted = [](const Bounded* x) { return rounded(x[0].value - std::floor(x[0].value), 0); };
+    all.back().permitted = errorRow([](const Bounded* x) { return rounded(x[0].value - std::floor(x[0].value), 0); });
+    // Off by 2^-29 ULP at most in double; the error of small negative operands is that of 1 for a billion of them.
+    all.back().exact = nullptr;
+    all.back().covers = [](const double* x) { return std::isfinite(x[0]); };
     all.push_back(make("mod", "mod(a, b)", 2, "x - y * floor(x / y)", kInherited,
                        VERNIER_FORMULA(x[0] - x[1] * floor(x[0] / x[1])), [](const auto* x) { return x[0]; }));
-    all.back().permitted = [](const Bounded* x) {
+    all.back().permitted = errorRow([](const Bounded* x) {
         const Bounded quotient = x[0] / x[1];
         const double whole = std::floor(quotient.value);
         // Where rounding the quotient may cross an integer, the formula may be off by y.
         const bool crosses = std::floor(quotient.value - quotient.error) != std::floor(quotient.value + quotient.error);
         const Bounded result = x[0] - x[1] * Bounded(whole, crosses ? 1 : 0);
         return Bounded(result.value, std::isnan(result.error) ? kUnknown : result.error);
-    };
+    });
     all.back().cancels = true;
     all.back().domain = Domain::moderate;
     all.push_back(make("ldexp", "ldexp(a, int(b))", 2, "correctly rounded", kRounded,
                        VERNIER_FORMULA(x[0] * exp2(x[1])), [](const auto* x) { return x[0]; }));
-    all.back().permitted = [](const Bounded* x) { return rounded(x[0].value * std::exp2(x[1].value), 0); };
+    all.back().permitted = errorRow([](const Bounded* x) { return rounded(x[0].value * std::exp2(x[1].value), 0); });
     all.back().covers = [](const double* x) { return std::fabs(x[1]) <= 128 && x[1] == std::trunc(x[1]); };
     all.push_back(make("radians", "radians(a)", 1, "x * (π / 180)", kInherited,
                        VERNIER_FORMULA(x[0] * (acos(T(-1)) / T(180))), [](const auto* x) { return x[0]; }));
-    all.back().permitted = [](const Bounded* x) { return x[0] * rounded(M_PI / 180, 0); };
+    all.back().permitted = errorRow([](const Bounded* x) { return x[0] * rounded(M_PI / 180, 0); });
     all.push_back(make("degrees", "degrees(a)", 1, "x * (180 / π)", kInherited,
                        VERNIER_FORMULA(x[0] * (T(180) / acos(T(-1)))), [](const auto* x) { return x[0]; }));
-    all.back().permitted = [](const Bounded* x) { return x[0] * rounded(180 / M_PI, 0); };
+    all.back().permitted = errorRow([](const Bounded* x) { return x[0] * rounded(180 / M_PI, 0); });
     all.push_back(make("mix", "mix(a, b, c)", 3, "x * (1 - a) + y * a", kInherited,
                        VERNIER_FORMULA(x[0] * (T(1) - x[2]) + x[1] * x[2]),
                        VERNIER_FORMULA(x[0] * (T(1) - x[2]) + x[1] * x[2])));
@@ -146,10 +151,10 @@ void addArithmetic(std::vector<Function>& all) {
             return T(u * u * (T(3) - T(2) * u));
         },
         [](const auto* x) { return x[0]; }));
-    all.back().permitted = [](const Bounded* x) {
+    all.back().permitted = errorRow([](const Bounded* x) {
         const Bounded t = unitClamp((x[2] - x[0]) / (x[1] - x[0]));
         return t * t * (Bounded(3) - Bounded(2) * t);
-    };
+    });
     all.back().covers = [](const double* x) { return x[0] < x[1]; };
     for (size_t k = all.size() - 2; k < all.size(); ++k) {
         all[k].cancels = true;
@@ -174,7 +179,7 @@ void addGeometric(std::vector<Function>& all) {
     all.push_back(make("distance", "distance(u, v)", 6, "length(x - y)", kInherited, distance, distance));
     all.push_back(make("normalize", "normalize(u).x", 3, "x * inversesqrt(dot(x, x))", kInherited,
                        VERNIER_FORMULA(x[0] / sqrt(VERNIER_DOT(0, 0))), [](const auto* x) { return x[0]; }));
-    all.back().permitted = [](const Bounded* x) { return x[0] * inversesqrt(VERNIER_DOT(0, 0)); };
+    all.back().permitted = errorRow([](const Bounded* x) { return x[0] * inversesqrt(VERNIER_DOT(0, 0)); });
     all.push_back(make("cross", "cross(u, v).x", 6, "OpFSub(OpFMul, OpFMul)", kInherited,
                        VERNIER_FORMULA(x[1] * x[5] - x[4] * x[2]), VERNIER_FORMULA(x[1] * x[5] - x[4] * x[2])));
     all.push_back(make("reflect", "reflect(u, v).x", 6, "x - 2 * dot(y, x) * y", kInherited,
@@ -195,30 +200,6 @@ void addGeometric(std::vector<Function>& all) {
     }
 }
 
-void addConversions(std::vector<Function>& all) {
-    const auto add = [&](const char* name, const char* glsl, uint32_t operands, double (*approximate)(const double*)) {
-        Function f;
-        f.name = name;
-        f.glsl = glsl;
-        f.operands = operands;
-        f.domain = operands == 1 ? Domain::floats : Domain::stratified;
-        f.limitText = "correctly rounded";
-        f.approximate = approximate;
-        f.promises = kRounded;
-        all.push_back(f);
-    };
-    add("int to float", "float(floatBitsToInt(a))", 1,
-        [](const double* x) { return static_cast<double>(std::bit_cast<int32_t>(static_cast<float>(x[0]))); });
-    add("uint to float", "float(floatBitsToUint(a))", 1,
-        [](const double* x) { return static_cast<double>(std::bit_cast<uint32_t>(static_cast<float>(x[0]))); });
-    add("double to float", "float(packDouble2x32(uvec2(floatBitsToUint(a), floatBitsToUint(b))))", 2,
-        [](const double* x) {
-            const uint64_t low = std::bit_cast<uint32_t>(static_cast<float>(x[0]));
-            const uint64_t high = std::bit_cast<uint32_t>(static_cast<float>(x[1]));
-            return std::bit_cast<double>(high << 32 | low);
-        });
-}
-
 }  // namespace
 
 std::span<const Function> functions() {
@@ -230,6 +211,7 @@ std::span<const Function> functions() {
         addArithmetic(all);
         addGeometric(all);
         addConversions(all);
+        addHalves(all);
         return all;
     }();
     return kAll;

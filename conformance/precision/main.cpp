@@ -26,11 +26,19 @@ int fail(const std::string& message) {
     return 2;
 }
 
+/// Empty if there is none.
+std::string readFile(const std::string& path) {
+    std::ifstream file(path);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
 std::string sampleText(const MeasureOptions& options) {
     const std::string unary = options.stride == 1
                                   ? std::string("all 2^32 floats")
                                   : "one in " + std::to_string(options.stride) + " of the 2^32 floats, evenly spread";
-    return unary + " for functions of one operand; " + std::to_string(options.samples) +
+    return unary + " for functions of one operand (all 2^16 codes of halves); " + std::to_string(options.samples) +
            " calls for the others (a quarter each of random bits, near one, moderate numbers and all magnitudes)";
 }
 
@@ -69,6 +77,7 @@ int run(const Options& options) {
     vnRetainGlslCompiler();
     const std::unique_ptr<void, void (*)(void*)> release(&measure, [](void*) { vnReleaseGlslCompiler(); });
     std::vector<Measurement> measurements;
+    const std::string earlier = readFile(options.markdown);
     int failures = 0;
     for (const Function& function : functions()) {
         if (!options.names.empty() && std::ranges::find(options.names, function.name) == options.names.end()) continue;
@@ -91,19 +100,18 @@ int run(const Options& options) {
             ++failures;
         }
         measurements.push_back(std::move(*measurement));
-    }
-    if (measurements.empty()) return fail("no function of that name");
-    if (!options.markdown.empty()) {
+        if (options.markdown.empty()) continue;
+        // After every function, for all of them may take hours.
+        const ReportText text{sampleText(measure), options.driver.empty() ? "" : driver.name()};
         std::ofstream file(options.markdown);
-        file << writeReport(measurements, {sampleText(measure), options.driver.empty() ? "" : driver.name()});
+        file << writeReport(measurements, text, earlier);
         if (!file.flush()) return fail("cannot write " + options.markdown);
     }
+    if (measurements.empty()) return fail("no function of that name");
     if (!options.against.empty()) {
-        std::ifstream file(options.against);
-        std::ostringstream text;
-        text << file.rdbuf();
-        if (!file) return fail("cannot read " + options.against);
-        failures += compare(readReport(text.str()), measurements);
+        const std::string page = readFile(options.against);
+        if (page.empty()) return fail("cannot read " + options.against);
+        failures += compare(readReport(page), measurements);
     }
     return failures == 0 ? 0 : 1;
 }
@@ -122,7 +130,7 @@ int main(int argc, char** argv) {
     app.add_option("--samples", options.measure.samples, "Calls of the other functions")->capture_default_str();
     app.add_option("--threads", options.measure.threads, "Threads")->check(CLI::PositiveNumber)->capture_default_str();
     app.add_option("--driver", options.driver, "Manifest of a Vulkan driver to measure beside");
-    app.add_option("--markdown", options.markdown, "Write the page of the results here");
+    app.add_option("--markdown", options.markdown, "Write the results into this page; other functions keep their rows");
     app.add_option("--against", options.against, "Fail where an error is greater than this page states");
     app.add_option("functions", options.names, "Only these");
     CLI11_PARSE(app, argc, argv);

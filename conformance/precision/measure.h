@@ -10,16 +10,16 @@ namespace vernier::precision {
 
 struct Worst {
     double value = 0;
-    std::array<float, kMaxOperands> operands{};
+    std::array<double, kMaxOperands> operands{};
 };
 
 /// Errors of one implementation of a function. ULP are those of the exact result; an infinite result counts as 2^128.
 struct Figures {
     uint64_t calls = 0;
     Worst ulp, absolute;
-    Worst limit;    // greatest share of what Vulkan permits: above 1 is outside
-    Worst promise;  // greatest share of what the tier promises
-    double ulpSum = 0;
+    Worst limit;             // greatest share of what Vulkan permits: above 1 is outside
+    Worst promise;           // greatest share of what the tier promises
+    double ulpSum = 0;       // of errors against doubles: off by 2^-22 ULP a call at most
     uint64_t correct = 0;    // correctly rounded
     uint64_t wrongNaNs = 0;  // NaN where there is a result, or a number where there is none
 

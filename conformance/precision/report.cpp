@@ -1,5 +1,6 @@
 #include "conformance/precision/report.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <sstream>
 
@@ -63,8 +64,10 @@ Sine, cosine and tangent are right for every float: angles beyond 2^19 are reduc
 their exponent asks for (Payne and Hanek 1983), one lane at a time, at 10 to 30 ns per lane. On SSE4, which lacks a fused
 multiply-add, fast and standard compute it in double with a check, and cost several times what they cost on AVX2.
 
-Errors are against MPFR (128 bits; operands whose error in double cannot be the greatest are left to double). An ULP is the
-distance between the two floats around the exact result; denormal results count in units of 2^-149.
+Errors are against MPFR (128 bits); operands whose error in double cannot be the greatest are left to double, so that means
+are right to 2^-22 ULP. An ULP is the distance between the two numbers of the result's format around the exact result;
+denormal results count in units of 2^-149 (halves: 2^-24). Conversions to integers truncate, exactly. Functions of halves
+(16-bit floats) are those of floats, rounded once more.
 
 ## Special operands
 
@@ -85,54 +88,87 @@ distance between the two floats around the exact result; denormal results count 
 | denormal operands and results | kept |
 )";
 
+constexpr const char* kFull = "## In full";
+
+std::string rowStart(const Function& function) {
+    return "| `" + function.name + "` |";
+}
+
+/// The lines about a function in a part of an earlier page.
+std::string earlierRows(const std::string& part, const Function& function) {
+    std::string rows;
+    std::istringstream lines(part);
+    for (std::string line; std::getline(lines, line);)
+        if (line.starts_with(rowStart(function))) rows += line + "\n";
+    return rows;
+}
+
 }  // namespace
 
-std::string writeReport(std::span<const Measurement> measurements, const ReportText& text) {
+std::string writeReport(std::span<const Measurement> measurements, const ReportText& text, const std::string& earlier) {
+    const auto measured = [&](const Function& function) {
+        const auto found = std::ranges::find(measurements, &function, &Measurement::function);
+        return found == measurements.end() ? nullptr : &*found;
+    };
+    const size_t fullStart = std::min(earlier.find(kFull), earlier.size());
+    const std::string earlierSummary = earlier.substr(0, fullStart), earlierFull = earlier.substr(fullStart);
     std::ostringstream out;
     out << kIntroduction << "\n## Greatest errors\n\nOperands: " << text.sample
         << ".\n\nIn ULP; in brackets the greatest share of what Vulkan permits for the operands at hand, where it "
-           "permits a "
-           "finite error: 1 is the limit.";
+           "permits a finite error: 1 is the limit.";
     if (!text.driver.empty()) {
         out << " Last column: " << text.driver << ", the same functions as a compute shader, without denormals.";
     }
     out << "\n\n| Function | Vulkan's limit | Fast | Standard | Fine | Reference |";
     if (!text.driver.empty()) out << " Lavapipe |";
     out << "\n| --- | --- | --- | --- | --- | --- |" << (text.driver.empty() ? "" : " --- |") << "\n";
-    for (const Measurement& m : measurements) {
-        out << "| `" << m.function->name << "` | " << m.function->limitText << " |";
+    for (const Function& function : functions()) {
+        const Measurement* m = measured(function);
+        if (m == nullptr) {
+            out << earlierRows(earlierSummary, function);
+            continue;
+        }
+        out << rowStart(function) << " " << function.limitText << " |";
         const auto cell = [&](const Figures& figures) {
             out << " " << errorText(figures.ulp.value) << " (" << shareText(figures) << ")";
             if (figures.wrongNaNs > 0) out << " **" << figures.wrongNaNs << " NaN**";
             out << " |";
         };
-        for (const Figures& figures : m.tiers) cell(figures);
-        if (m.driver) cell(*m.driver);
+        for (const Figures& figures : m->tiers) cell(figures);
+        if (m->driver) cell(*m->driver);
+        if (!m->driver && !text.driver.empty()) out << " |";
         out << "\n";
     }
-    out << "\n## In full\n\nPromise: the tier's own bound. Mean in ULP; correct: share of results that are correctly "
-           "rounded; "
-           "worst: operands of the greatest error in ULP.\n\n"
-           "| Function | Tier | Promise | Greatest ULP | Greatest absolute | Mean | Correct | Worst |\n"
-           "| --- | --- | --- | --- | --- | --- | --- | --- |\n";
-    for (const Measurement& m : measurements) {
+    out << "\n"
+        << kFull
+        << "\n\nPromise: the tier's own bound. Mean in ULP; correct: share of results that are correctly rounded; "
+           "worst: "
+           "operands of the greatest error in ULP.\n\n"
+           "| Function | Tier | Promise | Greatest ULP | Greatest absolute | Mean | Correct | Worst | Calls |\n"
+           "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+    for (const Function& function : functions()) {
+        const Measurement* m = measured(function);
+        if (m == nullptr) {
+            out << earlierRows(earlierFull, function);
+            continue;
+        }
         const auto row = [&](const std::string& name, const std::string& promise, const Figures& figures) {
-            out << "| `" << m.function->name << "` | " << name << " | " << promise << " | "
-                << errorText(figures.ulp.value) << " | " << errorText(figures.absolute.value) << " | "
-                << format("%.3g", figures.mean()) << " | " << format("%.2f %%", figures.correctShare() * 100) << " | "
-                << worstText(*m.function, figures.ulp) << " |\n";
+            out << rowStart(function) << " " << name << " | " << promise << " | " << errorText(figures.ulp.value)
+                << " | " << errorText(figures.absolute.value) << " | " << format("%.3g", figures.mean()) << " | "
+                << format("%.2f %%", figures.correctShare() * 100) << " | " << worstText(function, figures.ulp) << " | "
+                << figures.calls << " |\n";
         };
         for (size_t tier = 0; tier < kTiers.size(); ++tier) {
-            row(kTierNames[tier], promiseText(m.function->promises[tier]), m.tiers[tier]);
+            row(kTierNames[tier], promiseText(function.promises[tier]), m->tiers[tier]);
         }
-        if (m.driver) row("lavapipe", "", *m.driver);
+        if (m->driver) row("lavapipe", "", *m->driver);
     }
     return out.str();
 }
 
 StatedErrors readReport(const std::string& markdown) {
     StatedErrors stated;
-    std::istringstream lines(markdown.substr(std::min(markdown.find("## In full"), markdown.size())));
+    std::istringstream lines(markdown.substr(std::min(markdown.find(kFull), markdown.size())));
     for (std::string line; std::getline(lines, line);) {
         std::vector<std::string> cells;
         std::istringstream split(line);

@@ -16,7 +16,8 @@ struct ReportText {
     std::string driver;  // name of the driver measured beside; empty: none
 };
 
-std::string writeReport(std::span<const Measurement> measurements, const ReportText& text);
+/// Functions that were not measured keep their rows of the `earlier` page.
+std::string writeReport(std::span<const Measurement> measurements, const ReportText& text, const std::string& earlier);
 
 /// The greatest errors in ULP that a report states, by function and tier.
 using StatedErrors = std::map<std::pair<std::string, std::string>, double>;

@@ -441,7 +441,9 @@ struct Functions {
         const V t = hn::Sub(x, set(1));
         const V near = log1p(hn::Add(t, hn::Sqrt(hn::Mul(t, hn::Add(t, set(2))))));
         const V far = hn::Add(log(x), set(static_cast<T>(0x1.62e42fefa39efp-1)));
-        return choose(hn::Gt(x, set(L::kLogOnly)), far, near);
+        // Below -1 the product is positive again.
+        const V value = choose(hn::Gt(x, set(L::kLogOnly)), far, near);
+        return choose(hn::Lt(t, set(0)), number(setBits(kNaN)), value);
     }
     /// log((1 + x) / (1 - x)) / 2; NaN outside [-1, 1].
     static HWY_INLINE V atanh(V x) {

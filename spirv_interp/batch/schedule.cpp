@@ -129,7 +129,9 @@ class Region {
                 if (written && becomes_[place] != kNone) defined.emplace_back(becomes_[place], n);
             });
         }
-        for (const auto& [place, definition] : defined) {
+        for (const auto& value : defined) {
+            // A lambda cannot capture a structured binding (P1091 came after Clang 14).
+            const uint32_t place = value.first, definition = value.second;
             for (uint32_t n = 0; n < nodes_.size(); ++n) {
                 bool reads = false;
                 forEachPlace(code_.insts[begin_ + n],

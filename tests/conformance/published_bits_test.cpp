@@ -1,0 +1,106 @@
+// The images of all scenes have the bits that published_bits.txt states, whatever compiler built the renderer. Where an
+// image changes for a reason, the file is written again (VERNIER_PUBLISH_BITS=1 in the environment) and its output
+// version goes up by one: that version tells users that images are not comparable to earlier ones.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "conformance/drivers/api_driver.h"
+#include "conformance/scenes/scenes.h"
+
+namespace vernier::conformance {
+namespace {
+
+/// FNV-1a, 64 bits (draft-eastlake-fnv): over formats, extents and texels.
+class Hash {
+  public:
+    void add(const void* data, size_t size) {
+        for (size_t i = 0; i < size; ++i) {
+            value_ ^= static_cast<const unsigned char*>(data)[i];
+            value_ *= 0x100000001B3;
+        }
+    }
+    std::string text() const {
+        char digits[17];
+        std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(value_));
+        return digits;
+    }
+
+  private:
+    uint64_t value_ = 0xCBF29CE484222325;
+};
+
+std::string hashOf(const std::vector<RenderedImage>& images) {
+    Hash hash;
+    for (const RenderedImage& image : images) {
+        const uint32_t head[] = {static_cast<uint32_t>(image.format), image.extent.width, image.extent.height};
+        hash.add(head, sizeof head);
+        hash.add(image.texels.data(), image.texels.size());
+    }
+    return hash.text();
+}
+
+struct Published {
+    int version = 0;
+    std::map<std::string, std::string> hashes;
+};
+
+Published readPublished() {
+    Published published;
+    std::ifstream file(VERNIER_PUBLISHED_BITS);
+    for (std::string line; std::getline(file, line);) {
+        std::istringstream words(line);
+        std::string name, value;
+        words >> name >> value;
+        if (name == "version")
+            published.version = std::stoi(value);
+        else if (!name.empty() && name[0] != '#')
+            published.hashes[name] = value;
+    }
+    return published;
+}
+
+void publish(const Published& before, const std::map<std::string, std::string>& hashes) {
+    bool changed = false;  // and not only new scenes
+    for (const auto& [name, hash] : before.hashes) {
+        const auto found = hashes.find(name);
+        changed = changed || (found != hashes.end() && found->second != hash);
+    }
+    std::ofstream file(VERNIER_PUBLISHED_BITS);
+    file << "# Hashes of the images of all scenes: see published_bits_test.cpp.\nversion "
+         << (changed || before.version == 0 ? before.version + 1 : before.version) << "\n";
+    for (const auto& [name, hash] : hashes) file << name << " " << hash << "\n";
+}
+
+TEST(PublishedBits, OfAllScenes) {
+    auto driver = ApiDriver::create({});
+    ASSERT_TRUE(driver.ok()) << driver.error().message;
+    const Published published = readPublished();
+    std::map<std::string, std::string> hashes;
+    for (const SceneEntry& entry : allScenes()) {
+        const auto scene = entry.build();
+        ASSERT_TRUE(scene.ok()) << entry.name << ": " << scene.error().message;
+        const auto images = driver.value()->render(*scene, nullptr);
+        ASSERT_TRUE(images.ok()) << entry.name << ": " << images.error().message;
+        hashes[std::string(entry.name)] = hashOf(*images);
+    }
+    if (std::getenv("VERNIER_PUBLISH_BITS") != nullptr) return publish(published, hashes);
+    ASSERT_GT(published.version, 0) << "cannot read " VERNIER_PUBLISHED_BITS;
+    for (const auto& [name, hash] : hashes) {
+        const auto found = published.hashes.find(name);
+        if (found == published.hashes.end()) {
+            ADD_FAILURE() << name << " has no hash yet: run this test with VERNIER_PUBLISH_BITS=1";
+        } else {
+            EXPECT_EQ(found->second, hash)
+                << name << ": its bits have changed; if that is meant, run this test with VERNIER_PUBLISH_BITS=1";
+        }
+    }
+    for (const auto& [name, hash] : published.hashes) EXPECT_TRUE(hashes.contains(name)) << name << " is no scene";
+}
+
+}  // namespace
+}  // namespace vernier::conformance
