@@ -85,6 +85,8 @@ TEST(PublishedBits, OfAllScenes) {
         const auto scene = entry.build();
         ASSERT_TRUE(scene.ok()) << entry.name << ": " << scene.error().message;
         const auto images = driver.value()->render(*scene, nullptr);
+        // What the API cannot say.
+        if (!images && images.error().code == ErrorCode::unsupported) continue;
         ASSERT_TRUE(images.ok()) << entry.name << ": " << images.error().message;
         hashes[std::string(entry.name)] = hashOf(*images);
     }
