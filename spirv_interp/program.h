@@ -71,6 +71,7 @@ struct BatchOptions {
     Isa isa = Isa::sse4;
     MathTier tier = MathTier::standard;
     uint32_t lanes = 0;  // at most so many (16, 32, 64 or 128); the instruction set may allow fewer. 0: all it allows
+    uint32_t backEdges = 1u << 24;  // budget per lane and run: a loop that goes on for longer loses the device
     /// Where to count how often each block of the batch code is run, for measurements: the listing names the blocks
     /// (countBlock), and those beyond the end of this are not counted. Running is then not thread-safe.
     std::span<uint64_t> blockRuns{};
@@ -119,8 +120,8 @@ class BatchContext {
     /// Runs `lanes` lanes (a multiple of 4, at most BatchProgram::lanes()). `execMask`: ~0 for every lane that runs,
     /// helpers included; `storeMask`: ~0 for every lane whose effects count (a subset). Both have room for
     /// BatchProgram::lanes() words; lanes beyond `lanes` may be computed but have no effects.
-    /// Both nullptr: all `lanes` run and have effects. Returns false if a loop
-    /// passed the back-edge budget (2^24 per lane and run): the device is lost.
+    /// Both nullptr: all `lanes` run and have effects. Returns false if a loop passed the back-edge budget
+    /// (BatchOptions::backEdges): the device is lost.
     bool run(uint32_t lanes, const uint32_t* execMask, const uint32_t* storeMask);
 
     /// After run(): the lanes of output `slot`; lanes that were not live hold arbitrary bits.

@@ -27,7 +27,6 @@ inline constexpr uint32_t kMaxLanes = 64;
 /// Lanes are computed in groups of this many: the widest vector. Row offsets are multiples of 64 bytes for
 /// it.
 inline constexpr uint32_t kLaneGroup = 16;
-inline constexpr uint32_t kBackEdgeBudget = 1u << 24;
 inline constexpr uint32_t kCurrentMask = 0;
 
 /// A set of lanes.
@@ -189,7 +188,7 @@ struct Frame {
     LaneMask* masks = nullptr;
     LaneMask exec;  // lanes that run
     LaneMask live;  // lanes whose effects count
-    uint32_t backEdges = 0;
+    uint32_t backEdgesLeft = 0;
     bool lost = false;
     bool suspends = false;         // the work-group has other batches: a control barrier ends the run
     const Inst* resume = nullptr;  // where it goes on; nullptr when it has come to its end

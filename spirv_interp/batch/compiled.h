@@ -38,6 +38,7 @@ class CompiledProgram final : public BatchProgram {
     /// Compiles once more, with listings.
     std::string disassemble() const override;
 
+    const BatchOptions& options() const { return options_; }
     const Code& batch() const { return batch_; }
     const Code& workGroup() const { return workGroup_; }
     const Code& draw() const { return draw_; }

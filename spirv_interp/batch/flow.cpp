@@ -59,7 +59,7 @@ HWY_INLINE const Inst* enter(Frame& frame, const Inst* inst) {
 
 const Inst* repeat(Frame& frame, const Inst* inst) {
     if (frame.masks[inst->operand[0]].empty()) return inst + 1;
-    if (++frame.backEdges >= kBackEdgeBudget) {
+    if (--frame.backEdgesLeft == 0) {
         frame.lost = true;
         return nullptr;
     }
@@ -72,7 +72,7 @@ const Inst* again(Frame& frame, const Inst* inst) {
         mask = mask | frame.masks[kCurrentMask];
         return inst + 1;
     }
-    if (++frame.backEdges >= kBackEdgeBudget) {
+    if (--frame.backEdgesLeft == 0) {
         frame.lost = true;
         return nullptr;
     }

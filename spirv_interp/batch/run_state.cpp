@@ -52,7 +52,7 @@ void RunState::begin(uint32_t lanes, const LaneMask& exec, const LaneMask& live)
         frame.scalars = scalars_.data();
     }
     frame.lanes = (lanes + kLaneGroup - 1) / kLaneGroup * kLaneGroup;
-    frame.backEdges = 0;
+    frame.backEdgesLeft = shared_->compiled.options().backEdges;
     frame.lost = false;
     frame.exec = exec;
     frame.live = live;

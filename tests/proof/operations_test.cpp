@@ -39,6 +39,17 @@ ExpressionPtr operand(Base base, uint32_t k) {
             return word(2, k % 4);
         case Base::boolean:
             return make(Kind::op, kBool, {word(1, k % 4), word(2, k % 4)}, spv::OpSLessThan);
+        case Base::i8:
+        case Base::i16:
+            return make(Kind::op, {base, 1, 1}, {word(1, k % 4)}, spv::OpSConvert);
+        case Base::u8:
+        case Base::u16:
+            return make(Kind::op, {base, 1, 1}, {word(2, k % 4)}, spv::OpUConvert);
+        case Base::f16: {
+            // The low half of a word, so that every code occurs.
+            ExpressionPtr code = make(Kind::op, {Base::u16, 1, 1}, {word(2, k % 4)}, spv::OpUConvert);
+            return make(Kind::op, {base, 1, 1}, {std::move(code)}, spv::OpBitcast);
+        }
         default: {
             // Two words, so that every bit pattern occurs.
             ExpressionPtr low = word(2, k % 4), high = make(Kind::op, kU32, {word(1, (k + 1) % 4)}, spv::OpBitcast);
@@ -72,6 +83,17 @@ RandomProgram programOf(const ExpressionPtr& value) {
             break;
         case Base::u32:
             body.push_back(assign(2, value, 0));
+            break;
+        case Base::f16:
+            body.push_back(assign(0, make(Kind::op, {Base::f32, 1, 1}, {value}, spv::OpFConvert), 0));
+            break;
+        case Base::i8:
+        case Base::i16:
+            body.push_back(assign(1, make(Kind::op, {Base::i32, 1, 1}, {value}, spv::OpSConvert), 0));
+            break;
+        case Base::u8:
+        case Base::u16:
+            body.push_back(assign(2, make(Kind::op, kU32, {value}, spv::OpUConvert), 0));
             break;
         case Base::boolean: {
             ExpressionPtr one = make(Kind::constant, kU32), zero = make(Kind::constant, kU32);
@@ -159,6 +181,52 @@ TEST(Operations, Conversions) {
     proveOf({spv::OpFConvert, 1}, Base::f64, Base::f32);
     proveOf({spv::OpSConvert, 1}, Base::i32, Base::i64);
     proveOf({spv::OpSConvert, 1}, Base::i64, Base::i32);
+}
+
+constexpr Base kNarrowSigned[] = {Base::i8, Base::i16}, kNarrowUnsigned[] = {Base::u8, Base::u16};
+
+TEST(Operations, OfHalves) {
+    for (const Operation& o : kFloatOps) proveOf(o, Base::f16, Base::f16);
+    for (const uint32_t op : kFloatTests) proveOf({op, 2}, Base::f16, Base::boolean);
+    for (const uint32_t op : {spv::OpIsNan, spv::OpIsInf}) proveOf({op, 1}, Base::f16, Base::boolean);
+    for (const Base base : {Base::f32, Base::f64}) {
+        proveOf({spv::OpFConvert, 1}, base, Base::f16);
+        proveOf({spv::OpFConvert, 1}, Base::f16, base);
+    }
+    for (const Base base : {Base::i8, Base::i16, Base::i32, Base::i64}) {
+        proveOf({spv::OpConvertSToF, 1}, base, Base::f16);
+        proveOf({spv::OpConvertFToS, 1}, Base::f16, base);
+    }
+    for (const Base base : {Base::u8, Base::u16, Base::u32}) {
+        proveOf({spv::OpConvertUToF, 1}, base, Base::f16);
+        proveOf({spv::OpConvertFToU, 1}, Base::f16, base);
+    }
+}
+
+TEST(Operations, OfNarrowIntegers) {
+    for (const auto& bases : {kNarrowSigned, kNarrowUnsigned}) {
+        for (uint32_t k = 0; k < 2; ++k) {
+            for (const Operation& o : kIntegerOps) proveOf(o, bases[k], bases[k]);
+            for (const uint32_t op : kIntegerTests) proveOf({op, 2}, bases[k], Base::boolean);
+        }
+    }
+    for (const Base base : kNarrowUnsigned) {
+        for (const uint32_t op : {spv::OpUDiv, spv::OpUMod}) proveOf({op, 2}, base, base);
+        proveOf({spv::OpConvertUToF, 1}, base, Base::f32);
+        proveOf({spv::OpConvertFToU, 1}, Base::f32, base);
+        for (const Base other : {Base::u8, Base::u16, Base::u32})
+            if (other != base) proveOf({spv::OpUConvert, 1}, base, other);
+        proveOf({spv::OpBitcast, 1}, base, base == Base::u8 ? Base::i8 : Base::i16);
+    }
+    for (const Base base : kNarrowSigned) {
+        proveOf({spv::OpConvertSToF, 1}, base, Base::f32);
+        proveOf({spv::OpConvertFToS, 1}, Base::f32, base);
+        for (const Base other : {Base::i8, Base::i16, Base::i32, Base::i64}) {
+            if (other == base) continue;
+            proveOf({spv::OpSConvert, 1}, base, other);
+            proveOf({spv::OpSConvert, 1}, other, base);
+        }
+    }
 }
 
 TEST(Operations, WithTwoResults) {

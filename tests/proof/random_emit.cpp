@@ -48,6 +48,17 @@ Id Emitter::scalarType(Base base) {
         case Base::f64:
             b_.capability(spv::CapabilityFloat64);
             return b_.type(spv::OpTypeFloat, {64});
+        case Base::i8:
+        case Base::u8:
+            b_.capability(spv::CapabilityInt8);
+            return b_.type(spv::OpTypeInt, {8, base == Base::i8 ? 1u : 0u});
+        case Base::i16:
+        case Base::u16:
+            b_.capability(spv::CapabilityInt16);
+            return b_.type(spv::OpTypeInt, {16, base == Base::i16 ? 1u : 0u});
+        case Base::f16:
+            b_.capability(spv::CapabilityFloat16);
+            return b_.type(spv::OpTypeFloat, {16});
     }
     return 0;
 }
@@ -62,7 +73,20 @@ Id Emitter::constant(ValueType type, uint64_t bits) {
     if (type.base == Base::boolean) return b_.boolConstant(id, bits != 0);
     if (type.base == Base::i64 || type.base == Base::f64)
         return b_.constant(id, {static_cast<uint32_t>(bits), static_cast<uint32_t>(bits >> 32)});
-    return b_.constant(id, {static_cast<uint32_t>(bits)});
+    // Narrow integers fill their word by their sign; halves by zeros.
+    switch (type.base) {
+        case Base::i8:
+            return b_.constant(id, {static_cast<uint32_t>(static_cast<int8_t>(bits))});
+        case Base::i16:
+            return b_.constant(id, {static_cast<uint32_t>(static_cast<int16_t>(bits))});
+        case Base::u8:
+            return b_.constant(id, {static_cast<uint8_t>(bits)});
+        case Base::u16:
+        case Base::f16:
+            return b_.constant(id, {static_cast<uint16_t>(bits)});
+        default:
+            return b_.constant(id, {static_cast<uint32_t>(bits)});
+    }
 }
 
 Id Emitter::bufferOf(Id member, uint32_t stride, uint32_t binding, bool readOnly) {
@@ -92,6 +116,11 @@ void Emitter::resources() {
     b_.memberDecorate(block, 2, spv::DecorationMatrixStride, {16});
     b_.memberDecorate(block, 2, spv::DecorationRowMajor, {});
     uniforms_ = bound(global(block, spv::StorageClassUniform), 2);
+    for (uint32_t k = 0; k < 2; ++k) {
+        const Id image =
+            b_.type(spv::OpTypeImage, {scalarType(k == 0 ? Base::f32 : Base::i32), spv::Dim2D, 0, 0, 0, 1, 0});
+        images_[k] = bound(global(b_.type(spv::OpTypeSampledImage, {image}), spv::StorageClassUniformConstant), 4 + k);
+    }
     invocation_ = global(scalarType(Base::u32), spv::StorageClassPrivate);
     for (uint32_t k = 0; k < 3; ++k) inputs_[k] = global(typeId(ioType(k)), spv::StorageClassPrivate);
     if (program_.stage == ir::Stage::compute) {
@@ -244,6 +273,7 @@ Case caseOf(const RandomProgram& program, uint64_t seed) {
     world.bufferAt[{0, 1, 0}] = {(kVectors + 3) * 64 * 16, {Filling::Kind::uniform, -2, 2}};
     world.bufferAt[{0, 2, 0}] = {320, {Filling::Kind::uniform, -2, 2}};
     world.bufferAt[{0, 3, 0}] = {64 * 3 * 16, {Filling::Kind::special, 0, 0}};
+    world.integerImages[{0, 5, 0}] = true;
     return subject;
 }
 

@@ -5,6 +5,33 @@
 
 namespace vernier::proof {
 
+Id Emitter::subgroup(const Expression& e) {
+    b_.capability(spv::CapabilityGroupNonUniform);
+    if (e.op >= spv::OpGroupNonUniformIAdd && e.op <= spv::OpGroupNonUniformLogicalXor) {
+        b_.capability(spv::CapabilityGroupNonUniformArithmetic);
+    } else if (e.op >= spv::OpGroupNonUniformQuadBroadcast) {
+        b_.capability(spv::CapabilityGroupNonUniformQuad);
+    } else if (e.op >= spv::OpGroupNonUniformShuffle) {
+        b_.capability(spv::CapabilityGroupNonUniformShuffle);
+    } else if (e.op >= spv::OpGroupNonUniformBroadcast) {
+        b_.capability(spv::CapabilityGroupNonUniformBallot);
+    } else {
+        b_.capability(spv::CapabilityGroupNonUniformVote);
+    }
+    std::vector<uint32_t> words{constantU32(spv::ScopeSubgroup)};
+    if (e.literal != ~0ull) words.push_back(static_cast<uint32_t>(e.literal));
+    for (const Id id : arguments(e)) words.push_back(id);
+    return b_.value(static_cast<spv::Op>(e.op), typeId(e.type), words);
+}
+Id Emitter::image(const Expression& e) {
+    const Id at = expression(*e.args[0]), level = expression(*e.args[1]), type = typeId(e.type);
+    const Id image = b_.type(spv::OpTypeImage, {scalarType(e.type.base), spv::Dim2D, 0, 0, 0, 1, 0});
+    const Id sampled = load(b_.type(spv::OpTypeSampledImage, {image}), images_[e.index]);
+    if (e.kind == Expression::Kind::sample)
+        return b_.value(spv::OpImageSampleExplicitLod, type, {sampled, at, spv::ImageOperandsLodMask, level});
+    return b_.value(spv::OpImageFetch, type,
+                    {b_.value(spv::OpImage, image, {sampled}), at, spv::ImageOperandsLodMask, level});
+}
 Id Emitter::expression(const Expression& e) {
     using Kind = Expression::Kind;
     const Id type = typeId(e.type);
@@ -69,6 +96,11 @@ Id Emitter::expression(const Expression& e) {
             label(merge);
             return b_.value(spv::OpPhi, type, {first, from, second, to});
         }
+        case Kind::subgroup:
+            return subgroup(e);
+        case Kind::fetch:
+        case Kind::sample:
+            return image(e);
         case Kind::choose: {
             const Id value = expression(*e.args[0]), yes = b_.newId(), no = b_.newId(), merge = b_.newId();
             b_.add(ModuleBuilder::functions, spv::OpSelectionMerge, {merge, 0});

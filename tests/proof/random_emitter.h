@@ -124,6 +124,8 @@ class Emitter {
         words.insert(words.end(), args.begin(), args.end());
         return b_.value(spv::OpExtInst, type, words);
     }
+    Id subgroup(const Expression& e);
+    Id image(const Expression& e);
     Id expression(const Expression& e);
 
     const RandomProgram& program_;
@@ -131,6 +133,7 @@ class Emitter {
     Id glsl_ = 0, words_ = 0, vectors_ = 0, uniforms_ = 0, source_ = 0, shared_ = 0, local_ = 0, invocation_ = 0,
        block_ = 0;
     std::array<Id, 3> inputs_{};
+    std::array<Id, 2> images_{};
     std::vector<Id> interface_, pointers_, functions_, breaks_, continues_;
     std::map<const Statement*, Id> counters_;
     std::optional<ValueType> result_;

@@ -8,10 +8,13 @@ namespace vernier::proof {
 namespace {
 
 bool isInteger(Base base) {
-    return base == Base::i32 || base == Base::u32 || base == Base::i64;
+    return base != Base::boolean && base != Base::f32 && base != Base::f64 && base != Base::f16;
 }
 bool isFloat(Base base) {
-    return base == Base::f32 || base == Base::f64;
+    return base == Base::f32 || base == Base::f64 || base == Base::f16;
+}
+bool isNarrow(Base base) {
+    return base >= Base::i8;
 }
 
 }  // namespace
@@ -42,13 +45,23 @@ ExpressionPtr Generator::constant(ValueType type) {
             e->literal =
                 chance(50) ? static_cast<uint64_t>(static_cast<int64_t>(static_cast<int32_t>(word))) : random_();
             break;
+        case Base::f16:
+            e->literal = chance(30) ? word & 0xFFFF : 0x3000u + below(0x1800) + (chance(50) ? 0x8000u : 0);
+            break;
         default:
             e->literal = word;
     }
     return e;
 }
 
-ExpressionPtr Generator::index(uint32_t n) {
+ExpressionPtr Generator::index(uint32_t n, bool robust) {
+    if (robust && indices_ == 0 && chance(10)) {
+        ++indices_;
+        // Mostly outside, but not so far that offsets in bytes wrap around: where those lead is left open.
+        ExpressionPtr e = masked(expression({Base::u32, 1, 1}, 1), 1u << 24);
+        --indices_;
+        return e;
+    }
     if (indices_ > 1 || chance(40)) {
         ExpressionPtr e = make(Kind::constant, {Base::u32, 1, 1});
         e->literal = below(n);
@@ -71,7 +84,8 @@ ExpressionPtr Generator::leaf(ValueType type) {
         if (const uint32_t length = program_.variables[v].length; length != 0) e->args.push_back(index(length));
         return e;
     }
-    if (type.isMatrix() || chance(25) || type.base == Base::boolean || type.base == Base::i64 || type.base == Base::f64)
+    if (type.isMatrix() || chance(25) || type.base == Base::boolean || type.base == Base::i64 ||
+        type.base == Base::f64 || isNarrow(type.base))
         return constant(type);
     return taken(type);
 }
@@ -84,7 +98,7 @@ ExpressionPtr Generator::taken(ValueType type) {
     } else if (type.base == Base::f32 && chance(30)) {
         e = make(Kind::bufferVector, whole, {index(4)});
     } else if (type.base != Base::u32 && chance(40)) {
-        e = make(Kind::uniform, whole, {index(8)});
+        e = make(Kind::uniform, whole, {index(8, true)});
         e->index = type.base == Base::f32 ? 0 : 1;
     } else {
         e = make(Kind::input, whole);
@@ -115,6 +129,10 @@ ExpressionPtr Generator::expression(ValueType type, uint32_t depth) {
     const uint32_t d = depth - 1;
     if (type.isMatrix()) return matrix(type, d);
     if (chance(8)) return call(type, d);
+    if (subgroups_ && chance(8))
+        if (ExpressionPtr e = subgroup(type, d)) return e;
+    if (images_ && chance(6))
+        if (ExpressionPtr e = texel(type, d)) return e;
     if (chance(7)) {
         if (type.rows == 1 && chance(50))
             return make(Kind::choose, type,
@@ -139,6 +157,7 @@ ExpressionPtr Generator::expression(ValueType type, uint32_t depth) {
         if (chance(50)) return extract(expression(from, d), below(from.rows));
         return operation({spv::OpVectorExtractDynamic, 2}, type, {expression(from, d), index(from.rows)});
     }
+    if (isNarrow(type.base)) return narrow(type, d);
     switch (type.base) {
         case Base::boolean:
             return truth(type, d);
@@ -172,6 +191,8 @@ ExpressionPtr Generator::truth(ValueType type, uint32_t d) {
 
 ExpressionPtr Generator::number(ValueType type, uint32_t d) {
     const bool single = type.base == Base::f32;
+    if (narrow_ && single && chance(12))
+        return operation({spv::OpFConvert, 1}, type, {expression(type.of(Base::f16), d)});
     if (single && chance(14)) return apply(pick(kElementaryOps), type, d);
     if (chance(8)) {
         const Base from = chance(50) ? Base::i32 : Base::u32;
@@ -272,6 +293,39 @@ ExpressionPtr Generator::matrix(ValueType type, uint32_t d) {
     }
 }
 
+ExpressionPtr Generator::narrow(ValueType type, uint32_t d) {
+    if (type.base == Base::f16) {
+        if (chance(30)) return operation({spv::OpFConvert, 1}, type, {expression(type.of(Base::f32), d)});
+        if (chance(10)) {
+            constexpr Base kFrom[] = {Base::i32, Base::i16, Base::i8};
+            return operation({spv::OpConvertSToF, 1}, type, {expression(type.of(pick(kFrom)), d)});
+        }
+        if (chance(5)) return operation({spv::OpBitcast, 1}, type, {expression(type.of(Base::u16), d)});
+        return apply(pick(kFloatOps), type, d);
+    }
+    const bool isUnsigned = type.base == Base::u8 || type.base == Base::u16;
+    const bool bytes = type.base == Base::i8 || type.base == Base::u8;
+    if (chance(25)) {
+        const Base from = isUnsigned ? (chance(70) ? Base::u32
+                                        : bytes    ? Base::u16
+                                                   : Base::u8)
+                                     : (chance(70) ? Base::i32
+                                        : bytes    ? Base::i16
+                                                   : Base::i8);
+        return operation({isUnsigned ? spv::OpUConvert : spv::OpSConvert, 1}, type, {expression(type.of(from), d)});
+    }
+    if (chance(8))
+        return operation({isUnsigned ? spv::OpConvertFToU : spv::OpConvertFToS, 1}, type,
+                         {expression(type.of(chance(50) ? Base::f32 : Base::f16), d)});
+    if (chance(8)) {
+        const Base other = bytes ? (isUnsigned ? Base::i8 : Base::u8) : isUnsigned ? Base::i16 : Base::u16;
+        return operation({spv::OpBitcast, 1}, type, {expression(type.of(other), d)});
+    }
+    if (isUnsigned && chance(12))
+        return operation({chance(50) ? spv::OpUDiv : spv::OpUMod, 2}, type, {expression(type, d), expression(type, d)});
+    return apply(pick(kIntegerOps), type, d);
+}
+
 ExpressionPtr Generator::integer(ValueType type, uint32_t d) {
     if (type.base == Base::i64) {
         if (chance(15)) return operation({spv::OpSConvert, 1}, type, {expression(type.of(Base::i32), d)});
@@ -279,6 +333,11 @@ ExpressionPtr Generator::integer(ValueType type, uint32_t d) {
         return apply(kIntegerOps[below(std::size(kIntegerOps))], type, d);
     }
     const bool isUnsigned = type.base == Base::u32;
+    if (narrow_ && chance(15)) {
+        constexpr Base kSigned[] = {Base::i8, Base::i16}, kUnsigned[] = {Base::u8, Base::u16};
+        return operation({isUnsigned ? spv::OpUConvert : spv::OpSConvert, 1}, type,
+                         {expression(type.of(isUnsigned ? pick(kUnsigned) : pick(kSigned)), d)});
+    }
     if (chance(8))
         return operation({isUnsigned ? spv::OpConvertFToU : spv::OpConvertFToS, 1}, type,
                          {expression(type.of(wide_ && chance(30) ? Base::f64 : Base::f32), d)});
@@ -346,6 +405,71 @@ uint32_t Generator::pointerFor(uint32_t function) {
     for (const uint32_t v : program_.functions[current_].locals)
         if (program_.variables[v].type == pointee && program_.variables[v].length == 0) return v;
     return ~0u;
+}
+
+ExpressionPtr Generator::subgroup(ValueType type, uint32_t d) {
+    const auto group = [&](uint32_t op, std::vector<ExpressionPtr> args, uint64_t literal = ~0ull) {
+        ExpressionPtr e = make(Kind::subgroup, type, std::move(args));
+        e->op = op;
+        e->literal = literal;
+        return e;
+    };
+    constexpr ValueType kBool{Base::boolean, 1, 1}, kBallot{Base::u32, 4, 1};
+    if (type.isMatrix()) return nullptr;
+    if (type == kBool && chance(70)) {
+        constexpr uint32_t kVotes[] = {spv::OpGroupNonUniformAll, spv::OpGroupNonUniformAny};
+        switch (below(5)) {
+            case 0:
+                return group(spv::OpGroupNonUniformElect, {});
+            case 1:
+                return group(spv::OpGroupNonUniformAllEqual, {expression({Base::i32, 1, 1}, d)});
+            case 2:
+                return group(spv::OpGroupNonUniformInverseBallot, {expression(kBallot, d)});
+            default:
+                return group(pick(kVotes), {expression(type, d)});
+        }
+    }
+    if (type == kBallot && chance(40)) return group(spv::OpGroupNonUniformBallot, {expression(kBool, d)});
+    if (type == kBallot.scalar() && chance(25))
+        return group(spv::OpGroupNonUniformBallotBitCount, {expression(kBallot, d)}, below(3));
+    if (chance(20)) return group(spv::OpGroupNonUniformBroadcastFirst, {expression(type, d)});
+    switch (type.base) {
+        case Base::boolean: {
+            constexpr uint32_t kOps[] = {spv::OpGroupNonUniformLogicalAnd, spv::OpGroupNonUniformLogicalOr,
+                                         spv::OpGroupNonUniformLogicalXor};
+            return group(pick(kOps), {expression(type, d)}, below(3));
+        }
+        case Base::f32: {
+            constexpr uint32_t kOps[] = {spv::OpGroupNonUniformFAdd, spv::OpGroupNonUniformFMul,
+                                         spv::OpGroupNonUniformFMin, spv::OpGroupNonUniformFMax};
+            return group(pick(kOps), {expression(type, d)}, below(3));
+        }
+        case Base::i32:
+        case Base::u32: {
+            constexpr uint32_t kOps[] = {
+                spv::OpGroupNonUniformIAdd,       spv::OpGroupNonUniformIMul,      spv::OpGroupNonUniformSMin,
+                spv::OpGroupNonUniformUMin,       spv::OpGroupNonUniformSMax,      spv::OpGroupNonUniformUMax,
+                spv::OpGroupNonUniformBitwiseAnd, spv::OpGroupNonUniformBitwiseOr, spv::OpGroupNonUniformBitwiseXor};
+            return group(pick(kOps), {expression(type, d)}, below(3));
+        }
+        default:
+            return nullptr;
+    }
+}
+
+/// From an image: outside, the images of the test repeat.
+ExpressionPtr Generator::texel(ValueType type, uint32_t d) {
+    if (type.rows != 4 || type.isMatrix() || (type.base != Base::f32 && type.base != Base::i32)) return nullptr;
+    const bool floats = type.base == Base::f32;
+    if (floats && chance(50)) {
+        ExpressionPtr at = operation({GLSLstd450Fract, 1, true}, {Base::f32, 2, 1}, {expression({Base::f32, 2, 1}, d)});
+        return make(Kind::sample, type, {std::move(at), constant({Base::f32, 1, 1})});
+    }
+    ExpressionPtr level = make(Kind::constant, {Base::i32, 1, 1});
+    level->literal = below(8);
+    ExpressionPtr e = make(Kind::fetch, type, {expression({Base::i32, 2, 1}, d), std::move(level)});
+    e->index = floats ? 0 : 1;
+    return e;
 }
 
 }  // namespace vernier::proof

@@ -10,6 +10,9 @@ RandomProgram Generator::run() {
     program_.stage = kStages[below(4)];
     wide_ = chance(25);
     straight_ = chance(30);
+    narrow_ = chance(25);
+    subgroups_ = program_.stage == ir::Stage::compute && chance(60);
+    images_ = chance(25);
     for (uint32_t k = 0; k < 3 + below(3); ++k) {
         // The first three are the results.
         ValueType type = k == 0   ? ValueType{Base::f32, 4, 1}

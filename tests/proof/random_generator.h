@@ -26,6 +26,8 @@ class Generator {
     }
 
     Base anyBase() {
+        constexpr Base kNarrow[] = {Base::i8, Base::u8, Base::i16, Base::u16, Base::f16, Base::f16};
+        if (narrow_ && chance(20)) return pick(kNarrow);
         if (wide_ && chance(20)) return chance(50) ? Base::i64 : Base::f64;
         constexpr Base kBases[] = {Base::f32, Base::f32, Base::f32, Base::i32, Base::u32, Base::i32, Base::boolean};
         return pick(kBases);
@@ -70,7 +72,8 @@ class Generator {
         limit->literal = n;
         return operation({e->type.base == Base::i32 ? spv::OpSMod : spv::OpUMod, 2}, e->type, {e, limit});
     }
-    ExpressionPtr index(uint32_t n);
+    /// Below n, unless `robust` allows to try what lies outside (of buffers: elsewhere it is left open).
+    ExpressionPtr index(uint32_t n, bool robust = false);
 
     ExpressionPtr leaf(ValueType type);
 
@@ -96,6 +99,11 @@ class Generator {
     ExpressionPtr matrix(ValueType type, uint32_t d);
 
     ExpressionPtr integer(ValueType type, uint32_t d);
+    /// Of a type of 8 or 16 bits.
+    ExpressionPtr narrow(ValueType type, uint32_t d);
+    /// nullptr if there is none of the type.
+    ExpressionPtr subgroup(ValueType type, uint32_t d);
+    ExpressionPtr texel(ValueType type, uint32_t d);
 
     /// Of a function behind the current one whose result can be made into the type.
     ExpressionPtr call(ValueType type, uint32_t d);
@@ -109,8 +117,11 @@ class Generator {
     uint32_t indices_ = 0;  // of indices of indices
     uint64_t weight_ = 1, cost_ = 0;
     std::map<uint32_t, uint64_t> costs_;
-    bool wide_ = false;      // 64-bit types occur
-    bool straight_ = false;  // main's body has no early end: barriers and derivatives are allowed at its top level
+    bool wide_ = false;       // 64-bit types occur
+    bool narrow_ = false;     // types of 8 and 16 bits occur
+    bool subgroups_ = false;  // subgroup operations occur
+    bool images_ = false;     // images are read
+    bool straight_ = false;   // main's body has no early end: barriers and derivatives are allowed at its top level
 };
 
 }  // namespace vernier::proof

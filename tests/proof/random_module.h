@@ -12,7 +12,7 @@
 
 namespace vernier::proof {
 
-enum class Base : uint8_t { boolean, i32, u32, f32, i64, f64 };
+enum class Base : uint8_t { boolean, i32, u32, f32, i64, f64, i8, u8, i16, u16, f16 };
 
 /// A scalar, vector or float matrix.
 struct ValueType {
@@ -45,6 +45,9 @@ struct Expression {
         call,       // function `index`; args by value, then a pointer to variable `literal`
         both,       // arg 0 and arg 1 or (literal) or: with a branch and a phi
         choose,     // arg 0 ? arg 1 : arg 2, with branches and a phi
+        subgroup,   // group instruction `op` on args; literal: its group operation, or ~0
+        fetch,      // the texel at arg 0, an ivec2, of level of detail arg 1; index 0: floats, 1: integers
+        sample,     // the image of floats at arg 0, a vec2, with level of detail arg 1
     };
     Kind kind = Kind::constant;
     ValueType type;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <map>
 
 #include <spirv-tools/libspirv.hpp>
 #include <spirv-tools/optimizer.hpp>
@@ -11,7 +12,7 @@
 namespace vernier::proof {
 namespace {
 
-constexpr spv_target_env kEnvironment = SPV_ENV_VULKAN_1_1;
+constexpr spv_target_env kEnvironment = SPV_ENV_VULKAN_1_2;
 
 std::string validated(const Words& words) {
     spvtools::SpirvTools tools(kEnvironment);
@@ -26,12 +27,13 @@ std::string disassembled(const Words& words) {
     return text;
 }
 
-/// After SPIRV-Tools' optimiser: phis, selects and control flow that no generator writes.
+/// After SPIRV-Tools' optimiser: phis, selects and control flow that no generator writes. Its folding of narrow
+/// integers makes invalid constants at times; then there is nothing to prove.
 Words optimised(const Words& words) {
     spvtools::Optimizer optimizer(kEnvironment);
     optimizer.RegisterPerformancePasses();
     Words result;
-    return optimizer.Run(words.data(), words.size(), &result) ? result : words;
+    return optimizer.Run(words.data(), words.size(), &result) && validated(result).empty() ? result : words;
 }
 
 /// What is wrong with the program; empty: nothing.
@@ -63,6 +65,23 @@ void prove(uint64_t first, uint64_t count) {
 uint64_t fromEnvironment(const char* name, uint64_t otherwise) {
     const char* text = std::getenv(name);
     return text != nullptr ? std::strtoull(text, nullptr, 10) : otherwise;
+}
+
+/// What the generator is there to write occurs.
+TEST(RandomModules, HaveEverySortOfInstruction) {
+    std::map<std::string, int> found;
+    for (uint64_t seed = 0; seed < 200; ++seed) {
+        const std::string text = disassembled(emitProgram(generateProgram(seed)));
+        for (const char* sort :
+             {"OpGroupNonUniformIAdd", "OpGroupNonUniformFMin", "OpGroupNonUniformBallot ", "OpGroupNonUniformAll ",
+              "OpTypeInt 8 1", "OpTypeInt 16 0", "OpTypeFloat 16", "OpTypeInt 64 1", "OpTypeFloat 64", "OpImageFetch",
+              "OpImageSampleExplicitLod", "OpControlBarrier", "OpSwitch", "OpLoopMerge", "OpKill", "OpFunctionCall"})
+            if (text.find(sort) != std::string::npos)
+                ++found[sort];
+            else
+                found.emplace(sort, 0);
+    }
+    for (const auto& [sort, modules] : found) EXPECT_GE(modules, 3) << sort;
 }
 
 TEST(RandomModules, AreTheSameByBatches) {

@@ -228,6 +228,31 @@ TEST(Compute, BarriersInDivergentFlow) {
     }
 }
 
+/// BatchOptions::backEdges is how often a lane may go round.
+TEST(Compute, TheBackEdgeBudgetEndsLoops) {
+    const std::string text = shader("local_size_x=16", "layout(set=0,binding=0) buffer B { uint v[]; };",
+                                    "uint n = 0; while (n < v[0]) n += v[1]; v[2] = n;");
+    const ir::Program program = loadCompute(text);
+    BatchOptions options{bestIsa(), MathTier::standard, 16};
+    options.backEdges = 100;
+    const auto compiled = BatchProgram::compile(program, options);
+    ASSERT_TRUE(compiled.ok());
+    std::vector<uint32_t> words{90, 1, 0};
+    const BufferBinding buffer{reinterpret_cast<std::byte*>(words.data()), 12};
+    const uint32_t base[2] = {0, 0}, count[2] = {1, 1};
+    ResourceBindings bindings;
+    bindings.buffers = &buffer;
+    bindings.base = base;
+    bindings.count = count;
+    WorkGroupContext context(*compiled);
+    for (const auto& [rounds, ends] : {std::pair{90u, true}, {110u, false}, {90u, true}}) {
+        words = {rounds, 1, 0};
+        context.beginDispatch(bindings, {{1, 1, 1}, {}});
+        EXPECT_EQ(context.run(0, 1), ends) << rounds;
+        EXPECT_EQ(words[2], ends ? rounds : 0u);
+    }
+}
+
 TEST(Compute, EndlessLoopIsLost) {
     const std::string text = shader("local_size_x=80", "layout(set=0,binding=0) buffer B { uint v[]; }; shared uint s;",
                                     "while (v[0] == 0) { if (gl_LocalInvocationIndex == 70) barrier(); }");
