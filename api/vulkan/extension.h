@@ -8,7 +8,7 @@
 
 namespace vernier::vulkan {
 
-/// Core Vulkan as far as this driver goes. Multiview and a compute queue are missing from 1.1.
+/// Core Vulkan as far as this driver goes.
 inline constexpr uint32_t kApiVersion = VK_MAKE_API_VERSION(0, 1, 0, VK_HEADER_VERSION);
 
 enum class Extension : uint32_t {

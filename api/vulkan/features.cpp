@@ -22,6 +22,7 @@ namespace {
     X(depthClamp)                              \
     X(depthBiasClamp)                          \
     X(depthBounds)                             \
+    X(multiViewport)                           \
     X(fillModeNonSolid)                        \
     X(wideLines)                               \
     X(largePoints)                             \
@@ -54,6 +55,10 @@ namespace {
 #define VERNIER_EXTENSION_FEATURES(X)                                                               \
     X(VkPhysicalDeviceTimelineSemaphoreFeatures, timelineSemaphore, true)                           \
     X(VkPhysicalDeviceDepthClipEnableFeaturesEXT, depthClipEnable, true)                            \
+    X(VkPhysicalDeviceDepthClipControlFeaturesEXT, depthClipControl, true)                          \
+    X(VkPhysicalDeviceMultiviewFeatures, multiview, true)                                           \
+    X(VkPhysicalDeviceMultiviewFeatures, multiviewGeometryShader, false)                            \
+    X(VkPhysicalDeviceMultiviewFeatures, multiviewTessellationShader, false)                        \
     X(VkPhysicalDeviceProvokingVertexFeaturesEXT, provokingVertexLast, true)                        \
     X(VkPhysicalDeviceProvokingVertexFeaturesEXT, transformFeedbackPreservesProvokingVertex, false) \
     X(VkPhysicalDevice16BitStorageFeatures, storageBuffer16BitAccess, true)                         \

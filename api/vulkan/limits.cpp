@@ -168,6 +168,10 @@ void fillPropertyChain(void* chain) {
         p->provokingVertexModePerPipeline = VK_TRUE;
         p->transformFeedbackPreservesTriangleFanProvokingVertex = VK_FALSE;
     }
+    if (auto* p = findInChain<VkPhysicalDeviceMultiviewProperties>(chain)) {
+        p->maxMultiviewViewCount = kMaxViews;
+        p->maxMultiviewInstanceIndex = UINT32_MAX;
+    }
     if (auto* p = findInChain<VkPhysicalDeviceSampleLocationsPropertiesEXT>(chain)) {
         p->sampleLocationSampleCounts = kSampleCounts;
         p->maxSampleLocationGridSize = {1, 1};

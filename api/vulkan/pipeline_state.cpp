@@ -88,6 +88,9 @@ Status readViewports(const VkPipelineViewportStateCreateInfo* info, PipelineStat
     if (info->viewportCount > kMaxViewports) return aboveLimit("viewportCount", info->viewportCount, kMaxViewports);
     if (info->scissorCount > kMaxViewports) return aboveLimit("scissorCount", info->scissorCount, kMaxViewports);
     result.fixed.viewportCount = std::max(1u, info->viewportCount);
+    if (const auto* control = findInChain<VkPipelineViewportDepthClipControlCreateInfoEXT>(info->pNext)) {
+        result.state.negativeOneToOne = control->negativeOneToOne != VK_FALSE;
+    }
     if (!isDynamic(result, VK_DYNAMIC_STATE_VIEWPORT) && info->pViewports != nullptr) {
         std::copy_n(info->pViewports, info->viewportCount, result.fixed.viewports.begin());
     }

@@ -1,9 +1,11 @@
 #include "api/vulkan/render_pass.h"
 
 #include <algorithm>
+#include <bit>
 #include <string>
 
 #include "api/vulkan/allocation.h"
+#include "api/vulkan/chain.h"
 #include "api/vulkan/device.h"
 #include "api/vulkan/entry_points.h"
 #include "runtime/resource/image.h"
@@ -58,6 +60,7 @@ Status checkInputs(const RenderPassObject& pass) {
 
 Result<RenderPassObject> makeRenderPass(const VkRenderPassCreateInfo& info) {
     RenderPassObject pass;
+    const auto* multiview = findInChain<VkRenderPassMultiviewCreateInfo>(info.pNext);
     for (uint32_t i = 0; i < info.attachmentCount; ++i) pass.attachments.push_back({info.pAttachments[i]});
     for (uint32_t i = 0; i < info.subpassCount; ++i) {
         const VkSubpassDescription& from = info.pSubpasses[i];
@@ -74,6 +77,7 @@ Result<RenderPassObject> makeRenderPass(const VkRenderPassCreateInfo& info) {
         to.inputs = indices(from.inputAttachmentCount, from.pInputAttachments);
         if (from.pDepthStencilAttachment != nullptr) to.depthStencil = from.pDepthStencilAttachment->attachment;
         const size_t count = pass.attachments.size();
+        if (multiview != nullptr && i < multiview->subpassCount) to.viewMask = multiview->pViewMasks[i];
         if (Status s = checkReferences("colour attachment", i, to.colors, count); !s) return s.error();
         if (Status s = checkReferences("resolve attachment", i, to.resolves, count); !s) return s.error();
         if (Status s = checkReferences("input attachment", i, to.inputs, count); !s) return s.error();
@@ -84,11 +88,25 @@ Result<RenderPassObject> makeRenderPass(const VkRenderPassCreateInfo& info) {
     return pass;
 }
 
+/// The views in which earlier subpasses use an attachment.
+uint32_t viewsBefore(const RenderPassObject& pass, uint32_t subpass, uint32_t attachment) {
+    uint32_t views = 0;
+    for (uint32_t i = 0; i < subpass; ++i) {
+        const Subpass& earlier = pass.subpasses[i];
+        if (earlier.depthStencil == attachment || std::ranges::count(earlier.colors, attachment) != 0)
+            views |= earlier.viewMask;
+    }
+    return views;
+}
+
 Status checkFramebuffer(const RenderPassObject& pass, const VkFramebufferCreateInfo& info) {
     if (info.attachmentCount != pass.attachments.size()) {
         return invalidArgument("attachmentCount is " + std::to_string(info.attachmentCount) + "; the render pass has " +
                                std::to_string(pass.attachments.size()));
     }
+    uint32_t views = 0;
+    for (const Subpass& subpass : pass.subpasses) views |= subpass.viewMask;
+    const auto viewLayers = static_cast<uint32_t>(std::bit_width(views));
     for (uint32_t i = 0; i < info.attachmentCount; ++i) {
         const std::string name = "attachment " + std::to_string(i);
         const ImageView* view = object(info.pAttachments[i]);
@@ -97,7 +115,7 @@ Status checkFramebuffer(const RenderPassObject& pass, const VkFramebufferCreateI
         if (extent.width < info.width || extent.height < info.height) {
             return invalidArgument(name + " is smaller than the framebuffer");
         }
-        if (view->info().range.layerCount < info.layers) {
+        if (view->info().range.layerCount < std::max(info.layers, viewLayers)) {
             return invalidArgument(name + " has fewer layers than the framebuffer");
         }
         const VkAttachmentDescription& description = pass.attachments[i].description;
@@ -122,6 +140,7 @@ SubpassFormats RenderPassObject::formats(uint32_t subpass) const {
         result.samples = static_cast<uint32_t>(attachments[index].description.samples);
         return attachments[index].description.format;
     };
+    result.viewMask = from.viewMask;
     result.colorCount = static_cast<uint32_t>(from.colors.size());
     for (uint32_t i = 0; i < result.colorCount; ++i) result.colors[i] = use(from.colors[i]);
     result.depthStencil = use(from.depthStencil);
@@ -137,7 +156,9 @@ command::BeginRendering renderingOf(const RenderPassObject& pass, const Framebuf
         const auto& attachment = pass.attachments[index];
         result.view = framebuffer.views[index];
         result.clear = clears[index];
-        if (attachment.firstUse == subpass) {
+        // With multiview, an attachment is loaded in the first subpass that uses it with the view.
+        if (from.viewMask != 0) result.loadViews = from.viewMask & ~viewsBefore(pass, subpass, index);
+        if (attachment.firstUse == subpass || (from.viewMask != 0 && result.loadViews != 0)) {
             result.loadOp = attachment.description.loadOp;
             result.stencilLoadOp = attachment.description.stencilLoadOp;
         }
@@ -161,6 +182,7 @@ command::BeginRendering renderingOf(const RenderPassObject& pass, const Framebuf
     rendering.depthStencil = attach(from.depthStencil);
     rendering.renderArea = area;
     rendering.layers = framebuffer.layers;
+    rendering.viewMask = from.viewMask;
     rendering.samples = std::max(1u, pass.formats(subpass).samples);
     return rendering;
 }

@@ -17,6 +17,7 @@ struct Subpass {
     std::vector<uint32_t> resolves;  // empty, or one per colour
     uint32_t depthStencil = VK_ATTACHMENT_UNUSED;
     std::vector<uint32_t> inputs;
+    uint32_t viewMask = 0;  // not 0: multiview
 };
 
 /// What a pipeline must have been made for to draw in a subpass ("Render Pass Compatibility").
@@ -25,6 +26,7 @@ struct SubpassFormats {
     VkFormat colors[kMaxColorAttachments] = {};
     VkFormat depthStencil = VK_FORMAT_UNDEFINED;
     uint32_t samples = 0;  // 0: no attachments, any
+    uint32_t viewMask = 0;
     bool operator==(const SubpassFormats&) const = default;
 };
 

@@ -11,6 +11,8 @@ namespace vernier::vulkan {
 
 /// 1, 2, 4, 8, 16: VkSampleCountFlagBits are the counts themselves.
 inline constexpr VkSampleCountFlags kSampleCounts = 2 * kMaxSamples - 1;
+/// Bits of a view mask.
+inline constexpr uint32_t kMaxViews = 32;
 inline constexpr uint32_t kMaxDescriptorsPerSet = 1u << 20;
 inline constexpr uint32_t kMaxVertexAttributeOffset = 2047;
 inline constexpr uint32_t kMaxVertexBindingStride = 2048;

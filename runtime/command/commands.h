@@ -31,6 +31,7 @@ struct RenderingAttachment {
     VkAttachmentLoadOp stencilLoadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
     VkAttachmentStoreOp stencilStoreOp = VK_ATTACHMENT_STORE_OP_STORE;
     VkClearValue clear{};
+    uint32_t loadViews = ~0u;  // with multiview: the views that the load operations are for; the others are kept
 };
 
 namespace command {
@@ -41,6 +42,7 @@ struct BeginRendering {
     RenderingAttachment depthStencil{};
     VkRect2D renderArea{};
     uint32_t layers = 1;
+    uint32_t viewMask = 0;  // not 0: multiview
     uint32_t samples = 1;
     PassStatistics* statistics = nullptr;  // where to add what was counted, or nullptr
 };

@@ -10,10 +10,8 @@ namespace {
 /// Applies what a pipeline fixes for every state the dynamic mask leaves out.
 void applyFixedState(const DynamicState& fixed, uint32_t dynamicMask, DynamicState& state) {
     const auto isFixed = [&](VkDynamicState name) { return (dynamicMask & dynamicStateBit(name)) == 0; };
-    if (isFixed(VK_DYNAMIC_STATE_VIEWPORT)) {
-        state.viewports = fixed.viewports;
-        state.viewportCount = fixed.viewportCount;
-    }
+    state.viewportCount = fixed.viewportCount;
+    if (isFixed(VK_DYNAMIC_STATE_VIEWPORT)) state.viewports = fixed.viewports;
     if (isFixed(VK_DYNAMIC_STATE_SCISSOR)) state.scissors = fixed.scissors;
     if (isFixed(VK_DYNAMIC_STATE_LINE_WIDTH)) state.lineWidth = fixed.lineWidth;
     if (isFixed(VK_DYNAMIC_STATE_DEPTH_BIAS)) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <memory>
 #include <vector>
 
@@ -34,11 +35,15 @@ class Executor {
     void refreshDrawBindings();
     void dispatch(const WorkGroupContext::Grid& grid, PassStatistics* statistics);
     PassStatistics totals() const;
+    uint32_t viewCount() const {
+        return inPass_ && views_ != 0 ? static_cast<uint32_t>(std::popcount(views_)) : 1;
+    }
 
     Device& device_;
     RenderPass pass_;
     Dispatcher dispatcher_;
     bool inPass_ = false;
+    uint32_t views_ = 0;  // of the pass
     bool lost_ = false;
     PassStatistics* passSink_ = nullptr;
     PassStatistics finished_;  // of the passes and dispatches that have ended
@@ -71,6 +76,7 @@ class Executor {
     struct ActiveQuery {
         QueryPool* pool;
         uint32_t query;
+        uint32_t views;
         PassStatistics start;
     };
     std::vector<ActiveQuery> queries_;

@@ -33,6 +33,7 @@ RenderTarget targetOf(const RenderingAttachment& attachment) {
     target.stencilLoadOp = attachment.stencilLoadOp;
     target.stencilStoreOp = attachment.stencilStoreOp;
     target.clear = attachment.clear;
+    target.loadViews = attachment.loadViews;
     return target;
 }
 
@@ -73,11 +74,13 @@ void Executor::run(const command::BeginRendering& command) {
     targets.depthStencil = targetOf(command.depthStencil);
     targets.renderArea = command.renderArea;
     targets.layers = command.layers;
+    targets.viewMask = command.viewMask;
     targets.samples = command.samples;
     targets.isa = device_.isa();
     passSink_ = command.statistics;
     inPass_ = true;
     pass_.begin(targets);
+    views_ = command.viewMask;
 }
 
 void Executor::run(const command::EndRendering&) {
@@ -132,7 +135,7 @@ PassStatistics Executor::totals() const {
 
 void Executor::run(const command::BeginQuery& command) {
     if (inPass_) pass_.flush();
-    queries_.push_back({command.pool, command.query, totals()});
+    queries_.push_back({command.pool, command.query, viewCount(), totals()});
     pass_.setExactCounts(true);
 }
 
@@ -141,6 +144,8 @@ void Executor::run(const command::EndQuery& command) {
     for (auto query = queries_.begin(); query != queries_.end(); ++query) {
         if (query->pool != command.pool || query->query != command.query) continue;
         command.pool->write(command.query, subtract(totals(), query->start));
+        // With multiview a query takes as many as there are views: "the first contains the result, the others zero".
+        for (uint32_t n = 1; n < query->views; ++n) command.pool->write(command.query + n, {});
         queries_.erase(query);
         pass_.setExactCounts(!queries_.empty());
         return;
@@ -149,7 +154,8 @@ void Executor::run(const command::EndQuery& command) {
 
 void Executor::run(const command::WriteTimestamp& command) {
     if (inPass_) pass_.flush();
-    command.pool->writeTimestamp(command.query, nowNanoseconds());
+    const uint64_t now = nowNanoseconds();
+    for (uint32_t n = 0; n < viewCount(); ++n) command.pool->writeTimestamp(command.query + n, now);
 }
 
 void Executor::run(const command::ResetQueries& command) {

@@ -9,11 +9,12 @@ namespace vernier {
 namespace {
 
 /// The same operations in the same order as projectFunction(), for one vertex that clipping made.
-bool projectVertex(const PreparedDraw& draw, const std::array<double, 4>& clip, WindowVertex& out) {
+bool projectVertex(const PreparedDraw& draw, const ViewportTransform& viewport, const std::array<double, 4>& clip,
+                   WindowVertex& out) {
     const double w = clip[3];
     if (!(w > 0)) return false;
     double window[3];
-    for (uint32_t c = 0; c < 3; ++c) window[c] = clip[c] / w * draw.viewport.scale[c] + draw.viewport.offset[c];
+    for (uint32_t c = 0; c < 3; ++c) window[c] = clip[c] / w * viewport.scale[c] + viewport.offset[c];
     const double subUnits = static_cast<double>(1u << draw.subPixelBits);
     for (uint32_t c = 0; c < 2; ++c) {
         if (!std::isfinite(window[c])) return false;
@@ -95,11 +96,20 @@ WindowVertex Assembler::windowVertex(uint32_t v) const {
 
 void Assembler::addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, uint32_t v) {
     // A point is drawn or not by its vertex alone.
-    if ((vertices_.flags[v] & (kOutsideVolume | kOutsideGuard | kOutsideUserAll)) != 0) return;
+    if ((vertices_.flags[v] & (kOutsideVolume | kOutsideUserAll)) != 0) return;
+    const ViewportTransform& viewport = draw.viewport(info.viewport).transform;
+    WindowVertex vertex = windowVertex(v);
+    if (info.viewport != 0) {  // windowVertex() is for the first
+        const std::array<double, 4> clip{vertices_.clip[0][v], vertices_.clip[1][v], vertices_.clip[2][v],
+                                         vertices_.clip[3][v]};
+        if (!projectVertex(draw, viewport, clip, vertex)) return;
+    } else if ((vertices_.flags[v] & kOutsideGuard) != 0) {
+        return;
+    }
     const double w = vertices_.clip[3][v];
-    const double x = vertices_.clip[0][v] / w * draw.viewport.scale[0] + draw.viewport.offset[0];
-    const double y = vertices_.clip[1][v] / w * draw.viewport.scale[1] + draw.viewport.offset[1];
-    setup_.addPoint(draw, info, windowVertex(v), x, y, vertices_.pointSize.empty() ? 1.0f : vertices_.pointSize[v]);
+    const double x = vertices_.clip[0][v] / w * viewport.scale[0] + viewport.offset[0];
+    const double y = vertices_.clip[1][v] / w * viewport.scale[1] + viewport.offset[1];
+    setup_.addPoint(draw, info, vertex, x, y, vertices_.pointSize.empty() ? 1.0f : vertices_.pointSize[v]);
 }
 
 void Assembler::clipAndAdd(const PreparedDraw& draw, const PrimitiveInfo& info, const LocalPrimitive& primitive,
@@ -116,18 +126,27 @@ void Assembler::clipAndAdd(const PreparedDraw& draw, const PrimitiveInfo& info, 
             vertex.distances[k] = double{vertices_.clipDistances[v * clipCount + k]};
         vertex.attributes = attributesOf(v);
     }
-    if (clipPolygon(draw, polygon, chunk)) ++statistics_.clippedPrimitives;
+    const ViewportTransform& viewport = draw.viewport(info.viewport).transform;
+    if (clipPolygon(draw, viewport, polygon, chunk)) ++statistics_.clippedPrimitives;
     std::array<WindowVertex, kMaxPolygonVertices> window;
     for (uint32_t n = 0; n < polygon.count; ++n) {
-        if (!projectVertex(draw, polygon.vertices[n].position, window[n])) return;
+        if (!projectVertex(draw, viewport, polygon.vertices[n].position, window[n])) return;
         window[n].attributes = polygon.vertices[n].attributes;
     }
     if (polygon.count == 2 && vertexCount == 2) setup_.addLine(draw, info, window[0], window[1]);
     if (polygon.count >= 3) setup_.addPolygon(draw, info, {window.data(), polygon.count});
 }
 
+/// The layer and the viewport that the vertex program chose, of the provoking vertex. False: there is no such one.
+bool Assembler::route(const PreparedDraw& draw, uint32_t provoking, PrimitiveInfo& info) const {
+    if (!vertices_.layers.empty()) info.layer = vertices_.layers[provoking];
+    if (!vertices_.viewports.empty()) info.viewport = vertices_.viewports[provoking];
+    return info.layer < layers_ && info.viewport < draw.viewportCount();
+}
+
 void Assembler::assemble(const PreparedDraw& draw, uint32_t drawIndex, Chunk& chunk) {
     const uint32_t vertexCount = verticesPerPrimitive(draw.state->topology);
+    const bool routed = !vertices_.layers.empty() || !vertices_.viewports.empty();
     for (const LocalPrimitive& primitive : primitives_) {
         uint32_t all = ~0u, any = 0, culled = vertices_.culled.empty() ? 0 : 0xFF;
         for (uint32_t n = 0; n < vertexCount; ++n) {
@@ -137,13 +156,15 @@ void Assembler::assemble(const PreparedDraw& draw, uint32_t drawIndex, Chunk& ch
             if (!vertices_.culled.empty()) culled &= vertices_.culled[v];
         }
         if ((any & kNotFinite) != 0 || (all & (kOutsideVolume | kOutsideUserAll)) != 0 || culled != 0) continue;
-        const PrimitiveInfo info{drawIndex, primitive.primitiveId, attributesOf(primitive.vertex[primitive.provoking])};
+        const uint32_t provoking = primitive.vertex[primitive.provoking];
+        PrimitiveInfo info{drawIndex, primitive.primitiveId, attributesOf(provoking), draw.viewIndex, 0};
+        if (routed && !route(draw, provoking, info)) continue;
         if (vertexCount == 1) {
             addPoint(draw, info, primitive.vertex[0]);
             continue;
         }
         constexpr uint32_t kMustClip = kOutsideGuard | kOutsideNear | kOutsideFar | kOutsideUserAll;
-        if ((any & kMustClip) != 0) {
+        if ((any & kMustClip) != 0 || info.viewport != 0) {
             clipAndAdd(draw, info, primitive, vertexCount, chunk);
         } else if (vertexCount == 2) {
             setup_.addLine(draw, info, windowVertex(primitive.vertex[0]), windowVertex(primitive.vertex[1]));
@@ -163,6 +184,7 @@ bool Assembler::run(std::span<const PreparedDraw> draws, uint64_t token, std::sp
     uint32_t primitives = 0;
     for (const PrimitiveRange& range : ranges) primitives += range.count;
     setup_.begin(chunk, grid, primitives);
+    layers_ = grid.layers;
     for (const PrimitiveRange& range : ranges) {
         const PreparedDraw& draw = draws[range.draw];
         number(draw, range);

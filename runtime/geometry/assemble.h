@@ -46,6 +46,7 @@ class Assembler {
     void clipAndAdd(const PreparedDraw& draw, const PrimitiveInfo& info, const LocalPrimitive& primitive,
                     uint32_t vertexCount, Chunk& chunk);
     void addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, uint32_t vertex);
+    bool route(const PreparedDraw& draw, uint32_t provoking, PrimitiveInfo& info) const;
     WindowVertex windowVertex(uint32_t vertex) const;
     uint32_t attributesOf(uint32_t vertex) const {
         return vertices_.firstAttribute + vertex * vertices_.attributeStride;
@@ -67,6 +68,7 @@ class Assembler {
     std::vector<LocalPrimitive> primitives_;
     std::vector<ReuseSlot> reuse_ = std::vector<ReuseSlot>(kReuseSlots);
     uint32_t epoch_ = 0;
+    uint32_t layers_ = 1;
     GeometryStatistics statistics_;
 };
 

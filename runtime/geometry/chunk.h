@@ -37,6 +37,8 @@ struct Primitive {
     uint32_t primitiveId;
     std::array<float, 3> point;  // of a point: centre x, y and 1 / size, in pixels
     int16_t wExponent;
+    uint16_t layer;    // of the attachments; with multiview, the view
+    uint8_t viewport;  // index
     bool front;
     bool affine;      // all w equal
     bool smallEdges;  // edge components below 2^kSmallEdgeBits: 32-bit edge functions

@@ -25,16 +25,17 @@ ClipPlane guardPlane(const ViewportTransform& viewport, uint32_t axis, double li
     return plane;
 }
 
-uint32_t collectPlanes(const PreparedDraw& draw, std::array<ClipPlane, kMaxClipPlanes>& planes) {
+uint32_t collectPlanes(const PreparedDraw& draw, const ViewportTransform& viewport,
+                       std::array<ClipPlane, kMaxClipPlanes>& planes) {
     uint32_t count = 0;
     planes[count++].coefficients = {0, 0, 0, 1};
     if (draw.state->depthClipEnable) {
-        planes[count++].coefficients = {0, 0, 1, 0};
+        planes[count++].coefficients = {0, 0, 1, draw.state->negativeOneToOne ? 1.0 : 0.0};
         planes[count++].coefficients = {0, 0, -1, 1};
     }
     for (uint32_t axis = 0; axis < 2; ++axis) {
-        planes[count++] = guardPlane(draw.viewport, axis, kGuardBandMax, 1);
-        planes[count++] = guardPlane(draw.viewport, axis, kGuardBandMin, -1);
+        planes[count++] = guardPlane(viewport, axis, kGuardBandMax, 1);
+        planes[count++] = guardPlane(viewport, axis, kGuardBandMin, -1);
     }
     for (uint32_t k = 0; k < draw.plan->clipDistanceSlots.size(); ++k) planes[count++].user = k;
     return count;
@@ -76,9 +77,9 @@ ClipVertex cutEdge(const PreparedDraw& draw, const ClipPlane& plane, const ClipV
 
 }  // namespace
 
-bool clipPolygon(const PreparedDraw& draw, ClipPolygon& polygon, Chunk& chunk) {
+bool clipPolygon(const PreparedDraw& draw, const ViewportTransform& viewport, ClipPolygon& polygon, Chunk& chunk) {
     std::array<ClipPlane, kMaxClipPlanes> planes;
-    const uint32_t planeCount = collectPlanes(draw, planes);
+    const uint32_t planeCount = collectPlanes(draw, viewport, planes);
     const bool isLine = polygon.count == 2;
     bool cut = false;
     for (uint32_t p = 0; p < planeCount && polygon.count > 0; ++p) {

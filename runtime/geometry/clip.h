@@ -31,6 +31,6 @@ struct ClipPolygon {
 ///
 /// New vertices depend on the two ends of the edge alone, not on the direction in which it is walked, so that
 /// primitives sharing an edge share its new vertices to the bit.
-bool clipPolygon(const PreparedDraw& draw, ClipPolygon& polygon, Chunk& chunk);
+bool clipPolygon(const PreparedDraw& draw, const ViewportTransform& viewport, ClipPolygon& polygon, Chunk& chunk);
 
 }  // namespace vernier

@@ -47,6 +47,38 @@ PixelRect rectOf(const VkRect2D& rect) {
             end(rect.offset.y, rect.extent.height)};
 }
 
+ViewportSetup setUpViewport(const PreparedDraw& draw, uint32_t index, const VkRect2D& renderArea) {
+    ViewportSetup setup;
+    const VkViewport& v = draw.call.dynamic->viewports[index];
+    const double halfWidth = 0.5 * double{v.width}, halfHeight = 0.5 * double{v.height};
+    const double minDepth = double{v.minDepth}, maxDepth = double{v.maxDepth};
+    setup.transform = {{halfWidth, halfHeight, maxDepth - minDepth},
+                       {double{v.x} + halfWidth, double{v.y} + halfHeight, minDepth}};
+    if (draw.state->negativeOneToOne) {
+        setup.transform.scale[2] = 0.5 * (maxDepth - minDepth);
+        setup.transform.offset[2] = 0.5 * (maxDepth + minDepth);
+    }
+    setup.area = intersect(rectOf(draw.call.dynamic->scissors[index]), rectOf(renderArea));
+    // Edges on pixel boundaries leave the same pixels to every sample.
+    setup.triangleArea = viewportPixels(v, draw.positions[0]);
+    if (!draw.samplesAtCentre && !hasWholeEdges(v)) {
+        for (uint32_t s = 0; s < draw.plan->samples; ++s) {
+            setup.sampleAreas.push_back(viewportPixels(v, draw.positions[s]));
+            setup.triangleArea = unite(setup.triangleArea, setup.sampleAreas.back());
+        }
+    }
+    setup.triangleArea = intersect(setup.area, setup.triangleArea);
+
+    // Depths outside [0, 1] have no place in a fixed-point attachment, and without
+    // VK_EXT_depth_range_unrestricted none in a float one.
+    const auto unit = [](float value) { return value >= 0 ? std::min(value, 1.0f) : 0.0f; };
+    if (draw.plan->depth.clampToViewport) {
+        setup.depthLow = unit(std::min(v.minDepth, v.maxDepth));
+        setup.depthHigh = unit(std::max(v.minDepth, v.maxDepth));
+    }
+    return setup;
+}
+
 }  // namespace
 
 PreparedDraw prepareDraw(const DrawCall& call, const VkRect2D& renderArea) {
@@ -55,32 +87,13 @@ PreparedDraw prepareDraw(const DrawCall& call, const VkRect2D& renderArea) {
     draw.plan = &call.pipeline->plan();
     draw.state = &call.pipeline->state();
     draw.subPixelBits = call.pipeline->accuracy().subPixelBits;
-
-    const VkViewport& v = call.dynamic->viewports[0];
-    const double halfWidth = 0.5 * double{v.width}, halfHeight = 0.5 * double{v.height};
-    draw.viewport = {{halfWidth, halfHeight, double{v.maxDepth} - double{v.minDepth}},
-                     {double{v.x} + halfWidth, double{v.y} + halfHeight, double{v.minDepth}}};
-    draw.area = intersect(rectOf(call.dynamic->scissors[0]), rectOf(renderArea));
     draw.positions =
         draw.state->sampleLocations ? call.dynamic->sampleLocations.data() : samplePositions(draw.plan->samples);
     draw.samplesAtCentre = draw.plan->samples == 1 && draw.positions[0].x16 == 8 && draw.positions[0].y16 == 8;
-    // Edges on pixel boundaries leave the same pixels to every sample.
-    draw.triangleArea = viewportPixels(v, draw.positions[0]);
-    if (!draw.samplesAtCentre && !hasWholeEdges(v)) {
-        for (uint32_t s = 0; s < draw.plan->samples; ++s) {
-            draw.sampleAreas.push_back(viewportPixels(v, draw.positions[s]));
-            draw.triangleArea = unite(draw.triangleArea, draw.sampleAreas.back());
-        }
-    }
-    draw.triangleArea = intersect(draw.area, draw.triangleArea);
-
-    // Depths outside [0, 1] have no place in a fixed-point attachment, and without
-    // VK_EXT_depth_range_unrestricted none in a float one.
-    const auto unit = [](float value) { return value >= 0 ? std::min(value, 1.0f) : 0.0f; };
-    if (draw.plan->depth.clampToViewport) {
-        draw.depthLow = unit(std::min(v.minDepth, v.maxDepth));
-        draw.depthHigh = unit(std::max(v.minDepth, v.maxDepth));
-    }
+    draw.firstViewport = setUpViewport(draw, 0, renderArea);
+    if (draw.plan->viewportIndexSlot != kNoSlot)
+        for (uint32_t n = 1; n < std::min(call.dynamic->viewportCount, kMaxViewports); ++n)
+            draw.otherViewports.push_back(setUpViewport(draw, n, renderArea));
     draw.runs = vertexRuns(call, draw.state->topology, draw.state->primitiveRestart);
     if (!draw.runs.empty()) draw.primitivesPerInstance = draw.runs.back().firstPrimitive + draw.runs.back().primitives;
     return draw;

@@ -22,22 +22,33 @@ struct PixelRect {
     bool empty() const { return x0 >= x1 || y0 >= y1; }
 };
 
+/// One viewport with its scissor.
+struct ViewportSetup {
+    ViewportTransform transform{};
+    PixelRect triangleArea;  // scissor, render area, and the viewport: what clipping to the view volume leaves
+    PixelRect area;          // scissor and render area, for points and lines
+    float depthLow = 0, depthHigh = 1;   // what depths are clamped to
+    std::vector<PixelRect> sampleAreas;  // by sample, what of triangleArea is inside the viewport; empty: all of it
+};
+
 struct PreparedDraw {
     DrawCall call;
     const Plan* plan = nullptr;
     const GraphicsState* state = nullptr;
-    ViewportTransform viewport{};
-    PixelRect triangleArea;  // scissor, render area, and the viewport: what clipping to the view volume leaves
-    PixelRect area;          // scissor and render area, for points and lines
-    float depthLow = 0, depthHigh = 1;  // what depths are clamped to
+    ViewportSetup firstViewport;
+    std::vector<ViewportSetup> otherViewports;  // none unless the vertex program chooses viewports
+    uint32_t viewIndex = 0;                     // multiview: the view, and the layer that the draw goes to
     uint32_t subPixelBits = 8;
     const SamplePosition* positions = nullptr;  // of all samples of a pixel
     bool samplesAtCentre = true;                // one sample, in the middle
-    std::vector<PixelRect> sampleAreas;  // by sample, what of triangleArea is inside the viewport; empty: all of it
     std::vector<VertexRun> runs;
     uint32_t primitivesPerInstance = 0;
     uint32_t fragmentState = 0;  // draws with the same number may share fragment batches
 
+    uint32_t viewportCount() const { return 1 + static_cast<uint32_t>(otherViewports.size()); }
+    const ViewportSetup& viewport(uint32_t index) const {
+        return index == 0 ? firstViewport : otherViewports[index - 1];
+    }
     uint64_t primitives() const { return uint64_t{primitivesPerInstance} * call.instances; }
 };
 

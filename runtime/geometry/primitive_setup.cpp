@@ -73,7 +73,7 @@ void PrimitiveSetup::addPolygon(const PreparedDraw& draw, const PrimitiveInfo& i
     Style style;
     style.front = (area > 0) == (draw.state->frontFace == VK_FRONT_FACE_CLOCKWISE);
     if (culled(draw.state->cullMode, style.front)) return;
-    style.area = &draw.triangleArea;
+    style.area = &draw.viewport(info.viewport).triangleArea;
     if (draw.state->depthBiasEnable) {
         size_t largest = 2;
         for (size_t n = 3; n < polygon.size(); ++n)
@@ -84,12 +84,12 @@ void PrimitiveSetup::addPolygon(const PreparedDraw& draw, const PrimitiveInfo& i
     }
     switch (draw.state->polygonMode) {
         case VK_POLYGON_MODE_LINE:
-            style.area = &draw.area;
+            style.area = &draw.viewport(info.viewport).area;
             for (size_t n = 0; n < polygon.size(); ++n)
                 addSegment(draw, info, style, polygon[n], polygon[(n + 1) % polygon.size()]);
             return;
         case VK_POLYGON_MODE_POINT: {
-            style.area = &draw.area;
+            style.area = &draw.viewport(info.viewport).area;
             const double subUnits = static_cast<double>(1u << draw.subPixelBits);
             for (const WindowVertex& v : polygon) addSquare(draw, info, style, v, v.x / subUnits, v.y / subUnits, 1);
             return;
@@ -106,14 +106,14 @@ void PrimitiveSetup::addPolygon(const PreparedDraw& draw, const PrimitiveInfo& i
 void PrimitiveSetup::addLine(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& a,
                              const WindowVertex& b) {
     Style style;
-    style.area = &draw.area;
+    style.area = &draw.viewport(info.viewport).area;
     addSegment(draw, info, style, a, b);
 }
 
 void PrimitiveSetup::addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& vertex, double x,
                               double y, float size) {
     Style style;
-    style.area = &draw.area;
+    style.area = &draw.viewport(info.viewport).area;
     addSquare(draw, info, style, vertex, x, y, size);
 }
 
@@ -191,6 +191,8 @@ void PrimitiveSetup::addTriangle(const PreparedDraw& draw, const PrimitiveInfo& 
     p.bounds = {static_cast<int16_t>(x0), static_cast<int16_t>(y0), static_cast<int16_t>(x1), static_cast<int16_t>(y1)};
     p.draw = info.draw;
     p.primitiveId = info.primitiveId;
+    p.layer = static_cast<uint16_t>(info.layer);
+    p.viewport = static_cast<uint8_t>(info.viewport);
     p.front = style.front;
     p.isPoint = style.point != nullptr;
     p.point = p.isPoint ? *style.point : std::array<float, 3>{};
@@ -200,10 +202,13 @@ void PrimitiveSetup::addTriangle(const PreparedDraw& draw, const PrimitiveInfo& 
     const int64_t extent = std::max(span(p.x), span(p.y));
     p.smallEdges = extent <= int64_t{1} << kSmallEdgeBits;
     p.tiny = bits <= kTinySubPixelBits && extent <= int64_t{1} << kTinyEdgeBits;
-    bin(p, index, bits, draw.sampleAreas.empty());
+    bin(p, index, draw);
 }
 
-void PrimitiveSetup::bin(const Primitive& p, uint32_t index, uint32_t subPixelBits, bool mayCoverTiles) {
+void PrimitiveSetup::bin(const Primitive& p, uint32_t index, const PreparedDraw& draw) {
+    const uint32_t subPixelBits = draw.subPixelBits;
+    const bool mayCoverTiles = draw.viewport(p.viewport).sampleAreas.empty();
+    const uint32_t firstTile = p.layer * grid_.perLayer();
     const auto column = [&](int32_t x) { return static_cast<uint32_t>((x - grid_.x0) / kTileSize); };
     const auto row = [&](int32_t y) { return static_cast<uint32_t>((y - grid_.y0) / kTileSize); };
     const uint32_t tx0 = column(p.bounds[0]), tx1 = column(p.bounds[2]);
@@ -214,7 +219,7 @@ void PrimitiveSetup::bin(const Primitive& p, uint32_t index, uint32_t subPixelBi
     };
     const bool spansTile = p.bounds[2] - p.bounds[0] == kTileSize - 1 && p.bounds[3] - p.bounds[1] == kTileSize - 1;
     if (tx0 == tx1 && ty0 == ty1 && !spansTile) {
-        add(ty0 * grid_.columns + tx0, 0);
+        add(firstTile + ty0 * grid_.columns + tx0, 0);
         return;
     }
     // Edge functions at the corner of the first tile, and how far they change over one tile.
@@ -243,7 +248,7 @@ void PrimitiveSetup::bin(const Primitive& p, uint32_t index, uint32_t subPixelBi
             const int32_t y = grid_.y0 + static_cast<int32_t>(ty) * kTileSize;
             inside &= p.bounds[0] <= x && p.bounds[1] <= y && p.bounds[2] >= x + kTileSize - 1 &&
                       p.bounds[3] >= y + kTileSize - 1;
-            add(ty * grid_.columns + tx, inside && mayCoverTiles ? kCoversTile : 0);
+            add(firstTile + ty * grid_.columns + tx, inside && mayCoverTiles ? kCoversTile : 0);
         }
     }
 }

@@ -19,7 +19,10 @@ inline constexpr float kMaxLineWidth = 64.0f;
 struct TileGrid {
     int32_t x0 = 0, y0 = 0;
     uint32_t columns = 0, rows = 0;
-    uint32_t count() const { return columns * rows; }
+    uint32_t layers = 1;
+    uint32_t perLayer() const { return columns * rows; }
+    /// Tiles are numbered row by row, and layer by layer.
+    uint32_t count() const { return perLayer() * layers; }
 };
 
 /// The least grid of whole tiles around an area that lies at or below coordinate 0.
@@ -37,6 +40,7 @@ struct PrimitiveInfo {
     uint32_t draw = 0;
     uint32_t primitiveId = 0;
     uint32_t flat = 0;  // attributes of the provoking vertex
+    uint32_t layer = 0, viewport = 0;
 };
 
 /// Fills one chunk. One per thread; keeps its scratch memory.
@@ -70,7 +74,7 @@ class PrimitiveSetup {
                     const WindowVertex& b);
     void addSquare(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style, const WindowVertex& vertex,
                    double x, double y, float size);
-    void bin(const Primitive& primitive, uint32_t index, uint32_t subPixelBits, bool mayCoverTiles);
+    void bin(const Primitive& primitive, uint32_t index, const PreparedDraw& draw);
 
     Chunk* chunk_ = nullptr;
     TileGrid grid_;

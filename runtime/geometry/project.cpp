@@ -59,7 +59,7 @@ void vertexFlags(const ProjectionInput& in, const ProjectionOutput& out) {
         flags = hn::Or(flags, flag(hn::Gt(x, w), kOutsideRight));
         flags = hn::Or(flags, flag(hn::Lt(y, minusW), kOutsideTop));
         flags = hn::Or(flags, flag(hn::Gt(y, w), kOutsideBottom));
-        flags = hn::Or(flags, flag(hn::Lt(z, zero), nearBit));
+        flags = hn::Or(flags, flag(hn::Lt(z, in.negativeOneToOne ? minusW : zero), nearBit));
         flags = hn::Or(flags, flag(hn::Gt(z, w), farBit));
         flags = hn::Or(flags, flag(hn::Le(w, zero), kOutsideGuard));
         const auto wx = hn::LoadU(i, out.x + n), wy = hn::LoadU(i, out.y + n);

@@ -30,6 +30,7 @@ struct ProjectionInput {
     ViewportTransform viewport;
     uint32_t subPixelBits;
     bool depthClip;
+    bool negativeOneToOne;  // the near plane is at z = -w
 };
 
 /// Arrays of `count` elements, padded to a multiple of 16.

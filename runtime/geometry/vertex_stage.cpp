@@ -56,6 +56,8 @@ uint32_t builtinValue(const PreparedDraw& draw, ir::Builtin builtin, const Verte
             return call.firstInstance;
         case ir::Builtin::drawIndex:
             return call.drawIndex;
+        case ir::Builtin::viewIndex:
+            return draw.viewIndex;
         default:
             return 0;
     }
@@ -86,6 +88,11 @@ void storeOutputs(const Plan& plan, const BatchContext& context, uint32_t first,
                   ShadedVertices& vertices, Chunk& chunk) {
     for (uint32_t c = 0; c < 4; ++c)
         copyPlane(context, plan.positionSlots[c], count, c == 3 ? 1.0f : 0.0f, vertices.clip[c].data() + first);
+    if (!vertices.layers.empty())
+        std::memcpy(vertices.layers.data() + first, context.output(plan.layerSlot), count * sizeof(uint32_t));
+    if (!vertices.viewports.empty())
+        std::memcpy(vertices.viewports.data() + first, context.output(plan.viewportIndexSlot),
+                    count * sizeof(uint32_t));
     if (!vertices.pointSize.empty())
         copyPlane(context, plan.pointSizeSlot, count, 1.0f, vertices.pointSize.data() + first);
 
@@ -153,6 +160,8 @@ void ShadedVertices::resize(uint32_t count, const Plan& plan) {
     culled.assign(plan.cullDistanceSlots.empty() ? 0 : count, 0);
     clipDistances.resize(count * plan.clipDistanceSlots.size());
     pointSize.resize(plan.pointSizeSlot == kNoSlot ? 0 : count);
+    layers.resize(plan.layerSlot == kNoSlot ? 0 : count);
+    viewports.resize(plan.viewportIndexSlot == kNoSlot ? 0 : count);
 }
 
 bool shadeVertices(const PreparedDraw& draw, uint64_t token, const std::vector<VertexRef>& refs, ContextCache& cache,
@@ -185,9 +194,10 @@ bool shadeVertices(const PreparedDraw& draw, uint64_t token, const std::vector<V
     const ProjectionInput in{
         {vertices.clip[0].data(), vertices.clip[1].data(), vertices.clip[2].data(), vertices.clip[3].data()},
         count,
-        draw.viewport,
+        draw.firstViewport.transform,
         draw.subPixelBits,
-        draw.state->depthClipEnable};
+        draw.state->depthClipEnable,
+        draw.state->negativeOneToOne};
     const ProjectionOutput out{vertices.x.data(), vertices.y.data(), vertices.z.data(), vertices.inverseW.data(),
                                vertices.flags.data()};
     projectFunction(draw.call.pipeline->isa())(in, out);

@@ -43,7 +43,8 @@ struct ShadedVertices {
     std::vector<uint8_t> culled;       // bit per cull distance: negative
     std::vector<float> clipDistances;  // vertex-major
     std::vector<float> pointSize;
-    uint32_t firstAttribute = 0;  // of vertex 0 in Chunk::attributes
+    std::vector<uint32_t> layers, viewports;  // empty unless the program writes them
+    uint32_t firstAttribute = 0;              // of vertex 0 in Chunk::attributes
     uint32_t attributeStride = 0;
 
     void resize(uint32_t count, const Plan& plan);

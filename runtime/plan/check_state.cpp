@@ -87,18 +87,12 @@ Status checkAttachments(const GraphicsState& state) {
 
 Status refuseBuiltins(const ir::Program& program) {
     for (const ir::InterfaceSlot& slot : program.outputs) {
-        if (slot.builtin == ir::Builtin::layer) return unsupported("vertex shader: writing gl_Layer is not supported");
-        if (slot.builtin == ir::Builtin::viewportIndex)
-            return unsupported("vertex shader: writing gl_ViewportIndex is not supported");
         if (slot.builtin == ir::Builtin::fragStencilRef)
             return unsupported("fragment shader: writing gl_FragStencilRefARB is not supported");
         const bool distance = slot.builtin == ir::Builtin::clipDistance || slot.builtin == ir::Builtin::cullDistance;
         if (distance && slot.component >= kMaxClipDistances)
             return unsupported("vertex shader: more than " + number(kMaxClipDistances) + " clip or cull distances");
     }
-    for (const ir::InterfaceSlot& slot : program.inputs)
-        if (slot.builtin == ir::Builtin::layer || slot.builtin == ir::Builtin::viewportIndex)
-            return unsupported("fragment shader: reading gl_Layer or gl_ViewportIndex is not supported");
     return {};
 }
 

@@ -20,7 +20,8 @@ struct GraphicsState {
     bool primitiveRestart = false;
 
     bool depthClampEnable = false;
-    bool depthClipEnable = true;  // the specification's default: the opposite of depthClampEnable
+    bool negativeOneToOne = false;  // clip depths from -w to w instead of 0 to w (VK_EXT_depth_clip_control)
+    bool depthClipEnable = true;    // the specification's default: the opposite of depthClampEnable
     bool rasterizerDiscard = false;
     VkPolygonMode polygonMode = VK_POLYGON_MODE_FILL;
     VkCullModeFlags cullMode = VK_CULL_MODE_NONE;

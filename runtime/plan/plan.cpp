@@ -70,6 +70,12 @@ void planVertexOutputs(const ir::Program& vertex, Plan& plan) {
             case ir::Builtin::pointSize:
                 plan.pointSizeSlot = slot;
                 break;
+            case ir::Builtin::layer:
+                plan.layerSlot = slot;
+                break;
+            case ir::Builtin::viewportIndex:
+                plan.viewportIndexSlot = slot;
+                break;
             case ir::Builtin::clipDistance:
                 distanceSlot(plan.clipDistanceSlots, output.component, slot);
                 break;

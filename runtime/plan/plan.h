@@ -100,6 +100,7 @@ struct Plan {
     std::vector<BuiltinSlot> vertexBuiltins;
     std::array<uint32_t, 4> positionSlots{kNoSlot, kNoSlot, kNoSlot, kNoSlot};
     uint32_t pointSizeSlot = kNoSlot;
+    uint32_t layerSlot = kNoSlot, viewportIndexSlot = kNoSlot;
     std::vector<uint32_t> clipDistanceSlots, cullDistanceSlots;
     std::vector<Varying> varyings;  // smooth first, then noPerspective, then flat
     uint32_t smoothCount = 0, linearCount = 0;

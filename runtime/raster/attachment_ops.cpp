@@ -29,7 +29,7 @@ void eachRun(const PixelRect& rect, const Function& function) {
 }  // namespace
 
 void clearPixels(const RenderTarget& target, VkImageAspectFlags aspects, const VkClearValue& value,
-                 const PixelRect& rect, uint32_t firstLayer, uint32_t layers) {
+                 const PixelRect& rect, uint32_t layer) {
     const FormatInfo* info = findFormat(target.format);
     if (info == nullptr || target.data == nullptr) return;
     aspects &= info->aspects;
@@ -41,32 +41,28 @@ void clearPixels(const RenderTarget& target, VkImageAspectFlags aspects, const V
     const bool partial = aspects != info->aspects;
     std::array<std::byte, 16 * kRow> row;
     for (uint32_t n = 0; n < kRow; ++n) std::memcpy(row.data() + n * bytes, texel.data(), bytes);
-    for (uint32_t layer = firstLayer; layer < firstLayer + layers; ++layer) {
-        for (uint32_t s = 0; s < target.samples; ++s) {
-            eachRun(rect, [&](int32_t x, int32_t y, uint32_t n) {
-                std::byte* place = pixel(target, x, y, s, layer, bytes);
-                if (!partial) {
-                    std::memcpy(place, row.data(), n * bytes);
-                } else {
-                    for (uint32_t k = 0; k < n; ++k) packClear(*info, aspects, value, place + k * bytes);
-                }
-            });
-        }
+    for (uint32_t s = 0; s < target.samples; ++s) {
+        eachRun(rect, [&](int32_t x, int32_t y, uint32_t n) {
+            std::byte* place = pixel(target, x, y, s, layer, bytes);
+            if (!partial) {
+                std::memcpy(place, row.data(), n * bytes);
+            } else {
+                for (uint32_t k = 0; k < n; ++k) packClear(*info, aspects, value, place + k * bytes);
+            }
+        });
     }
 }
 
-void resolvePixels(const RenderTarget& source, const RenderTarget& destination, const PixelRect& rect, uint32_t layers,
+void resolvePixels(const RenderTarget& source, const RenderTarget& destination, const PixelRect& rect, uint32_t layer,
                    Isa isa) {
     const FormatInfo* info = findFormat(source.format);
     if (info == nullptr || source.data == nullptr || destination.data == nullptr) return;
     const uint32_t bytes = info->bytesPerTexel;
     const FormatOps ops = formatOps(source.format, isa);
-    for (uint32_t layer = 0; layer < layers; ++layer) {
-        for (int32_t y = rect.y0; y < rect.y1; ++y) {
-            resolveTexels(ops, pixel(source, rect.x0, y, 0, layer, bytes), source.samplePitch, source.samples,
-                          static_cast<size_t>(std::max(rect.x1 - rect.x0, 0)),
-                          pixel(destination, rect.x0, y, 0, layer, bytes));
-        }
+    for (int32_t y = rect.y0; y < rect.y1; ++y) {
+        resolveTexels(ops, pixel(source, rect.x0, y, 0, layer, bytes), source.samplePitch, source.samples,
+                      static_cast<size_t>(std::max(rect.x1 - rect.x0, 0)),
+                      pixel(destination, rect.x0, y, 0, layer, bytes));
     }
 }
 

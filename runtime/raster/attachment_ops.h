@@ -7,13 +7,12 @@
 
 namespace vernier {
 
-/// Sets the given aspects of all samples of the pixels in `rect`, in layers [firstLayer, firstLayer +
-/// layers).
+/// Sets the given aspects of all samples of the pixels in `rect` of a layer.
 void clearPixels(const RenderTarget& target, VkImageAspectFlags aspects, const VkClearValue& value,
-                 const PixelRect& rect, uint32_t firstLayer, uint32_t layers);
+                 const PixelRect& rect, uint32_t layer);
 
 /// Average of the samples; sample 0 for integer formats. sRGB is averaged linearly.
-void resolvePixels(const RenderTarget& source, const RenderTarget& destination, const PixelRect& rect, uint32_t layers,
+void resolvePixels(const RenderTarget& source, const RenderTarget& destination, const PixelRect& rect, uint32_t layer,
                    Isa isa);
 
 }  // namespace vernier

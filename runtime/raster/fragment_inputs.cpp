@@ -114,6 +114,13 @@ void FragmentStage::fillBuiltin(const FragmentBatch& batch, const BuiltinSlot& b
         case ir::Builtin::primitiveId:
             eachSegment([](const Primitive& p) { return p.primitiveId; });
             return;
+        case ir::Builtin::layer:
+        case ir::Builtin::viewIndex:  // with multiview, views go to the layers of the same number
+            eachSegment([](const Primitive& p) { return uint32_t{p.layer}; });
+            return;
+        case ir::Builtin::viewportIndex:
+            eachSegment([](const Primitive& p) { return uint32_t{p.viewport}; });
+            return;
         case ir::Builtin::sampleId:
             eachLane([&](uint32_t n) { return batch.sample[n]; });
             return;

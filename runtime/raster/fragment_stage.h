@@ -19,6 +19,11 @@ class FragmentStage {
     FragmentStage();
 
     void startPass(const PassTargets& targets);
+    /// Other attachments of the same kinds: those of another layer.
+    void setTargets(const PassTargets& targets) {
+        targets_ = &targets;
+        unbind();
+    }
     void startTile(int32_t tileX, int32_t tileY);
     /// The state of the fragments to come. Flushes when it differs from the current one. `token` identifies
     /// the bindings.

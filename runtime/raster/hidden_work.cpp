@@ -22,8 +22,7 @@ bool replacesEverything(const PassTargets& targets, const PreparedDraw& draw) {
     const ir::Program* fragment = draw.call.pipeline->fragmentIr();
     const uint32_t allSamples = (1u << plan.samples) - 1;
     if (!plan.runsFragments || fragment == nullptr || fragment->canDiscard || fragment->writesSampleMask ||
-        plan.alphaToCoverage || (plan.sampleMask & allSamples) != allSamples || !draw.sampleAreas.empty() ||
-        !touchesColorsOnly(draw))
+        plan.alphaToCoverage || (plan.sampleMask & allSamples) != allSamples || !touchesColorsOnly(draw))
         return false;
     for (uint32_t attachment = 0; attachment < targets.colorCount; ++attachment) {
         if (targets.colors[attachment].data == nullptr) continue;
@@ -105,7 +104,7 @@ VisibleStart lastReplacement(const PassTargets& targets, const TileInput& tile) 
                 known = &draw;
                 replaces = replacesEverything(targets, draw);
             }
-            if (!replaces) continue;
+            if (!replaces || !draw.viewport(primitive.viewport).sampleAreas.empty()) continue;
             if ((entry & kCoversTile) != 0) return {item, n, true};
             // Worth the while only for large parts of a tile with work before them.
             const int32_t width = std::min<int32_t>(primitive.bounds[2] + 1, tile.rect.x1) -
@@ -136,7 +135,7 @@ VisibleStart visibleStart(const PassTargets& targets, const TileInput& tile) {
     if (!start.replacesColors) return {};
     for (size_t item = 0; item <= start.item; ++item) {
         if (const ClearCommand* clear = work[item].clear; clear != nullptr) {
-            if (clear->aspects != VK_IMAGE_ASPECT_COLOR_BIT || clear->layers != 1 || clear->firstLayer != 0) return {};
+            if (clear->aspects != VK_IMAGE_ASPECT_COLOR_BIT) return {};
             continue;
         }
         const uint32_t end = item == start.item ? start.entry : work[item].first + work[item].count;

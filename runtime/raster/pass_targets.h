@@ -26,6 +26,7 @@ struct RenderTarget {
     VkAttachmentLoadOp stencilLoadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
     VkAttachmentStoreOp stencilStoreOp = VK_ATTACHMENT_STORE_OP_STORE;
     VkClearValue clear{};
+    uint32_t loadViews = ~0u;  // with multiview: the views that the load operations are for; the others are kept
 };
 
 struct PassTargets {
@@ -35,8 +36,9 @@ struct PassTargets {
     RenderTarget depthStencil{};
     VkRect2D renderArea{};  // inside every target
     uint32_t layers = 1;
-    uint32_t samples = 1;  // of the pass; also when it has no attachments
-    Isa isa = Isa::sse4;   // for resolves; draws have their pipeline's
+    uint32_t viewMask = 0;  // not 0: multiview, every draw goes once to each of these layers; `layers` does not count
+    uint32_t samples = 1;   // of the pass; also when it has no attachments
+    Isa isa = Isa::sse4;    // for resolves; draws have their pipeline's
 };
 
 /// What was run. Counted on all threads and summed; independent of the number of threads except where said.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <deque>
 #include <variant>
 #include <vector>
@@ -63,12 +64,18 @@ struct RenderPass::Impl {
         for (uint32_t n = 0; n < pool.threadCount(); ++n) workers.push_back(std::make_unique<Worker>());
     }
 
+    void add(PreparedDraw draw);
     void renderRecorded();
     void cutIntoSteps(uint64_t& primitive, size_t& command);
     void runGeometry();
     void collectTileWork();
     void runTiles();
-    void loadTile(const PixelRect& rect, bool colorsReplaced) const;
+    void loadTile(const PixelRect& rect, uint32_t layer, bool colorsReplaced) const;
+    bool loads(const RenderTarget& target, uint32_t layer) const {
+        return targets.viewMask == 0 || (target.loadViews >> layer & 1) != 0;
+    }
+    bool isDrawn(uint32_t layer) const { return targets.viewMask == 0 || (targets.viewMask >> layer & 1) != 0; }
+    uint32_t layerOf(uint32_t tile) const { return tile / grid.perLayer(); }
     PixelRect tileRect(uint32_t tile) const;
     PixelRect areaRect() const {
         const VkRect2D& area = targets.renderArea;
@@ -104,6 +111,7 @@ struct RenderPass::Impl {
 };
 
 PixelRect RenderPass::Impl::tileRect(uint32_t tile) const {
+    tile %= grid.perLayer();
     const PixelRect area = areaRect();
     const int32_t x = grid.x0 + static_cast<int32_t>(tile % grid.columns) * kTileSize;
     const int32_t y = grid.y0 + static_cast<int32_t>(tile / grid.columns) * kTileSize;
@@ -169,7 +177,8 @@ void RenderPass::Impl::collectTileWork() {
     };
     for (uint32_t n = 0; n < stepCount; ++n) {
         if (const ClearCommand* clear = steps[n].clear; clear != nullptr) {
-            for (uint32_t tile = 0; tile < grid.count(); ++tile) add(tile, {nullptr, clear, 0, 0});
+            for (uint32_t tile = 0; tile < grid.count(); ++tile)
+                if (isDrawn(layerOf(tile)) && clear->clears(layerOf(tile))) add(tile, {nullptr, clear, 0, 0});
             continue;
         }
         for (const TileRange& range : chunks[n].ranges)
@@ -178,19 +187,20 @@ void RenderPass::Impl::collectTileWork() {
     if (loaded) return;
     // The first wave touches every tile: load operations clear where nothing is drawn, too.
     activeTiles.clear();
-    for (uint32_t tile = 0; tile < grid.count(); ++tile) activeTiles.push_back(tile);
+    for (uint32_t tile = 0; tile < grid.count(); ++tile)
+        if (isDrawn(layerOf(tile))) activeTiles.push_back(tile);
 }
 
 /// `colorsReplaced`: nothing would be seen of the cleared colours.
-void RenderPass::Impl::loadTile(const PixelRect& rect, bool colorsReplaced) const {
+void RenderPass::Impl::loadTile(const PixelRect& rect, uint32_t layer, bool colorsReplaced) const {
     for (uint32_t c = 0; c < targets.colorCount && !colorsReplaced; ++c)
-        if (targets.colors[c].loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR)
-            clearPixels(targets.colors[c], VK_IMAGE_ASPECT_COLOR_BIT, targets.colors[c].clear, rect, 0, targets.layers);
+        if (targets.colors[c].loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR && loads(targets.colors[c], layer))
+            clearPixels(targets.colors[c], VK_IMAGE_ASPECT_COLOR_BIT, targets.colors[c].clear, rect, layer);
     const RenderTarget& depth = targets.depthStencil;
     VkImageAspectFlags aspects = 0;
     if (depth.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR) aspects |= VK_IMAGE_ASPECT_DEPTH_BIT;
     if (depth.stencilLoadOp == VK_ATTACHMENT_LOAD_OP_CLEAR) aspects |= VK_IMAGE_ASPECT_STENCIL_BIT;
-    if (aspects != 0) clearPixels(depth, aspects, depth.clear, rect, 0, targets.layers);
+    if (aspects != 0 && loads(depth, layer)) clearPixels(depth, aspects, depth.clear, rect, layer);
 }
 
 void RenderPass::Impl::runTiles() {
@@ -201,14 +211,16 @@ void RenderPass::Impl::runTiles() {
         const CycleCount cycles(self.rasterCycles);
         const uint32_t tile = activeTiles[index];
         const PixelRect rect = tileRect(tile);
-        const bool cleared = !loaded && targets.depthStencil.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR;
-        const TileInput input{rect, grid.x0 + static_cast<int32_t>(tile % grid.columns) * kTileSize,
-                              grid.y0 + static_cast<int32_t>(tile / grid.columns) * kTileSize, draws, tileWork[tile]};
+        const uint32_t inLayer = tile % grid.perLayer();
+        const bool cleared = !loaded && targets.depthStencil.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR &&
+                             loads(targets.depthStencil, layerOf(tile));
+        const TileInput input{rect, grid.x0 + static_cast<int32_t>(inLayer % grid.columns) * kTileSize,
+                              grid.y0 + static_cast<int32_t>(inLayer / grid.columns) * kTileSize, draws, tileWork[tile]};
         const VisibleStart start = mayHide ? visibleStart(targets, input) : VisibleStart{};
-        if (!loaded) loadTile(rect, start.replacesColors && targets.layers == 1);
+        if (!loaded) loadTile(rect, layerOf(tile), start.replacesColors);
         if (tileWork[tile].empty()) return;
-        self.renderer.render(rect, input.tileX, input.tileY, cleared, draws, nextToken, tileWork[tile], start.item,
-                             start.entry);
+        self.renderer.render(rect, layerOf(tile), input.tileX, input.tileY, cleared, draws, nextToken, tileWork[tile],
+                             start.item, start.entry);
     });
     loaded = true;
     for (const auto& worker : workers) worker->renderer.fragments().unbind();
@@ -237,8 +249,8 @@ void RenderPass::Impl::resolve() {
     if (!any) return;
     pool.parallelFor(grid.count(), [&](uint32_t tile, uint32_t) {
         for (uint32_t c = 0; c < targets.colorCount; ++c)
-            if (targets.resolves[c].data != nullptr)
-                resolvePixels(targets.colors[c], targets.resolves[c], tileRect(tile), targets.layers, targets.isa);
+            if (targets.resolves[c].data != nullptr && isDrawn(layerOf(tile)))
+                resolvePixels(targets.colors[c], targets.resolves[c], tileRect(tile), layerOf(tile), targets.isa);
     });
 }
 
@@ -273,6 +285,7 @@ void RenderPass::begin(const PassTargets& targets) {
     Impl& self = *impl_;
     self.targets = targets;
     self.grid = tileGridOf(targets.renderArea);
+    self.grid.layers = targets.viewMask != 0 ? static_cast<uint32_t>(std::bit_width(targets.viewMask)) : targets.layers;
     self.loaded = false;
     self.outOfBudget = false;
     self.inputVertices = 0;
@@ -291,6 +304,16 @@ void RenderPass::draw(const DrawCall& call) {
     Impl& self = *impl_;
     PreparedDraw draw = prepareDraw(call, self.targets.renderArea);
     if (draw.primitives() == 0) return;
+    if (self.targets.viewMask == 0) return self.add(std::move(draw));
+    for (uint32_t views = self.targets.viewMask; views != 0; views &= views - 1) {
+        draw.viewIndex = static_cast<uint32_t>(std::countr_zero(views));
+        self.add(PreparedDraw(draw));
+    }
+}
+
+void RenderPass::Impl::add(PreparedDraw draw) {
+    Impl& self = *this;
+    const DrawCall& call = draw.call;
     self.inputVertices += uint64_t{call.count} * call.instances;
     const auto index = static_cast<uint32_t>(self.draws.size());
     // Neighbours that differ in geometry only fill the same fragment batches.
@@ -315,7 +338,10 @@ void RenderPass::clear(VkImageAspectFlags aspect, uint32_t color, const VkClearV
     };
     const PixelRect pixels{rect.rect.offset.x, rect.rect.offset.y, end(rect.rect.offset.x, rect.rect.extent.width),
                            end(rect.rect.offset.y, rect.rect.extent.height)};
-    self.clears.push_back({aspect, color, value, pixels, rect.baseArrayLayer, rect.layerCount});
+    // With multiview every view is cleared (VUID-vkCmdClearAttachments-baseArrayLayer-00018).
+    const bool allViews = self.targets.viewMask != 0;
+    self.clears.push_back({aspect, color, value, pixels, allViews ? 0 : rect.baseArrayLayer,
+                           allViews ? self.grid.layers : rect.layerCount});
     self.commands.emplace_back(&self.clears.back());
 }
 

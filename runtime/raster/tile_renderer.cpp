@@ -84,16 +84,32 @@ void applyClear(const PassTargets& targets, const ClearCommand& clear, const Pix
     if (rect.empty()) return;
     if ((clear.aspects & VK_IMAGE_ASPECT_COLOR_BIT) != 0) {
         if (clear.color < targets.colorCount)
-            clearPixels(targets.colors[clear.color], VK_IMAGE_ASPECT_COLOR_BIT, clear.value, rect, clear.firstLayer,
-                        clear.layers);
+            clearPixels(targets.colors[clear.color], VK_IMAGE_ASPECT_COLOR_BIT, clear.value, rect, 0);
     } else {
-        clearPixels(targets.depthStencil, clear.aspects, clear.value, rect, clear.firstLayer, clear.layers);
+        clearPixels(targets.depthStencil, clear.aspects, clear.value, rect, 0);
     }
 }
 
 void TileRenderer::startPass(const PassTargets& targets) {
-    targets_ = &targets;
+    pass_ = targets_ = &targets;
+    layer_ = 0;
     fragments_.startPass(targets);
+}
+
+/// Makes `layer` the one that is drawn to.
+void TileRenderer::selectLayer(uint32_t layer) {
+    layer_ = layer;
+    targets_ = pass_;
+    if (layer != 0) {
+        layerTargets_ = *pass_;
+        const auto shift = [&](RenderTarget& target) {
+            if (target.data != nullptr) target.data += layer * target.layerPitch;
+        };
+        for (uint32_t c = 0; c < layerTargets_.colorCount; ++c) shift(layerTargets_.colors[c]);
+        shift(layerTargets_.depthStencil);
+        targets_ = &layerTargets_;
+    }
+    fragments_.setTargets(*targets_);
 }
 
 uint32_t TileRenderer::testEarly(const PreparedDraw& draw, const TrianglePlanes& planes, uint32_t count) {
@@ -133,12 +149,13 @@ void TileRenderer::draw(const Primitive& primitive, const Chunk& chunk, const Pr
     const uint32_t allSamples = (1u << plan.samples) - 1;
     if ((plan.sampleMask & allSamples) != allSamples)
         count = maskSamples(plan.sampleMask, plan.samples, blocks_.data(), count);
-    if (!draw.sampleAreas.empty()) count = cutSamples(draw.sampleAreas, tileX_, tileY_, blocks_.data(), count);
+    const ViewportSetup& viewport = draw.viewport(primitive.viewport);
+    if (!viewport.sampleAreas.empty()) count = cutSamples(viewport.sampleAreas, tileX_, tileY_, blocks_.data(), count);
     if (count == 0) return;
 
     TrianglePlanes& planes = fragments_.startPrimitive();
-    makePlanes(primitive, chunk.attributes.data(), draw.subPixelBits, plan.preciseInterpolation, draw.depthLow,
-               draw.depthHigh, planes);
+    makePlanes(primitive, chunk.attributes.data(), draw.subPixelBits, plan.preciseInterpolation, viewport.depthLow,
+               viewport.depthHigh, planes);
     if (fragments_.testsDepth() && plan.depth.early) count = testEarly(draw, planes, count);
     if (plan.depth.write && !plan.depth.early) coarse_.forget();
     if (!plan.runsFragments) {
@@ -148,9 +165,10 @@ void TileRenderer::draw(const Primitive& primitive, const Chunk& chunk, const Pr
     for (uint32_t b = 0; b < count; ++b) fragments_.add(blocks_[b]);
 }
 
-void TileRenderer::render(const PixelRect& rect, int32_t tileX, int32_t tileY, bool cleared,
+void TileRenderer::render(const PixelRect& rect, uint32_t layer, int32_t tileX, int32_t tileY, bool cleared,
                           std::span<const PreparedDraw> draws, uint64_t token, std::span<const TileWork> work,
                           size_t firstItem, uint32_t firstEntry) {
+    if (layer != layer_) selectLayer(layer);
     if (cleared) {
         coarse_.setCleared(depthStorage(targets_->depthStencil.format),
                            targets_->depthStencil.clear.depthStencil.depth);

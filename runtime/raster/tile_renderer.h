@@ -19,6 +19,7 @@ struct ClearCommand {
     VkClearValue value{};
     PixelRect rect;
     uint32_t firstLayer = 0, layers = 1;
+    bool clears(uint32_t layer) const { return layer - firstLayer < layers; }
 };
 
 /// What a tile has to do, in order: a run of a chunk's entries, or a clear.
@@ -32,24 +33,30 @@ class TileRenderer {
   public:
     FragmentStage& fragments() { return fragments_; }
     void startPass(const PassTargets& targets);
-    /// `rect`: the pixels of the tile inside the render area. `cleared`: all depth in it was just cleared by the load
-    /// operation. `token`: see Assembler::run.
-    /// Work before entry `firstEntry` of work[firstItem] is left out.
-    void render(const PixelRect& rect, int32_t tileX, int32_t tileY, bool cleared, std::span<const PreparedDraw> draws,
-                uint64_t token, std::span<const TileWork> work, size_t firstItem, uint32_t firstEntry);
+    /// `rect`: the pixels of the tile inside the render area; `layer`: where it lies. `cleared`: all depth in it was
+    /// just cleared by the load operation. `token`: see Assembler::run. Work before entry `firstEntry` of
+    /// work[firstItem] is left out.
+    void render(const PixelRect& rect, uint32_t layer, int32_t tileX, int32_t tileY, bool cleared,
+                std::span<const PreparedDraw> draws, uint64_t token, std::span<const TileWork> work, size_t firstItem,
+                uint32_t firstEntry);
 
   private:
     void draw(const Primitive& primitive, const Chunk& chunk, const PreparedDraw& draw, bool coversTile);
     uint32_t testEarly(const PreparedDraw& draw, const TrianglePlanes& planes, uint32_t count);
 
-    const PassTargets* targets_ = nullptr;
+    void selectLayer(uint32_t layer);
+
+    const PassTargets* pass_ = nullptr;
+    const PassTargets* targets_ = nullptr;  // pass_, or layerTargets_
+    PassTargets layerTargets_;              // the attachments from layer_ on, where that is not 0
+    uint32_t layer_ = 0;
     int32_t tileX_ = 0, tileY_ = 0;
     FragmentStage fragments_;
     CoarseDepth coarse_;
     std::array<BlockCoverage, kBlocksPerTile> blocks_;
 };
 
-/// Applies a clear to the part of it inside `area`.
+/// Applies a clear to the part of it inside `area`, in the first layer of the targets.
 void applyClear(const PassTargets& targets, const ClearCommand& clear, const PixelRect& area);
 
 }  // namespace vernier

@@ -27,7 +27,10 @@ void Lowering::lowerFetch(const Instruction& inst) {
         std::vector<ir::ValueId> pixel;
         for (uint8_t axis = 0; axis < 2 && axis < offset.size(); ++axis)
             pixel.push_back(binary(ir::Op::iadd, fragmentPixel(axis), offset[axis]));
-        pixel.insert(pixel.end(), offset.begin() + static_cast<std::ptrdiff_t>(pixel.size()), offset.end());
+        // From the layer that is drawn to; with multiview that is the view.
+        pixel.push_back(inputSlot(ir::Builtin::layer, 0, ir::Type::i32));
+        op.arrayed = true;
+        op.coords = 3;
         appendCoords(image, pixel, op, operands);
     } else {
         appendCoords(image, leavesOf(inst[4]), op, operands);

@@ -44,7 +44,8 @@ class SampleCountTest : public DrawTest {
         PipelineDesc desc;
         desc.extent = kExtent;
         desc.samples = count;
-        if (!locations.places.empty()) desc.multisampleChain = &state;
+        if (!locations.places.empty())
+            desc.change = [&](const PipelineStates& states) { states.multisample.pNext = &state; };
         if (locations.dynamic) desc.dynamic = {VK_DYNAMIC_STATE_SAMPLE_LOCATIONS_EXT};
         desc.layout = makeLayout({}, 4);
         if (vertex_ == VK_NULL_HANDLE)
@@ -65,9 +66,7 @@ void main() {
         vkCmdPushConstants(commands, desc.layout, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, 4,
                            &clip);
         if (locations.dynamic) {
-            const auto set = reinterpret_cast<PFN_vkCmdSetSampleLocationsEXT>(
-                vkGetDeviceProcAddr(device, "vkCmdSetSampleLocationsEXT"));
-            set(commands, &info);
+            command<PFN_vkCmdSetSampleLocationsEXT>("vkCmdSetSampleLocationsEXT")(commands, &info);
         }
         vkCmdDraw(commands, 6, 1, 0, 0);
         vkCmdEndRenderPass(commands);

@@ -142,7 +142,7 @@ TestBuffer VulkanTest::makeBuffer(VkDeviceSize size, VkBufferUsageFlags usage) {
 }
 
 TestImage VulkanTest::makeImage(VkFormat format, VkExtent2D extent, VkImageUsageFlags usage,
-                                VkSampleCountFlagBits samples) {
+                                VkSampleCountFlagBits samples, uint32_t layers) {
     TestImage result;
     result.format = format;
     result.extent = extent;
@@ -151,7 +151,7 @@ TestImage VulkanTest::makeImage(VkFormat format, VkExtent2D extent, VkImageUsage
     info.format = format;
     info.extent = {extent.width, extent.height, 1};
     info.mipLevels = 1;
-    info.arrayLayers = 1;
+    info.arrayLayers = layers;
     info.samples = samples;
     info.tiling = VK_IMAGE_TILING_OPTIMAL;
     info.usage = usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
@@ -164,7 +164,7 @@ TestImage VulkanTest::makeImage(VkFormat format, VkExtent2D extent, VkImageUsage
     EXPECT_EQ(vkBindImageMemory(device, result.image, result.memory, 0), VK_SUCCESS);
     auto view = make<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
     view.image = result.image;
-    view.viewType = VK_IMAGE_VIEW_TYPE_2D;
+    view.viewType = layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
     view.format = format;
     const bool depth = format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM;
     const VkImageAspectFlagBits aspect = depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
@@ -215,12 +215,13 @@ void VulkanTest::submit(VkCommandBuffer commands) {
     vkFreeCommandBuffers(device, pool, 1, &commands);
 }
 
-std::vector<uint8_t> VulkanTest::readImage(const TestImage& image, VkImageAspectFlags aspect, uint32_t texelBytes) {
+std::vector<uint8_t> VulkanTest::readImage(const TestImage& image, VkImageAspectFlags aspect, uint32_t texelBytes,
+                                           uint32_t layer) {
     const VkDeviceSize size = VkDeviceSize{texelBytes} * image.extent.width * image.extent.height;
     const TestBuffer buffer = makeBuffer(size, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
     const VkCommandBuffer commands = begin();
     VkBufferImageCopy region{};
-    region.imageSubresource = {aspect, 0, 0, 1};
+    region.imageSubresource = {aspect, 0, layer, 1};
     region.imageExtent = {image.extent.width, image.extent.height, 1};
     vkCmdCopyImageToBuffer(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer.buffer, 1, &region);
     submit(commands);

@@ -50,13 +50,19 @@ class VulkanTest : public testing::Test {
 
     TestBuffer makeBuffer(VkDeviceSize size, VkBufferUsageFlags usage);
     TestImage makeImage(VkFormat format, VkExtent2D extent, VkImageUsageFlags usage,
-                        VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT);
+                        VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT, uint32_t layers = 1);
     VkShaderModule makeShader(VkShaderStageFlagBits stage, const std::string& glsl);
     VkCommandBuffer begin();
     /// Ends, submits and waits.
     void submit(VkCommandBuffer commands);
-    /// The texels of level 0, tightly packed.
-    std::vector<uint8_t> readImage(const TestImage& image, VkImageAspectFlags aspect, uint32_t texelBytes);
+    /// The texels of level 0 of a layer, tightly packed.
+    std::vector<uint8_t> readImage(const TestImage& image, VkImageAspectFlags aspect, uint32_t texelBytes,
+                                   uint32_t layer = 0);
+    /// A device command of an extension.
+    template <class Function>
+    Function command(const char* name) const {
+        return reinterpret_cast<Function>(vkGetDeviceProcAddr(device, name));
+    }
 
     /// Remembers how to destroy something; done in reverse order at the end.
     void defer(std::function<void()> destroy) { deferred_.push_back(std::move(destroy)); }

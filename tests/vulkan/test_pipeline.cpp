@@ -9,7 +9,7 @@ uint32_t pixelAt(const std::vector<uint8_t>& texels, const TestImage& image, uin
 }
 
 DrawTest::Pass DrawTest::makePass(const TestImage& color, const TestImage* depth, const TestImage* resolve,
-                                  VkSampleCountFlagBits samples) {
+                                  VkSampleCountFlagBits samples, uint32_t layers, uint32_t viewMask) {
     if (resolve == nullptr) samples = VK_SAMPLE_COUNT_1_BIT;
     std::vector<VkAttachmentDescription> attachments;
     std::vector<VkImageView> views;
@@ -45,6 +45,10 @@ DrawTest::Pass DrawTest::makePass(const TestImage& color, const TestImage* depth
     info.pAttachments = attachments.data();
     info.subpassCount = 1;
     info.pSubpasses = &subpass;
+    auto multiview = make<VkRenderPassMultiviewCreateInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_MULTIVIEW_CREATE_INFO);
+    multiview.subpassCount = 1;
+    multiview.pViewMasks = &viewMask;
+    if (viewMask != 0) info.pNext = &multiview;
     EXPECT_EQ(vkCreateRenderPass(device, &info, nullptr, &result.pass), VK_SUCCESS);
     auto framebuffer = make<VkFramebufferCreateInfo>(VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO);
     framebuffer.renderPass = result.pass;
@@ -52,7 +56,7 @@ DrawTest::Pass DrawTest::makePass(const TestImage& color, const TestImage* depth
     framebuffer.pAttachments = views.data();
     framebuffer.width = color.extent.width;
     framebuffer.height = color.extent.height;
-    framebuffer.layers = 1;
+    framebuffer.layers = layers;
     EXPECT_EQ(vkCreateFramebuffer(device, &framebuffer, nullptr, &result.framebuffer), VK_SUCCESS);
     defer([this, result] {
         vkDestroyFramebuffer(device, result.framebuffer, nullptr);
@@ -109,20 +113,20 @@ VkPipeline DrawTest::makePipeline(VkRenderPass pass, const PipelineDesc& desc, V
     auto multisample =
         make<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
     multisample.rasterizationSamples = desc.samples;
-    multisample.pNext = desc.multisampleChain;
     auto depth =
         make<VkPipelineDepthStencilStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
     depth.depthTestEnable = depth.depthWriteEnable = desc.depthTest ? VK_TRUE : VK_FALSE;
     depth.depthCompareOp = VK_COMPARE_OP_LESS;
     VkPipelineColorBlendAttachmentState blend{};
     blend.colorWriteMask = 0xF;
-    const std::vector<VkPipelineColorBlendAttachmentState> blends(desc.colorCount, blend);
+    std::vector<VkPipelineColorBlendAttachmentState> blends(desc.colorCount, blend);
     auto colors = make<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
     colors.attachmentCount = desc.colorCount;
     colors.pAttachments = blends.data();
     auto dynamic = make<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
     dynamic.dynamicStateCount = static_cast<uint32_t>(desc.dynamic.size());
     dynamic.pDynamicStates = desc.dynamic.data();
+    if (desc.change) desc.change({assembly, viewports, raster, multisample, depth, colors, blends});
 
     auto info = make<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
     info.stageCount = static_cast<uint32_t>(stages.size());

@@ -17,16 +17,25 @@ class DrawTest : public VulkanTest {
         std::vector<VkClearValue> clears;
     };
     /// One subpass: clears the colour, and the depth to 1 if there is one, and stores both. `samples` counts when there
-    /// is something to resolve to.
+    /// is something to resolve to. `layers` are the framebuffer's; a view mask that is not 0 makes it multiview.
     Pass makePass(const TestImage& color, const TestImage* depth = nullptr, const TestImage* resolve = nullptr,
-                  VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_4_BIT);
+                  VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_4_BIT, uint32_t layers = 1, uint32_t viewMask = 0);
 
+    /// What a test may change before the pipeline is made of it.
+    struct PipelineStates {
+        VkPipelineInputAssemblyStateCreateInfo& assembly;
+        VkPipelineViewportStateCreateInfo& viewport;
+        VkPipelineRasterizationStateCreateInfo& raster;
+        VkPipelineMultisampleStateCreateInfo& multisample;
+        VkPipelineDepthStencilStateCreateInfo& depth;
+        VkPipelineColorBlendStateCreateInfo& colors;
+        std::vector<VkPipelineColorBlendAttachmentState>& blends;
+    };
     struct PipelineDesc {
         VkShaderModule vertex = VK_NULL_HANDLE, fragment = VK_NULL_HANDLE;
         VkPipelineLayout layout = VK_NULL_HANDLE;  // VK_NULL_HANDLE: an empty one
         uint32_t subpass = 0;
         VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
-        const void* multisampleChain = nullptr;  // of VkPipelineMultisampleStateCreateInfo
         bool depthTest = false;
         uint32_t colorCount = 1;
         const VkSpecializationInfo* specialization = nullptr;  // of the fragment stage
@@ -34,6 +43,7 @@ class DrawTest : public VulkanTest {
         std::vector<VkVertexInputAttributeDescription> attributes;
         std::vector<VkDynamicState> dynamic;
         VkExtent2D extent{};
+        std::function<void(const PipelineStates&)> change;
     };
     VkPipeline makePipeline(VkRenderPass pass, const PipelineDesc& desc, VkResult expected = VK_SUCCESS);
 
