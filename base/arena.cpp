@@ -17,7 +17,8 @@ void Arena::AlignedDelete::operator()(std::byte* block) const {
 void* Arena::allocate(size_t bytes, size_t alignment) {
     for (; current_ < blocks_.size(); ++current_, offset_ = 0) {
         const size_t begin = (offset_ + alignment - 1) & ~(alignment - 1);
-        if (begin + bytes <= blocks_[current_].size) {
+        const size_t size = blocks_[current_].size;
+        if (begin <= size && bytes <= size - begin) {
             used_ += begin + bytes - offset_;
             offset_ = begin + bytes;
             return blocks_[current_].memory.get() + begin;

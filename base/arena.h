@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <new>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -28,10 +29,11 @@ class Arena {
         return new (allocate(sizeof(T), alignof(T))) T(value);
     }
 
-    /// Uninitialised storage for `count` objects.
+    /// Uninitialised storage for `count` objects. Throws std::bad_alloc.
     template <class T>
     std::span<T> array(size_t count) {
         static_assert(std::is_trivially_destructible_v<T>);
+        if (count > SIZE_MAX / sizeof(T)) throw std::bad_alloc();
         return {static_cast<T*>(allocate(sizeof(T) * count, alignof(T))), count};
     }
 

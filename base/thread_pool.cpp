@@ -2,6 +2,8 @@
 
 #include <immintrin.h>
 
+#include <utility>
+
 namespace vernier {
 namespace {
 
@@ -28,10 +30,21 @@ FloatControlScope::~FloatControlScope() {
 }
 
 ThreadPool::ThreadPool(uint32_t threads) {
-    for (uint32_t worker = 1; worker < threads; ++worker) workers_.emplace_back([this, worker] { workerMain(worker); });
+    try {
+        workers_.reserve(threads - 1);
+        for (uint32_t worker = 1; worker < threads; ++worker)
+            workers_.emplace_back([this, worker] { workerMain(worker); });
+    } catch (...) {
+        stopWorkers();
+        throw;
+    }
 }
 
 ThreadPool::~ThreadPool() {
+    stopWorkers();
+}
+
+void ThreadPool::stopWorkers() {
     {
         const std::lock_guard lock(mutex_);
         stop_ = true;
@@ -65,6 +78,7 @@ void ThreadPool::parallelFor(uint32_t count, const std::function<void(uint32_t, 
     awaitBriefly(allDone);
     std::unique_lock lock(mutex_);
     done_.wait(lock, allDone);
+    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
 void ThreadPool::expectLoop() {
@@ -76,8 +90,14 @@ void ThreadPool::expectLoop() {
     wake_.notify_all();
 }
 
-void ThreadPool::runSteps(const Step& step, uint32_t count, uint32_t worker) {
-    for (uint32_t index; (index = next_.fetch_add(1, std::memory_order_relaxed)) < count;) step(index, worker);
+void ThreadPool::runSteps(const Step& step, uint32_t count, uint32_t worker) noexcept {
+    try {
+        for (uint32_t index; (index = next_.fetch_add(1, std::memory_order_relaxed)) < count;) step(index, worker);
+    } catch (...) {
+        next_.store(count, std::memory_order_relaxed);
+        const std::lock_guard lock(mutex_);
+        if (!failure_) failure_ = std::current_exception();
+    }
 }
 
 void ThreadPool::workerMain(uint32_t worker) {

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <mutex>
 #include <thread>
@@ -17,7 +18,8 @@ namespace vernier {
 /// in them.
 class ThreadPool {
   public:
-    /// `threads` counts the caller too: 1 makes every loop run on the caller alone. At least 1.
+    /// `threads` counts the caller too: 1 makes every loop run on the caller alone. At least 1. Throws std::bad_alloc
+    /// or std::system_error when a thread cannot be started.
     explicit ThreadPool(uint32_t threads);
     ~ThreadPool();
     ThreadPool(const ThreadPool&) = delete;
@@ -28,7 +30,8 @@ class ThreadPool {
     /// Calls step(index, worker) once for every index in [0, count) and returns when all are done. `worker` is below
     /// threadCount() and names the thread, for per-thread scratch memory. The floating-point control word of every
     /// thread is set to the default (round to nearest, denormals kept, no traps) for the duration. `step` must not
-    /// throw and must not call parallelFor.
+    /// call parallelFor. When a step throws, the steps that nobody has begun are left out and the first exception is
+    /// thrown from here, after all threads are done.
     void parallelFor(uint32_t count, const std::function<void(uint32_t index, uint32_t worker)>& step);
 
     /// A loop will follow soon: wakes the workers, so that they wait for it awake (for some microseconds).
@@ -37,7 +40,8 @@ class ThreadPool {
   private:
     using Step = std::function<void(uint32_t index, uint32_t worker)>;
     void workerMain(uint32_t worker);
-    void runSteps(const Step& step, uint32_t count, uint32_t worker);
+    void runSteps(const Step& step, uint32_t count, uint32_t worker) noexcept;
+    void stopWorkers();
 
     std::mutex callers_;  // one loop at a time
     std::mutex mutex_;
@@ -50,6 +54,7 @@ class ThreadPool {
     std::atomic<uint32_t> expected_{0};    // calls of expectLoop
     std::atomic<uint32_t> busy_{0};        // workers in the loop
     std::atomic<bool> stop_{false};
+    std::exception_ptr failure_;  // the first of the loop that runs
     std::vector<std::thread> workers_;
 };
 

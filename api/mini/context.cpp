@@ -7,16 +7,19 @@ using namespace vernier;
 using namespace vernier::mini;
 
 void VnContext_T::submit() {
+    // All that may fail comes before the submission: after it, nothing may be recorded twice or waited for in vain.
+    auto next = std::make_shared<Recording>();
     Submission submission;
     submission.commands = {&recording->commands};
-    const uint64_t number = ++submitted;
+    const uint64_t number = submitted + 1;
     // The recording, and with it everything it uses, dies on the queue's thread when it has run.
     submission.done = [this, number, kept = recording]() mutable {
         kept.reset();
         done.signal(number);
     };
     device->runtime->queue().submit(std::move(submission));
-    newRecording();
+    submitted = number;
+    startRecording(std::move(next));
 }
 
 VnResult vnCreateContext(VnDevice device, const VnContextDesc* desc, VnContext* context) {
@@ -55,11 +58,26 @@ VnResult vnFinish(VnContext context) {
 
 namespace {
 
+/// VK_ATTACHMENT_STORE_OP_NONE is no small number.
+VnResult checkOperations(VnDevice device, const VnAttachment& attachment, const std::string& name) {
+    const struct {
+        const char* name;
+        int64_t value, last;
+    } fields[] = {{" loadOp", attachment.loadOp, VK_ATTACHMENT_LOAD_OP_DONT_CARE},
+                  {" storeOp", attachment.storeOp, VK_ATTACHMENT_STORE_OP_DONT_CARE},
+                  {" stencilLoadOp", attachment.stencilLoadOp, VK_ATTACHMENT_LOAD_OP_DONT_CARE},
+                  {" stencilStoreOp", attachment.stencilStoreOp, VK_ATTACHMENT_STORE_OP_DONT_CARE}};
+    for (const auto& field : fields)
+        if (VnResult r = checkEnum(device, "vnBeginPass", name + field.name, field.value, field.last)) return r;
+    return VN_SUCCESS;
+}
+
 /// One attachment of a pass as the recording needs it.
 VnResult attachmentOf(VnContext context, const VnAttachment& from, const char* name, RenderingAttachment& to,
                       const ViewObject** viewObject) {
     const auto view = context->device->views.find(from.view.id);
     if (!view) return badHandle(context->device, "vnBeginPass", (std::string(name) + " view").c_str());
+    if (VnResult result = checkOperations(context->device, from, name)) return result;
     if (view->view.info().range.levelCount != 1)
         return invalid(context->device, "vnBeginPass", std::string(name) + " view has more than one mip level");
     if (view->view.info().type == VK_IMAGE_VIEW_TYPE_3D)
@@ -103,6 +121,11 @@ class PassBuilder {
                            std::string(name) + " has " + std::to_string(samples) + " samples, the others have " +
                                std::to_string(key_.samples));
         key_.samples = samples;
+        if (VnResult result = checkUnique(*view, name)) return result;
+        const float clearDepth = attachment.clear.depthStencil.depth;
+        if (depth && attachment.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR && !(clearDepth >= 0 && clearDepth <= 1))
+            return invalid(context_->device, "vnBeginPass",
+                           std::string(name) + " clear depth is " + std::to_string(clearDepth) + ", not in 0 .. 1");
         const VkExtent2D extent = view->view.extent();
         extent_ = {std::min(extent_.width, extent.width), std::min(extent_.height, extent.height)};
         return VN_SUCCESS;
@@ -112,7 +135,22 @@ class PassBuilder {
     VkExtent2D extent_{UINT32_MAX, UINT32_MAX};
 
   private:
+    /// What two attachments write to the same texels would have no order.
+    VnResult checkUnique(const ViewObject& view, const char* name) {
+        const auto covers = [](const ViewObject& a, const ViewObject& b) {
+            const VkImageSubresourceRange &x = a.view.info().range, &y = b.view.info().range;
+            return a.image == b.image && x.baseMipLevel == y.baseMipLevel && x.baseArrayLayer == y.baseArrayLayer;
+        };
+        for (const auto& [other, otherName] : seen_)
+            if (covers(*other, view))
+                return invalid(context_->device, "vnBeginPass",
+                               std::string(name) + " is the same image as " + otherName);
+        seen_.emplace_back(&view, name);
+        return VN_SUCCESS;
+    }
+
     VnContext context_;
+    std::vector<std::pair<const ViewObject*, std::string>> seen_;
 };
 
 VnResult checkRenderArea(VnContext context, const VkRect2D& area, const VkExtent2D& extent) {
@@ -222,7 +260,13 @@ VnResult vnClearDepthStencil(VnContext context, VkImageAspectFlags aspects, floa
     return guardedContext(context, __func__, [&] {
         if (!(depth >= 0 && depth <= 1))
             return invalid(context->device, "vnClearDepthStencil", "depth is " + std::to_string(depth));
-        VkClearAttachment clear{aspects & (VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT), 0, {}};
+        const FormatInfo* format = findFormat(context->key.depthStencilFormat);
+        const VkImageAspectFlags there = format ? format->aspects : 0;
+        if (context->inPass && (aspects == 0 || (aspects & ~there) != 0))
+            return invalid(
+                context->device, "vnClearDepthStencil",
+                "aspects is " + std::to_string(aspects) + ", but the pass has no depth or stencil like that");
+        VkClearAttachment clear{aspects, 0, {}};
         clear.clearValue.depthStencil = {depth, stencil};
         return clearAttachment(context, "vnClearDepthStencil", clear, rect);
     });

@@ -46,16 +46,18 @@ struct SnapshotSet {
 }  // namespace vernier::mini
 
 struct VnContext_T {
-    explicit VnContext_T(VnDevice owner) : device(owner) { newRecording(); }
+    explicit VnContext_T(VnDevice owner) : device(owner) {
+        startRecording(std::make_shared<vernier::mini::Recording>());
+    }
 
     /// A new recording knows nothing of what was bound before.
-    void newRecording() {
-        recording = std::make_shared<vernier::mini::Recording>();
+    void startRecording(std::shared_ptr<vernier::mini::Recording> empty) {
+        recording = std::move(empty);
         pipelineChanged = dynamicChanged = resourcesChanged = indexBufferChanged = pushConstantsChanged = true;
         computeProgramChanged = computeResourcesChanged = computePushConstantsChanged = true;
         vertexBuffersChanged = ~0u;
     }
-    /// Hands the recording to the queue.
+    /// Hands the recording to the queue. Throws std::bad_alloc, and then nothing was handed over.
     void submit();
     void waitIdle() const { done.wait(submitted); }
 

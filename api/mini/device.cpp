@@ -62,7 +62,9 @@ VnDevice_T::VnDevice_T(std::unique_ptr<Device> runtimeDevice, const VnDeviceDesc
       profile(deviceProfile),
       message(desc.message),
       messageUser(desc.messageUser),
-      salt(saltOf(this)) {}
+      salt(saltOf(this)) {
+    error.reserve(kOutOfMemoryLength);
+}
 
 VnDevice_T::~VnDevice_T() {
     // Contexts take themselves out of the list as they go.
@@ -75,8 +77,9 @@ VnResult vnCreateDevice(const VnDeviceDesc* desc, VnDevice* device) {
     const VnDeviceDesc defaults{};
     try {
         return createDevice(desc ? *desc : defaults, device);
-    } catch (const std::bad_alloc&) {
-        return report(desc ? *desc : defaults, VN_ERROR_OUT_OF_MEMORY, "out of memory");
+    } catch (...) {
+        if (desc && desc->message) desc->message(desc->messageUser, VN_SEVERITY_ERROR, "vnCreateDevice: out of memory");
+        return VN_ERROR_OUT_OF_MEMORY;
     }
 }
 

@@ -108,6 +108,14 @@ void recordBuffers(VnContext context) {
     context->pushConstantsChanged = false;
 }
 
+/// Whether none of the objects that a plan is made of is destroyed.
+bool allAlive(const VnDevice_T& device, const PipelineKey& key) {
+    const auto alive = [](const auto& table, uint64_t id) { return id == 0 || table.find(id) != nullptr; };
+    return alive(device.programs, key.program) && alive(device.vertexLayouts, key.vertexLayout) &&
+           alive(device.rasterStates, key.raster) && alive(device.depthStencilStates, key.depthStencil) &&
+           alive(device.blendStates, key.blend);
+}
+
 VnResult checkIndexed(VnContext context, const char* function) {
     return context->indexBuffer.buffer ? VN_SUCCESS : wrongState(context, function, "no index buffer is bound");
 }
@@ -165,17 +173,17 @@ VnResult preparePipeline(VnContext context, const char* function) {
     if (!context->program) return wrongState(context, function, "no program is bound");
     VnDevice device = context->device;
     const std::lock_guard lock(device->pipelineMutex);
-    std::shared_ptr<const GraphicsPipeline>& slot = device->pipelines[context->key];
-    if (!slot) {
-        auto made = GraphicsPipeline::create({graphicsStateOf(*context), context->program->program});
-        if (!made) {
-            device->pipelines.erase(context->key);
-            return fail(device, function, made.error());
-        }
-        slot = std::move(made).value();
-        ++context->plans;
+    const auto found = device->pipelines.find(context->key);
+    if (found != device->pipelines.end()) {
+        context->pipeline = found->second;
+        return VN_SUCCESS;
     }
-    context->pipeline = slot;
+    auto made = GraphicsPipeline::create({graphicsStateOf(*context), context->program->program});
+    if (!made) return fail(device, function, made.error());
+    context->pipeline = std::move(made).value();
+    ++context->plans;
+    // With an object that is destroyed and still bound nobody else can ask for this plan, nor would it be forgotten.
+    if (allAlive(*device, context->key)) device->pipelines.emplace(context->key, context->pipeline);
     return VN_SUCCESS;
 }
 

@@ -1,7 +1,6 @@
 // Turning what goes wrong into a result code, a text and a message.
 #pragma once
 
-#include <new>
 #include <string>
 
 #include "api/mini/objects.h"
@@ -14,14 +13,18 @@ VnResult fail(VnDevice device, VnResult result, const std::string& text);
 /// The same for an Error of the runtime; `what` names the object, e.g. "vnCreateImage".
 VnResult fail(VnDevice device, const char* what, const Error& error);
 
-/// Runs `body` (returning VnResult) so that no exception leaves the C boundary. `device` NULL gives INVALID_HANDLE.
+/// VN_ERROR_OUT_OF_MEMORY, told without taking memory.
+VnResult failOutOfMemory(VnDevice device, const char* function) noexcept;
+
+/// Runs `body` (returning VnResult) so that no exception leaves the C boundary: there is none but for memory that ran
+/// out (std::bad_alloc, std::length_error). `device` NULL gives INVALID_HANDLE.
 template <class Body>
-VnResult guarded(VnDevice device, const char* function, Body body) {
+VnResult guarded(VnDevice device, const char* function, Body body) noexcept {
     if (!device) return VN_ERROR_INVALID_HANDLE;
     try {
         return body();
-    } catch (const std::bad_alloc&) {
-        return fail(device, VN_ERROR_OUT_OF_MEMORY, std::string(function) + ": out of memory");
+    } catch (...) {
+        return failOutOfMemory(device, function);
     }
 }
 
@@ -45,6 +48,13 @@ inline VnResult badHandle(VnDevice device, const char* function, const char* kin
 
 inline VnResult invalid(VnDevice device, const char* function, const std::string& text) {
     return fail(device, VN_ERROR_INVALID_ARGUMENT, std::string(function) + ": " + text);
+}
+
+/// Of an enum whose values are 0 .. `last`.
+inline VnResult checkEnum(VnDevice device, const char* function, const std::string& field, int64_t value,
+                          int64_t last) {
+    if (value >= 0 && value <= last) return VN_SUCCESS;
+    return invalid(device, function, field + " is " + std::to_string(value) + ", which stands for nothing");
 }
 
 /// The common body of every destroy function.

@@ -41,8 +41,11 @@ class HandleTable {
         const std::lock_guard lock(mutex_);
         auto* slot = const_cast<Slot*>(slotOf(id));
         if (!slot) return nullptr;
-        free_.push_back(static_cast<uint32_t>(id) - 1u);
-        ++slot->generation;
+        // A slot whose generations are used up is given up, so that no handle is ever valid again.
+        if (slot->generation != UINT16_MAX) {
+            free_.push_back(static_cast<uint32_t>(id) - 1u);
+            ++slot->generation;
+        }
         return std::move(slot->object);
     }
 

@@ -68,8 +68,10 @@ struct BlendStateObject {
     VnBlendStateDesc desc{};
 };
 
-/// Everything a plan depends on. State objects are named by handle: they are immutable and handles are never reused
-/// while the key can be found (see Device::forget).
+/// The most that the text about memory that ran out takes; a device's error has room for it from the start.
+inline constexpr size_t kOutOfMemoryLength = 64;
+
+/// Everything a plan depends on. State objects are named by handle: they are immutable, and no handle is used twice.
 struct PipelineKey {
     uint64_t program = 0, vertexLayout = 0, raster = 0, depthStencil = 0, blend = 0;
     VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;

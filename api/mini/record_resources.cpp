@@ -49,6 +49,44 @@ VnResult checkBound(VnContext context, const char* function, const ir::Program& 
     return VN_SUCCESS;
 }
 
+/// What an image instruction takes, or a view is, in words.
+std::string kindOf(ir::ImageDim dim, bool arrayed, bool multisampled) {
+    constexpr const char* kNames[] = {"1D", "2D", "3D", "cube", "texel buffer", "input attachment"};
+    return std::string(kNames[static_cast<size_t>(dim)]) + (arrayed ? " array" : "") +
+           (multisampled ? " multisampled" : "");
+}
+
+std::string kindOf(const ImageView& view) {
+    const VkImageViewType type = view.info().type;
+    const bool arrayed = type == VK_IMAGE_VIEW_TYPE_1D_ARRAY || type == VK_IMAGE_VIEW_TYPE_2D_ARRAY ||
+                         type == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY;
+    const auto dim = type == VK_IMAGE_VIEW_TYPE_1D || type == VK_IMAGE_VIEW_TYPE_1D_ARRAY       ? ir::ImageDim::d1
+                     : type == VK_IMAGE_VIEW_TYPE_3D                                            ? ir::ImageDim::d3
+                     : type == VK_IMAGE_VIEW_TYPE_CUBE || type == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY ? ir::ImageDim::cube
+                                                                                                : ir::ImageDim::d2;
+    return kindOf(dim, arrayed, view.image().info().samples > 1);
+}
+
+/// The views that image instructions reach must be of the dimension that the instructions were made for.
+VnResult checkViews(VnContext context, const char* function, const ir::Program& program) {
+    for (const ir::ImageOp& op : program.imageOps) {
+        const ir::Resource& resource = program.resources[op.imageResource];
+        const auto found = context->resources.find({resource.set, resource.binding});
+        if (found == context->resources.end()) continue;
+        const std::string wanted = kindOf(op.dim, op.arrayed, op.multisampled);
+        for (size_t element = 0; element < found->second.size(); ++element) {
+            const auto& view = found->second[element].view;
+            if (!view || element >= std::max(resource.arraySize, 1u)) continue;
+            if (const std::string given = kindOf(view->view); given != wanted)
+                return wrongState(context, function,
+                                  "the program reads set " + std::to_string(resource.set) + ", binding " +
+                                      std::to_string(resource.binding) + ", element " + std::to_string(element) +
+                                      " as a " + wanted + " image, but a " + given + " view is bound there");
+        }
+    }
+    return VN_SUCCESS;
+}
+
 DescriptorSetLayout layoutOf(const VnContext_T& context, uint32_t set) {
     std::vector<DescriptorBinding> bindings;
     for (const auto& [place, elements] : context.resources) {
@@ -97,6 +135,7 @@ VnResult vernier::mini::recordResources(VnContext context, const char* function,
     for (const ir::Program* program : programs) {
         if (!program) continue;
         if (VnResult result = checkBound(context, function, *program)) return result;
+        if (VnResult result = checkViews(context, function, *program)) return result;
         for (const ir::Resource& resource : program->resources)
             if (needsBinding(resource)) usedSets |= 1u << resource.set;
     }

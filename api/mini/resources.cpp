@@ -1,6 +1,7 @@
 // Buffers, images, views, samplers.
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 #include "api/mini/errors.h"
@@ -55,6 +56,35 @@ VnResult createView(VnDevice device, const char* function, std::shared_ptr<Image
     if (!made) return fail(device, function, made.error());
     view->id =
         device->views.insert(std::make_shared<ViewObject>(ViewObject{std::move(image), std::move(made).value()}));
+    return VN_SUCCESS;
+}
+
+float maxLodOf(const VnSamplerDesc& desc) {
+    return desc.maxLod == 0 ? VK_LOD_CLAMP_NONE : desc.maxLod;
+}
+
+VnResult checkSampler(VnDevice device, const VnSamplerDesc& desc) {
+    constexpr const char* kFunction = "vnCreateSampler";
+    const struct {
+        const char* name;
+        int64_t value, last;
+    } enums[] = {{"magFilter", desc.magFilter, VK_FILTER_LINEAR},
+                 {"minFilter", desc.minFilter, VK_FILTER_LINEAR},
+                 {"mipmapMode", desc.mipmapMode, VK_SAMPLER_MIPMAP_MODE_LINEAR},
+                 {"addressU", desc.addressU, VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE},
+                 {"addressV", desc.addressV, VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE},
+                 {"addressW", desc.addressW, VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE},
+                 {"compareOp", desc.compareOp, VK_COMPARE_OP_ALWAYS},
+                 {"borderColor", desc.borderColor, VK_BORDER_COLOR_INT_OPAQUE_WHITE}};
+    for (const auto& field : enums)
+        if (VnResult r = checkEnum(device, kFunction, field.name, field.value, field.last)) return r;
+    if (!(desc.lodBias >= -kMaxSamplerLodBias && desc.lodBias <= kMaxSamplerLodBias))
+        return invalid(device, kFunction, "lodBias is " + std::to_string(desc.lodBias) + ", but must be -15 to 15");
+    if (std::isnan(desc.minLod)) return invalid(device, kFunction, "minLod is nan");
+    if (std::isnan(desc.maxLod)) return invalid(device, kFunction, "maxLod is nan");
+    if (desc.minLod > maxLodOf(desc))
+        return invalid(device, kFunction,
+                       "minLod " + std::to_string(desc.minLod) + " is above maxLod " + std::to_string(maxLodOf(desc)));
     return VN_SUCCESS;
 }
 
@@ -176,8 +206,7 @@ VnResult vnCreateSampler(VnDevice device, const VnSamplerDesc* desc, VnSampler* 
     return guarded(device, __func__, [&] {
         if (VnResult result = checkDesc(device, "vnCreateSampler", desc, sampler)) return result;
         sampler->id = 0;
-        if (!(desc->lodBias >= -kMaxSamplerLodBias && desc->lodBias <= kMaxSamplerLodBias))
-            return invalid(device, "vnCreateSampler", "lodBias is " + std::to_string(desc->lodBias));
+        if (VnResult result = checkSampler(device, *desc)) return result;
         VkSamplerCreateInfo info{};
         info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
         info.magFilter = desc->magFilter;
@@ -188,7 +217,7 @@ VnResult vnCreateSampler(VnDevice device, const VnSamplerDesc* desc, VnSampler* 
         info.addressModeW = desc->addressW;
         info.mipLodBias = desc->lodBias;
         info.minLod = desc->minLod;
-        info.maxLod = desc->maxLod == 0 ? VK_LOD_CLAMP_NONE : desc->maxLod;
+        info.maxLod = maxLodOf(*desc);
         info.compareEnable = desc->compareEnable != 0;
         info.compareOp = desc->compareOp;
         info.borderColor = desc->borderColor;

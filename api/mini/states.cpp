@@ -21,11 +21,6 @@ VnResult createState(VnDevice device, const char* function, HandleTable<Object>&
     });
 }
 
-VnResult checkEnum(VnDevice device, const char* function, const char* field, int64_t value, int64_t last) {
-    if (value >= 0 && value <= last) return VN_SUCCESS;
-    return invalid(device, function, std::string(field) + " is " + std::to_string(value));
-}
-
 VnResult checkFinite(VnDevice device, const char* function, const char* field, float value) {
     if (std::isfinite(value)) return VN_SUCCESS;
     return invalid(device, function, std::string(field) + " is not a finite number");

@@ -90,6 +90,22 @@ VnResult transferBuffer(VnContext context, const char* function, VnBuffer handle
                        " is not inside the buffer's " + std::to_string(buffer->buffer.size()) + " bytes");
 }
 
+bool meet(uint64_t a, uint64_t b, uint64_t aSize, uint64_t bSize) {
+    return a < b + bSize && b < a + aSize;
+}
+
+/// A copy within one image is in no order: what it reads it must not write.
+VnResult checkDisjoint(VnContext context, const char* function, const std::shared_ptr<ImageObject>& from,
+                       const Region& a, const std::shared_ptr<ImageObject>& to, const Region& b) {
+    const bool same = from == to && a.subresource.mipLevel == b.subresource.mipLevel &&
+                      a.subresource.baseArrayLayer == b.subresource.baseArrayLayer;
+    const auto at = [](int32_t offset) { return static_cast<uint64_t>(offset); };
+    if (same && meet(at(a.offset.x), at(b.offset.x), a.extent.width, b.extent.width) &&
+        meet(at(a.offset.y), at(b.offset.y), a.extent.height, b.extent.height))
+        return invalid(context->device, function, "the regions overlap in one image");
+    return VN_SUCCESS;
+}
+
 template <class Item>
 std::span<const Item> one(VnContext context, const Item& item) {
     return context->recording->commands.copy(std::span(&item, 1));
@@ -181,6 +197,8 @@ VnResult vnCopyBuffer(VnContext context, VnBuffer source, uint64_t sourceOffset,
         if (VnResult result = transferBuffer(context, "vnCopyBuffer", source, sourceOffset, size, from)) return result;
         if (VnResult result = transferBuffer(context, "vnCopyBuffer", destination, destinationOffset, size, to))
             return result;
+        if (from == to && meet(sourceOffset, destinationOffset, size, size))
+            return invalid(context->device, "vnCopyBuffer", "the ranges overlap in one buffer");
         context->recording->commands.record(
             command::CopyBuffer{&context->recording->keep(from).buffer, &context->recording->keep(to).buffer,
                                 one(context, VkBufferCopy{sourceOffset, destinationOffset, size})});
@@ -201,6 +219,11 @@ VnResult vnCopyImage(VnContext context, VnImage source, const VnRegion* sourceRe
         if (fromFormat.columns(a.extent.width) != toFormat.columns(b.extent.width) ||
             fromFormat.rows(a.extent.height) != toFormat.rows(b.extent.height) || a.extent.depth != b.extent.depth)
             return invalid(context->device, "vnCopyImage", "the regions have different sizes");
+        if (a.subresource.aspectMask != b.subresource.aspectMask)
+            return invalid(context->device, "vnCopyImage",
+                           "aspect " + std::to_string(a.subresource.aspectMask) + " cannot be copied to aspect " +
+                               std::to_string(b.subresource.aspectMask));
+        if (VnResult result = checkDisjoint(context, "vnCopyImage", from, a, to, b)) return result;
         if (from->image.format().bytesPerTexel != to->image.format().bytesPerTexel ||
             from->image.info().samples != to->image.info().samples)
             return invalid(context->device, "vnCopyImage",
@@ -223,6 +246,7 @@ VnResult vnBlitImage(VnContext context, VnImage source, const VnRegion* sourceRe
             return result;
         if (filter != VK_FILTER_NEAREST && filter != VK_FILTER_LINEAR)
             return invalid(context->device, "vnBlitImage", "filter is " + std::to_string(filter));
+        if (VnResult result = checkDisjoint(context, "vnBlitImage", from, a, to, b)) return result;
         const FormatInfo& fromFormat = from->image.format();
         const FormatInfo& toFormat = to->image.format();
         const bool color = a.subresource.aspectMask == VK_IMAGE_ASPECT_COLOR_BIT;

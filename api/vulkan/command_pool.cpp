@@ -33,7 +33,8 @@ CommandPool::~CommandPool() {
 }
 
 VkResult CommandPool::allocate(VkCommandBufferLevel level, VkCommandBuffer* out) {
-    buffers_.reserve(buffers_.size() + 1);
+    // Room first, and twice of it each time: nothing may fail once the object is made.
+    if (buffers_.size() == buffers_.capacity()) buffers_.reserve(2 * buffers_.size() + 1);
     auto* buffer = newObject<CommandBuffer>(callbacks(), VK_SYSTEM_ALLOCATION_SCOPE_OBJECT, device_, *this, level);
     if (buffer == nullptr) return VK_ERROR_OUT_OF_HOST_MEMORY;
     buffers_.push_back(buffer);

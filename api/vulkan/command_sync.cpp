@@ -78,6 +78,11 @@ VKAPI_ATTR void VKAPI_CALL CmdCopyQueryPoolResults(VkCommandBuffer commandBuffer
                                                    uint32_t firstQuery, uint32_t queryCount, VkBuffer dstBuffer,
                                                    VkDeviceSize dstOffset, VkDeviceSize stride,
                                                    VkQueryResultFlags flags) {
+    if (object(dstBuffer)->data() == nullptr) {
+        return recording(commandBuffer, [](CommandBuffer& buffer) {
+            buffer.fail("vkCmdCopyQueryPoolResults", "the buffer has no memory bound");
+        });
+    }
     recordQueries(commandBuffer, "vkCmdCopyQueryPoolResults", firstQuery, queryCount,
                   command::CopyQueryResults{object(queryPool), firstQuery, queryCount, object(dstBuffer), dstOffset,
                                             stride, flags});

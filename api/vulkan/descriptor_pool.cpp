@@ -29,7 +29,8 @@ VkResult DescriptorPool::allocate(const std::shared_ptr<const DescriptorSetLayou
         if (available < binding.count) return VK_ERROR_OUT_OF_POOL_MEMORY;
         available -= binding.count;
     }
-    sets_.reserve(sets_.size() + 1);
+    // Room first, and twice of it each time: nothing may fail once the object is made.
+    if (sets_.size() == sets_.capacity()) sets_.reserve(2 * sets_.size() + 1);
     auto* set = newObject<DescriptorSetObject>(callbacks(), VK_SYSTEM_ALLOCATION_SCOPE_OBJECT, layout);
     if (set == nullptr) return VK_ERROR_OUT_OF_HOST_MEMORY;
     sets_.push_back(set);

@@ -111,12 +111,14 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateDebugUtilsMessengerEXT(VkInstance instance,
                                                             const VkDebugUtilsMessengerCreateInfoEXT* pCreateInfo,
                                                             const VkAllocationCallbacks* pAllocator,
                                                             VkDebugUtilsMessengerEXT* pMessenger) {
-    const VkResult result = createHandle(pAllocator, pMessenger, *pCreateInfo);
+    VkResult result = createHandle(pAllocator, pMessenger, *pCreateInfo);
     if (result != VK_SUCCESS) return result;
-    return guarded([&] {
+    result = guarded([&] {
         object(instance)->messages.add(object(*pMessenger));
         return VK_SUCCESS;
     });
+    if (result != VK_SUCCESS) destroyHandle(pAllocator, *pMessenger);
+    return result;
 }
 
 VKAPI_ATTR void VKAPI_CALL DestroyDebugUtilsMessengerEXT(VkInstance instance, VkDebugUtilsMessengerEXT messenger,

@@ -28,6 +28,34 @@ Status checkReferences(const char* what, uint32_t subpass, const std::vector<uin
     return {};
 }
 
+/// Attachments that are drawn to together have one sample count; a resolve is to one sample of the same format.
+Status checkSamples(const RenderPassObject& pass, uint32_t number) {
+    const Subpass& subpass = pass.subpasses[number];
+    const auto describe = [&](uint32_t index) -> const VkAttachmentDescription* {
+        return index == VK_ATTACHMENT_UNUSED ? nullptr : &pass.attachments[index].description;
+    };
+    const std::string name = "subpass " + std::to_string(number) + ": ";
+    VkFlags samples = 0;
+    const auto same = [&](uint32_t index) {
+        const VkAttachmentDescription* one = describe(index);
+        if (one != nullptr && samples == 0) samples = one->samples;
+        return one == nullptr || one->samples == samples;
+    };
+    if (!std::ranges::all_of(subpass.colors, same) || !same(subpass.depthStencil)) {
+        return invalidArgument(name + "the attachments have different sample counts");
+    }
+    for (size_t i = 0; i < subpass.resolves.size(); ++i) {
+        const VkAttachmentDescription* to = describe(subpass.resolves[i]);
+        const VkAttachmentDescription* from = describe(subpass.colors[i]);
+        if (to == nullptr || from == nullptr) continue;
+        if (to->samples != VK_SAMPLE_COUNT_1_BIT || to->format != from->format) {
+            return invalidArgument(name + "resolve attachment " + std::to_string(subpass.resolves[i]) +
+                                   " must have one sample and the format of its colour attachment");
+        }
+    }
+    return {};
+}
+
 void markUses(RenderPassObject& pass) {
     for (uint32_t i = 0; i < pass.subpasses.size(); ++i) {
         const auto mark = [&](uint32_t index) {
@@ -82,6 +110,7 @@ Result<RenderPassObject> makeRenderPass(const VkRenderPassCreateInfo& info) {
         if (Status s = checkReferences("resolve attachment", i, to.resolves, count); !s) return s.error();
         if (Status s = checkReferences("input attachment", i, to.inputs, count); !s) return s.error();
         if (Status s = checkReferences("depth-stencil attachment", i, {to.depthStencil}, count); !s) return s.error();
+        if (Status s = checkSamples(pass, i); !s) return s.error();
     }
     markUses(pass);
     if (Status s = checkInputs(pass); !s) return s.error();

@@ -59,7 +59,7 @@ void Queue::Impl::process(Submission& submission) {
             if (!executor) executor = std::make_unique<Executor>(device);
             for (const CommandBuffer* commands : submission.commands)
                 if (!executor->run(*commands)) lost = true;
-        } catch (const std::bad_alloc&) {
+        } catch (...) {  // memory ran out: std::bad_alloc, or std::length_error of a container
             executor.reset();
             lost = true;
         }

@@ -1,6 +1,8 @@
 #include "runtime/command/executor.h"
 
 #include <algorithm>
+#include <cstring>
+#include <optional>
 
 #include "runtime/command/query_pool.h"
 
@@ -40,12 +42,14 @@ VertexStream streamOf(const command::BufferRange& range) {
     return {range.buffer->data() + range.offset, range.buffer->size() - range.offset};
 }
 
-/// The indirect arguments as Vulkan lays them out, or nullptr if they reach outside the buffer.
+/// The indirect arguments as Vulkan lays them out, wherever they lie; nothing if they reach outside the buffer.
 template <class Arguments>
-const Arguments* argumentsAt(const command::BufferRange& range, VkDeviceSize offset) {
+std::optional<Arguments> argumentsAt(const command::BufferRange& range, VkDeviceSize offset) {
     const VertexStream stream = streamOf(range);
-    if (!stream.data || offset > stream.size || stream.size - offset < sizeof(Arguments)) return nullptr;
-    return reinterpret_cast<const Arguments*>(stream.data + offset);
+    if (!stream.data || offset > stream.size || stream.size - offset < sizeof(Arguments)) return std::nullopt;
+    Arguments arguments;
+    std::memcpy(&arguments, stream.data + offset, sizeof arguments);
+    return arguments;
 }
 
 }  // namespace
@@ -214,17 +218,17 @@ void Executor::run(const command::Draw& command) {
 void Executor::run(const command::DrawIndirect& command) {
     uint32_t count = command.drawCount;
     if (command.countBuffer.buffer) {
-        const auto* available = argumentsAt<uint32_t>(command.countBuffer, 0);
+        const auto available = argumentsAt<uint32_t>(command.countBuffer, 0);
         count = available ? std::min(count, *available) : 0;
     }
     for (uint32_t i = 0; i < count; ++i) {
         const VkDeviceSize offset = VkDeviceSize{i} * command.stride;
         if (command.indexed) {
-            const auto* a = argumentsAt<VkDrawIndexedIndirectCommand>(command.arguments, offset);
+            const auto a = argumentsAt<VkDrawIndexedIndirectCommand>(command.arguments, offset);
             if (!a) return;
             draw({true, a->indexCount, a->instanceCount, a->firstIndex, a->firstInstance, a->vertexOffset}, i);
         } else {
-            const auto* a = argumentsAt<VkDrawIndirectCommand>(command.arguments, offset);
+            const auto a = argumentsAt<VkDrawIndirectCommand>(command.arguments, offset);
             if (!a) return;
             draw({false, a->vertexCount, a->instanceCount, a->firstVertex, a->firstInstance, 0}, i);
         }
@@ -251,7 +255,7 @@ void Executor::run(const command::Dispatch& command) {
 }
 
 void Executor::run(const command::DispatchIndirect& command) {
-    const auto* a = argumentsAt<VkDispatchIndirectCommand>(command.arguments, 0);
+    const auto a = argumentsAt<VkDispatchIndirectCommand>(command.arguments, 0);
     if (!a) return;
     const std::array<uint32_t, 3> count{a->x, a->y, a->z};
     if (checkGroupCounts(count)) dispatch({count, {}}, command.statistics);

@@ -25,11 +25,12 @@ void HostAllocator::put(void* memory, size_t bytes) const {
 Result<std::unique_ptr<Memory>> Memory::create(const HostAllocator& allocator, VkDeviceSize size) {
     if (size > SIZE_MAX - kSlack)
         return Error{ErrorCode::outOfDeviceMemory, "memory of " + std::to_string(size) + " bytes does not fit"};
-    auto* data = static_cast<std::byte*>(allocator.get(size + kSlack, kAlignment));
-    if (!data)
+    std::unique_ptr<Memory> memory(new Memory(allocator, size));
+    memory->data_ = static_cast<std::byte*>(allocator.get(size + kSlack, kAlignment));
+    if (!memory->data_)
         return Error{ErrorCode::outOfDeviceMemory, "no memory for an allocation of " + std::to_string(size) + " bytes"};
-    std::memset(data, 0, size + kSlack);
-    return std::unique_ptr<Memory>(new Memory(allocator, data, size));
+    std::memset(memory->data_, 0, size + kSlack);
+    return memory;
 }
 
 Memory::~Memory() {

@@ -35,10 +35,9 @@ class Memory {
     VkDeviceSize size() const { return size_; }
 
   private:
-    Memory(const HostAllocator& allocator, std::byte* data, VkDeviceSize size)
-        : allocator_(allocator), data_(data), size_(size) {}
+    Memory(const HostAllocator& allocator, VkDeviceSize size) : allocator_(allocator), size_(size) {}
     HostAllocator allocator_;
-    std::byte* data_;
+    std::byte* data_ = nullptr;
     VkDeviceSize size_;
 };
 

@@ -65,13 +65,15 @@ void runSample(const TextureUnit& unit, SampleFn routine, const ImageCall& call,
         request.lanes = call.lanes;
         request.mask = mask;
         placeCoordinates(call, request.coord, [](const uint32_t* lanes) { return asFloat(lanes); });
+        // A view with more dimensions than the instruction knows of: the others are 0.
+        for (const float*& lanes : request.coord) lanes = lanes ? lanes : kZeroLanes.data();
         request.dref = call.dref ? asFloat(call.dref) : kZeroLanes.data();
         request.lodMode = mode;
         request.lod = call.lodOrBias ? asFloat(call.lodOrBias) : nullptr;
         request.minLod = call.minLod ? asFloat(call.minLod) : nullptr;
         for (size_t i = 0; i < 3; ++i) {
-            request.gradX[i] = call.ddx[i] ? asFloat(call.ddx[i]) : nullptr;
-            request.gradY[i] = call.ddy[i] ? asFloat(call.ddy[i]) : nullptr;
+            request.gradX[i] = call.ddx[i] ? asFloat(call.ddx[i]) : kZeroLanes.data();
+            request.gradY[i] = call.ddy[i] ? asFloat(call.ddy[i]) : kZeroLanes.data();
             request.offset[i] = offset[i];
         }
         request.component = gather ? call.op->component : 0;

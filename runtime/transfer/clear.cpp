@@ -23,6 +23,7 @@ void clearRange(const TransferContext& context, const Image& image, VkImageAspec
     const FormatInfo& format = image.format();
     aspects &= format.aspects;
     if (aspects == 0 || format.block != nullptr) return;  // nothing encodes blocks
+    if (range.baseMipLevel >= image.info().mipLevels) return;
     // Where packing over all zeros and over all ones gives different bits, the clear does not reach.
     std::array<std::byte, kMaxTexelBytes> texel{}, keep;
     keep.fill(std::byte{0xFF});

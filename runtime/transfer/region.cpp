@@ -88,10 +88,12 @@ Status checkBufferImageCopy(const Image& image, VkDeviceSize bufferSize, const V
     const uint64_t texel = bufferTexelBytes(format, sub.aspectMask);
     const uint64_t rowTexels = region.bufferRowLength ? format.columns(region.bufferRowLength) : box.width;
     const uint64_t sliceRows = region.bufferImageHeight ? format.rows(region.bufferImageHeight) : box.height;
-    const uint64_t last = ((uint64_t{box.depth} - 1) * sliceRows + box.height - 1) * rowTexels + box.width;
+    // Below 2^12 slices of 2^32 rows of 2^32 texels of 2^4 bytes: too many for 64 bits.
+    __extension__ using Wide = unsigned __int128;
+    const Wide last = ((Wide{box.depth} - 1) * sliceRows + box.height - 1) * rowTexels + box.width;
     if (region.bufferOffset > bufferSize || last * texel > bufferSize - region.bufferOffset)
-        return wrong("needs " + std::to_string(last * texel) + " bytes at offset " +
-                     std::to_string(region.bufferOffset) + " of a buffer of " + std::to_string(bufferSize));
+        return wrong("the region needs more bytes from offset " + std::to_string(region.bufferOffset) +
+                     " on than the buffer's " + std::to_string(bufferSize));
     return {};
 }
 

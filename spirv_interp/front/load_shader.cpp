@@ -1,11 +1,7 @@
 // loadShader and checkModule of program.h: validation by SPIRV-Tools, then the lowering.
-#include <memory>
-#include <type_traits>
-
-#include <spirv-tools/libspirv.h>
-
 #include "spirv_interp/front/lower_module.h"
 #include "spirv_interp/front/lowering.h"
+#include "spirv_interp/front/spirv_tools.h"
 #include "spirv_interp/ir/optimise.h"
 #include "spirv_interp/ir/verify.h"
 
@@ -19,42 +15,30 @@ spv_target_env environmentOf(uint32_t version) {
     return version > 0x00010300 ? SPV_ENV_VULKAN_1_1_SPIRV_1_4 : SPV_ENV_VULKAN_1_1;
 }
 
-struct DestroyOptions {
-    void operator()(spv_validator_options options) const { spvValidatorOptionsDestroy(options); }
-};
-
-struct DestroyContext {
-    void operator()(spv_context context) const { spvContextDestroy(context); }
-};
-
 /// The names of ids in messages take longer to make than the rest of the validation: they are for modules that are
 /// known to be wrong.
 Status validate(std::span<const uint32_t> words, bool names) {
-    const std::unique_ptr<std::remove_pointer_t<spv_context>, DestroyContext> context(
-        spvContextCreate(environmentOf(words[1])));
+    const SpirvContext context(spvContextCreate(environmentOf(words[1])));
     // What features of the device may allow and every program can have: LocalSizeId (maintenance4) and any layout of
     // blocks.
-    const std::unique_ptr<std::remove_pointer_t<spv_validator_options>, DestroyOptions> options(
-        spvValidatorOptionsCreate());
+    const SpirvValidatorOptions options(spvValidatorOptionsCreate());
     spvValidatorOptionsSetAllowLocalSizeId(options.get(), true);
     spvValidatorOptionsSetRelaxBlockLayout(options.get(), true);
     spvValidatorOptionsSetUniformBufferStandardLayout(options.get(), true);
     spvValidatorOptionsSetScalarBlockLayout(options.get(), true);
     spvValidatorOptionsSetWorkgroupScalarBlockLayout(options.get(), true);
     spvValidatorOptionsSetFriendlyNames(options.get(), names);
-    spv_diagnostic diagnostic = nullptr;
+    spv_diagnostic told = nullptr;
     spv_const_binary_t binary{words.data(), words.size()};
-    if (spvValidateWithOptions(context.get(), options.get(), &binary, &diagnostic) == SPV_SUCCESS) {
-        spvDiagnosticDestroy(diagnostic);
-        return {};
-    }
+    const spv_result_t status = spvValidateWithOptions(context.get(), options.get(), &binary, &told);
+    const SpirvDiagnostic diagnostic(told);
+    if (status == SPV_SUCCESS) return {};
     std::string message = "SPIR-V: the module is not valid";
-    if (diagnostic != nullptr) {
+    if (diagnostic) {
         message += ": ";
         message += diagnostic->error;
         message += " (at word " + std::to_string(diagnostic->position.index) + ")";
     }
-    spvDiagnosticDestroy(diagnostic);
     return invalidArgument(std::move(message));
 }
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <spirv-tools/libspirv.h>
+#include "spirv_interp/front/spirv_tools.h"
 
 namespace vernier {
 namespace {
@@ -11,16 +11,14 @@ namespace {
 std::string disassembled(const std::vector<uint32_t>& instruction) {
     std::vector<uint32_t> words{spv::MagicNumber, 0x00010600, 0, 1u << 20, 0};
     words.insert(words.end(), instruction.begin(), instruction.end());
-    const spv_context context = spvContextCreate(SPV_ENV_UNIVERSAL_1_6);
-    spv_text text = nullptr;
-    std::string result;
-    if (spvBinaryToText(context, words.data(), words.size(), SPV_BINARY_TO_TEXT_OPTION_NO_HEADER, &text, nullptr) ==
-        SPV_SUCCESS) {
-        result.assign(text->str, text->length);
-        result.erase(result.find_last_not_of(" \n") + 1);
-    }
-    spvTextDestroy(text);
-    spvContextDestroy(context);
+    const SpirvContext context(spvContextCreate(SPV_ENV_UNIVERSAL_1_6));
+    spv_text made = nullptr;
+    const spv_result_t status =
+        spvBinaryToText(context.get(), words.data(), words.size(), SPV_BINARY_TO_TEXT_OPTION_NO_HEADER, &made, nullptr);
+    const SpirvText text(made);
+    if (status != SPV_SUCCESS) return {};
+    std::string result(text->str, text->length);
+    result.erase(result.find_last_not_of(" \n") + 1);
     return result;
 }
 

@@ -1,11 +1,9 @@
 // validate, disassemble, ir, rates.
 #include <array>
 #include <cstdio>
-#include <memory>
-
-#include <spirv-tools/libspirv.h>
 
 #include "spirv_interp/front/lower_module.h"
+#include "spirv_interp/front/spirv_tools.h"
 #include "spirv_interp/ir/ops.h"
 #include "spirv_interp/ir/optimise.h"
 #include "spirv_interp/ir/print.h"
@@ -30,17 +28,16 @@ Result<int> validate(const ModuleInput& input) {
 }
 
 Result<int> disassemble(const ModuleInput& input) {
-    const std::unique_ptr<spv_context_t, void (*)(spv_context)> context(spvContextCreate(SPV_ENV_UNIVERSAL_1_6),
-                                                                        spvContextDestroy);
-    spv_text text = nullptr;
-    spv_diagnostic diagnostic = nullptr;
+    const SpirvContext context(spvContextCreate(SPV_ENV_UNIVERSAL_1_6));
+    spv_text made = nullptr;
+    spv_diagnostic told = nullptr;
     constexpr uint32_t kOptions = SPV_BINARY_TO_TEXT_OPTION_FRIENDLY_NAMES | SPV_BINARY_TO_TEXT_OPTION_INDENT;
     const spv_result_t result =
-        spvBinaryToText(context.get(), input.words.data(), input.words.size(), kOptions, &text, &diagnostic);
-    const std::unique_ptr<spv_text_t, void (*)(spv_text)> ownText(text, spvTextDestroy);
-    const std::unique_ptr<spv_diagnostic_t, void (*)(spv_diagnostic)> ownDiagnostic(diagnostic, spvDiagnosticDestroy);
+        spvBinaryToText(context.get(), input.words.data(), input.words.size(), kOptions, &made, &told);
+    const SpirvText text(made);
+    const SpirvDiagnostic diagnostic(told);
     if (result != SPV_SUCCESS) {
-        return invalidArgument(diagnostic != nullptr ? diagnostic->error : "the module cannot be disassembled");
+        return invalidArgument(diagnostic ? diagnostic->error : "the module cannot be disassembled");
     }
     std::fwrite(text->str, 1, text->length, stdout);
     return 0;
