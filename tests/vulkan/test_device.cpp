@@ -28,6 +28,12 @@ bool validated() {
 }
 
 std::vector<uint32_t> compileGlsl(VkShaderStageFlagBits stage, const std::string& source) {
+    // Kept for all tests: every shader would set the compiler up anew.
+    struct Compiler {
+        Compiler() { vnRetainGlslCompiler(); }
+        ~Compiler() { vnReleaseGlslCompiler(); }
+    };
+    static const Compiler kept;
     VnGlslDesc desc{};
     desc.stage = stage;
     desc.source = source.c_str();
