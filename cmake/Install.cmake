@@ -12,6 +12,8 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/VernierConfigVersion.cmak
 install(FILES ${PROJECT_BINARY_DIR}/VernierConfig.cmake ${PROJECT_BINARY_DIR}/VernierConfigVersion.cmake
     DESTINATION ${package_dir})
 
+# Relative, so that the prefix may be given at installation and the installed tree can be moved.
+file(RELATIVE_PATH VERNIER_PREFIX_FROM_PC ${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
 foreach(library vernier vernier_glsl)
     configure_file(${PROJECT_SOURCE_DIR}/cmake/${library}.pc.in ${PROJECT_BINARY_DIR}/${library}.pc @ONLY)
     install(FILES ${PROJECT_BINARY_DIR}/${library}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

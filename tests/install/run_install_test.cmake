@@ -1,28 +1,23 @@
-# Installs the build into a fresh prefix, then builds and runs the consumer against it through find_package and pkg-config.
-function(must)
-    execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
-    if(NOT status EQUAL 0)
-        string(JOIN " " command ${ARGN})
-        message(FATAL_ERROR "${command}\nended with ${status}:\n${output}")
-    endif()
-    set(output "${output}" PARENT_SCOPE)
-endfunction()
+# Installs the build into a fresh prefix, then builds and runs the programs of CONSUMER against it: through find_package, and
+# with make and pkg-config.
+include(${CMAKE_CURRENT_LIST_DIR}/must.cmake)
 
 file(REMOVE_RECURSE ${WORK})
 must(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 must(${CMAKE_COMMAND} -S ${CONSUMER} -B ${WORK}/consumer -DCMAKE_PREFIX_PATH=${WORK}/prefix
-     "-DCMAKE_C_FLAGS=${SANITIZER_FLAGS}")
+     "-DCMAKE_C_FLAGS=${SANITIZER_FLAGS}" "-DCMAKE_CXX_FLAGS=${SANITIZER_FLAGS}")
 must(${CMAKE_COMMAND} --build ${WORK}/consumer)
 must(${WORK}/consumer/consumer)
+must(${WORK}/consumer/consumer_cpp)
 
+# The prefix was given at installation: the files must find it by themselves.
 file(GLOB_RECURSE pc_files ${WORK}/prefix/vernier.pc)
 list(GET pc_files 0 pc_file)
 get_filename_component(pc_dir ${pc_file} DIRECTORY)
 set(ENV{PKG_CONFIG_PATH} ${pc_dir})
-must(pkg-config --define-variable=prefix=${WORK}/prefix --cflags --libs vernier vernier_glsl)
-string(STRIP "${output}" flags)
-separate_arguments(flags UNIX_COMMAND "${flags}")
-separate_arguments(sanitizer UNIX_COMMAND "${SANITIZER_FLAGS}")
-get_filename_component(lib_dir ${pc_dir} DIRECTORY)
-must(cc ${sanitizer} ${CONSUMER}/consumer.c ${flags} -Wl,-rpath,${lib_dir} -o ${WORK}/consumer_pc)
-must(${WORK}/consumer_pc)
+set(ENV{CFLAGS} "${SANITIZER_FLAGS}")
+set(ENV{CXXFLAGS} "${SANITIZER_FLAGS}")
+file(MAKE_DIRECTORY ${WORK}/make)
+must(make -C ${WORK}/make -f ${CONSUMER}/Makefile SOURCE=${CONSUMER})
+must(${WORK}/make/consumer_c)
+must(${WORK}/make/consumer_cpp)
