@@ -28,8 +28,16 @@ ShaderSource shaderSource(const VkPipelineShaderStageCreateInfo& stage, ir::Stag
     return source;
 }
 
+/// A bit per location that an attachment keeps something of; alpha to coverage needs location 0 all the same.
+uint32_t keptColors(const GraphicsState& state) {
+    uint32_t kept = state.alphaToCoverage ? 1 : 0;
+    for (uint32_t n = 0; n < state.colorCount; ++n)
+        if (state.colorFormats[n] != VK_FORMAT_UNDEFINED && state.blend[n].colorWriteMask != 0) kept |= 1u << n;
+    return kept;
+}
+
 Result<std::shared_ptr<const ShaderProgram>> loadProgram(const Device& device, const VkGraphicsPipelineCreateInfo& info,
-                                                         bool rasterizerDiscard) {
+                                                         const GraphicsState& state) {
     const VkPipelineShaderStageCreateInfo* vertexStage = nullptr;
     const VkPipelineShaderStageCreateInfo* fragmentStage = nullptr;
     for (uint32_t i = 0; i < info.stageCount; ++i) {
@@ -46,7 +54,7 @@ Result<std::shared_ptr<const ShaderProgram>> loadProgram(const Device& device, c
         }
     }
     if (vertexStage == nullptr) return invalidArgument("there is no vertex stage");
-    if (rasterizerDiscard) fragmentStage = nullptr;
+    if (state.rasterizerDiscard) fragmentStage = nullptr;
 
     Result<ir::Program> vertex = loadStage(*vertexStage, ir::Stage::vertex);
     if (!vertex) return Error{vertex.error().code, "vertex shader: " + vertex.error().message};
@@ -58,6 +66,7 @@ Result<std::shared_ptr<const ShaderProgram>> loadProgram(const Device& device, c
         if (!fragment) return Error{fragment.error().code, "fragment shader: " + fragment.error().message};
         desc.fragment = &*fragment;
     }
+    desc.keptColors = keptColors(state);
     desc.accuracy = device.physicalDevice.accuracy;
     desc.isa = device.runtime->isa();
     return ShaderProgram::create(desc);
@@ -67,7 +76,7 @@ VkResult createOne(const Device& device, const VkGraphicsPipelineCreateInfo& inf
                    const VkAllocationCallbacks* callbacks, VkPipeline* out) {
     Result<PipelineState> state = pipelineState(info);
     if (!state) return device.report("vkCreateGraphicsPipelines", state.error());
-    auto program = loadProgram(device, info, state->state.rasterizerDiscard);
+    auto program = loadProgram(device, info, state->state);
     if (!program) return device.report("vkCreateGraphicsPipelines", program.error());
     auto graphics = GraphicsPipeline::create({std::move(state->state), std::move(program).value()});
     if (!graphics) return device.report("vkCreateGraphicsPipelines", graphics.error());

@@ -126,7 +126,10 @@ Status readDepthStencil(const VkPipelineDepthStencilStateCreateInfo* info, Pipel
     state.depthTest = info->depthTestEnable != VK_FALSE;
     state.depthWrite = info->depthWriteEnable != VK_FALSE;
     state.depthCompare = info->depthCompareOp;
-    state.depthBoundsTest = info->depthBoundsTestEnable != VK_FALSE;
+    // Depths lie in 0..1: without VK_EXT_depth_range_unrestricted nothing else may get into an attachment.
+    const bool cutsDepths =
+        isDynamic(result, VK_DYNAMIC_STATE_DEPTH_BOUNDS) || info->minDepthBounds > 0 || info->maxDepthBounds < 1;
+    state.depthBoundsTest = info->depthBoundsTestEnable != VK_FALSE && cutsDepths;
     state.stencilTest = info->stencilTestEnable != VK_FALSE;
     state.stencilFront = info->front;
     state.stencilBack = info->back;

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/compute/run_kernel.h"
+#include "bench/effects/effects_table.h"
 #include "bench/scenes/bench_scenes.h"
 #include "bench/scenes/render_bench_scene.h"
 #include "bench/speed/growth.h"
@@ -110,8 +111,16 @@ int main(int argc, char** argv) {
     addRunOptions(*growthCommand, options, "--axis");
     std::filesystem::path plots = "out/bench";
     growthCommand->add_option("--plots", plots, "Folder for the plots (SVG)");
+    EffectsOptions effects;
+    CLI::App* effectsCommand =
+        app.add_subcommand("effects", "Count the instructions that effects cost: unused, in the state, needed");
+    effectsCommand->add_option("--effect", effects.names, "Only these");
+    effectsCommand->add_option("--out", effects.out, "Folder for what Valgrind writes");
+    effectsCommand->add_option("--json", effects.json, "File for the figures");
+    effectsCommand->add_flag("--counted", effects.counted, "Used by the command itself, under Valgrind");
     CLI11_PARSE(app, argc, argv);
     if (*renderCommand) return renderOne(paths, driver, scene, out);
+    if (*effectsCommand) return runEffects(paths, effects);
     if (*growthCommand) return runGrowth(paths, options, plots);
     std::vector<std::string> names;
     if (*computeCommand)

@@ -1,5 +1,6 @@
 #include "conformance/drivers/api_objects.h"
 
+#include "conformance/drivers/try.h"
 #include "conformance/scene/scene_format.h"
 
 #include <algorithm>
@@ -102,6 +103,7 @@ Status ApiObjects::createSampler(const SceneSampler& scene) {
     if (scene.maxLod == 0 && scene.magFilter != scene.minFilter) {
         return unsupported("a sampler of maxLod 0 with two filters cannot be said in the API");
     }
+    if (scene.maxAnisotropy > 1) return unsupported("anisotropy cannot be said in the API");
     VnSamplerDesc desc{};
     desc.magFilter = scene.magFilter;
     desc.minFilter = scene.minFilter;
@@ -156,6 +158,13 @@ Status ApiObjects::createShader(const SceneShader& scene) {
 }
 
 Result<ApiPipeline> ApiObjects::createPipeline(const ScenePipeline& scene) {
+    const auto cannotSay = [](bool wanted, const char* what) -> Status {
+        if (wanted) return unsupported(std::string(what) + " cannot be said in the API");
+        return {};
+    };
+    VERNIER_TRY(cannotSay(scene.depthBoundsTest, "a depth bounds test"));
+    VERNIER_TRY(cannotSay(scene.alphaToOne, "alpha to one"));
+    VERNIER_TRY(cannotSay(scene.sampleShading, "a least share of samples shaded"));
     ApiPipeline pipeline;
     VnProgramDesc program{};
     program.vertex = shaders_[scene.vertexShader];
@@ -182,6 +191,7 @@ Result<ApiPipeline> ApiObjects::createPipeline(const ScenePipeline& scene) {
     raster.polygonMode = scene.polygonMode;
     raster.cullMode = scene.cullMode;
     raster.frontFace = scene.frontFace;
+    raster.lineWidth = scene.lineWidth;
     raster.depthClamp = scene.depthClamp;
     raster.depthBias = scene.depthBias;
     raster.depthBiasConstant = scene.depthBiasConstant;
@@ -202,6 +212,8 @@ Result<ApiPipeline> ApiObjects::createPipeline(const ScenePipeline& scene) {
 
     VnBlendStateDesc blend{};
     blend.independent = 1;
+    blend.logicOpEnable = scene.logicOpEnable;
+    blend.logicOp = scene.logicOp;
     for (size_t i = 0; i < scene.blend.size(); ++i) {
         const VkPipelineColorBlendAttachmentState& from = scene.blend[i];
         if (from.blendEnable == VK_TRUE && allFactorsZero(from)) {

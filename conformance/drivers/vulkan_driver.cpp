@@ -30,6 +30,9 @@ class SceneRun {
         return record();
     }
 
+    /// Puts queries around the passes; before prepare().
+    Status addQueries(const VulkanContext& context, bool precise);
+    Result<SceneCounts> readQueries() const;
     Status runFrame() { return resources_.run(frame_); }
     Result<std::vector<RenderedImage>> readBack();
     double moduleTime() const { return builder_.moduleTime(); }
@@ -37,6 +40,8 @@ class SceneRun {
 
   private:
     Status record();
+    void beginQueries();
+    void endQueries();
     void recordPass(const ScenePass& scene, const VulkanPass& pass);
     void recordDraw(const SceneDraw& scene, const VulkanDraw& draw, const VulkanPipeline& pipeline);
     void recordMips(const SceneGenerateMips& mips);
@@ -50,6 +55,9 @@ class SceneRun {
     VulkanResources resources_;
     VulkanPassBuilder builder_;
     std::vector<VulkanPass> passes_;
+    VkDevice device_ = VK_NULL_HANDLE;  // with queries only
+    VkQueryPool occlusion_ = VK_NULL_HANDLE, statistics_ = VK_NULL_HANDLE, timestamps_ = VK_NULL_HANDLE;
+    bool precise_ = false;
     VkCommandBuffer frame_ = VK_NULL_HANDLE;
 };
 
@@ -58,6 +66,7 @@ Status SceneRun::record() {
     if (!commands) return commands.error();
     frame_ = *commands;
     resources_.startFrame();
+    beginQueries();
     size_t nextPass = 0;
     for (const SceneStep& step : scene_.steps) {
         if (const auto* pass = std::get_if<ScenePass>(&step)) recordPass(*pass, passes_[nextPass++]);
@@ -65,9 +74,76 @@ Status SceneRun::record() {
         if (const auto* copy = std::get_if<SceneCopyImage>(&step)) recordCopy(*copy);
         if (const auto* blit = std::get_if<SceneBlitImage>(&step)) recordBlit(*blit);
     }
+    endQueries();
     resources_.endFrame(frame_);
     VERNIER_TRY_VK(vkEndCommandBuffer(frame_));
     return {};
+}
+
+constexpr VkQueryPipelineStatisticFlags kStatistics =
+    VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_VERTICES_BIT |
+    VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_PRIMITIVES_BIT |
+    VK_QUERY_PIPELINE_STATISTIC_VERTEX_SHADER_INVOCATIONS_BIT | VK_QUERY_PIPELINE_STATISTIC_CLIPPING_INVOCATIONS_BIT |
+    VK_QUERY_PIPELINE_STATISTIC_CLIPPING_PRIMITIVES_BIT | VK_QUERY_PIPELINE_STATISTIC_FRAGMENT_SHADER_INVOCATIONS_BIT;
+
+Status SceneRun::addQueries(const VulkanContext& context, bool precise) {
+    if (context.features().occlusionQueryPrecise == VK_FALSE ||
+        context.features().pipelineStatisticsQuery == VK_FALSE ||
+        context.properties().limits.timestampComputeAndGraphics == VK_FALSE)
+        return unsupported("the device lacks precise occlusion queries, pipeline statistics or time stamps");
+    device_ = context.device();
+    precise_ = precise;
+    const auto create = [&](VkQueryType type, uint32_t count, VkQueryPool& pool) -> Status {
+        VkQueryPoolCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
+        info.queryType = type;
+        info.queryCount = count;
+        info.pipelineStatistics = type == VK_QUERY_TYPE_PIPELINE_STATISTICS ? kStatistics : 0;
+        VERNIER_TRY_VK(vkCreateQueryPool(device_, &info, nullptr, &pool));
+        resources_.cleanup().add([device = device_, pool] { vkDestroyQueryPool(device, pool, nullptr); });
+        return {};
+    };
+    VERNIER_TRY(create(VK_QUERY_TYPE_OCCLUSION, 1, occlusion_));
+    VERNIER_TRY(create(VK_QUERY_TYPE_PIPELINE_STATISTICS, 1, statistics_));
+    return create(VK_QUERY_TYPE_TIMESTAMP, 2, timestamps_);
+}
+
+void SceneRun::beginQueries() {
+    if (occlusion_ == VK_NULL_HANDLE) return;
+    vkCmdResetQueryPool(frame_, occlusion_, 0, 1);
+    vkCmdResetQueryPool(frame_, statistics_, 0, 1);
+    vkCmdResetQueryPool(frame_, timestamps_, 0, 2);
+    vkCmdWriteTimestamp(frame_, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, timestamps_, 0);
+    vkCmdBeginQuery(frame_, occlusion_, 0, precise_ ? VK_QUERY_CONTROL_PRECISE_BIT : 0);
+    vkCmdBeginQuery(frame_, statistics_, 0, 0);
+}
+
+void SceneRun::endQueries() {
+    if (occlusion_ == VK_NULL_HANDLE) return;
+    vkCmdEndQuery(frame_, statistics_, 0);
+    vkCmdEndQuery(frame_, occlusion_, 0);
+    vkCmdWriteTimestamp(frame_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps_, 1);
+}
+
+Result<SceneCounts> SceneRun::readQueries() const {
+    SceneCounts counts;
+    std::array<uint64_t, 6> statistics{};
+    std::array<uint64_t, 2> times{};
+    constexpr VkQueryResultFlags kFlags = VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT;
+    VERNIER_TRY_VK(vkGetQueryPoolResults(device_, occlusion_, 0, 1, sizeof counts.samplesPassed, &counts.samplesPassed,
+                                         sizeof counts.samplesPassed, kFlags));
+    VERNIER_TRY_VK(vkGetQueryPoolResults(device_, statistics_, 0, 1, sizeof statistics, statistics.data(),
+                                         sizeof statistics, kFlags));
+    VERNIER_TRY_VK(
+        vkGetQueryPoolResults(device_, timestamps_, 0, 2, sizeof times, times.data(), sizeof times[0], kFlags));
+    counts.inputVertices = statistics[0];
+    counts.inputPrimitives = statistics[1];
+    counts.vertexInvocations = statistics[2];
+    counts.clippingInvocations = statistics[3];
+    counts.clippingPrimitives = statistics[4];
+    counts.fragmentInvocations = statistics[5];
+    counts.ticks = times[1] - times[0];
+    return counts;
 }
 
 void SceneRun::recordPass(const ScenePass& scene, const VulkanPass& pass) {
@@ -232,6 +308,15 @@ std::string VulkanDriver::limits() const {
            line("standardSampleLocations", limits.standardSampleLocations);
 }
 
+Result<SceneCounts> VulkanDriver::count(const Scene& scene, bool precise) {
+    VERNIER_TRY(validateScene(scene));
+    SceneRun run(context_, scene);
+    VERNIER_TRY(run.addQueries(context_, precise));
+    VERNIER_TRY(run.prepare());
+    VERNIER_TRY(run.runFrame());
+    return run.readQueries();
+}
+
 Result<std::vector<RenderedImage>> VulkanDriver::render(const Scene& scene, Timing* timing) {
     const Stopwatch watch;
     VERNIER_TRY(validateScene(scene));
@@ -250,7 +335,7 @@ Result<std::vector<RenderedImage>> VulkanDriver::render(const Scene& scene, Timi
         timing->pipelines = run.pipelineTime();
         timing->firstFrame = firstFrameTime;
         timing->firstImage = startUp_ + watch.milliseconds();
-        const Result<FrameTimes> frames = measureFrames([&] { return run.runFrame(); });
+        const Result<FrameTimes> frames = meter_([&] { return run.runFrame(); });
         if (!frames) return frames.error();
         timing->frame = timing->warmFrame = frames.value().median;
         timing->frames = frames.value().count;

@@ -2,11 +2,22 @@
 #pragma once
 
 #include "conformance/drivers/driver.h"
+#include "conformance/drivers/stopwatch.h"
 #include "conformance/drivers/vulkan_context.h"
 
+#include <functional>
 #include <memory>
 
 namespace vernier::conformance {
+
+/// What queries around all passes of a scene count.
+struct SceneCounts {
+    uint64_t samplesPassed = 0;  // an occlusion query
+    // Pipeline statistics, in the order of their bits.
+    uint64_t inputVertices = 0, inputPrimitives = 0, vertexInvocations = 0;
+    uint64_t clippingInvocations = 0, clippingPrimitives = 0, fragmentInvocations = 0;
+    uint64_t ticks = 0;  // between time stamps before and after
+};
 
 class VulkanDriver final : public Driver {
   public:
@@ -20,11 +31,21 @@ class VulkanDriver final : public Driver {
     uint32_t subPixelBits() const override { return context_.properties().limits.subPixelPrecisionBits; }
     Result<std::vector<RenderedImage>> render(const Scene& scene, Timing* timing) override;
 
+    /// Draws the scene once inside queries; `precise` is the occlusion query's. `unsupported` without precise queries,
+    /// pipeline statistics or time stamps.
+    Result<SceneCounts> count(const Scene& scene, bool precise);
+
+    /// How frames are measured when render() is asked for timings: by measureFrames() unless said otherwise. The meter
+    /// gets a function that runs one frame, which has run once before.
+    using FrameMeter = std::function<Result<FrameTimes>(const std::function<Status()>& runFrame)>;
+    void setFrameMeter(FrameMeter meter) { meter_ = std::move(meter); }
+
   private:
     VulkanDriver() = default;
 
     VulkanContext context_;
     double startUp_ = 0;
+    FrameMeter meter_ = [](const std::function<Status()>& runFrame) { return measureFrames(runFrame); };
 };
 
 }  // namespace vernier::conformance

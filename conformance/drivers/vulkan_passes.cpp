@@ -3,6 +3,7 @@
 #include "conformance/drivers/stopwatch.h"
 
 #include <algorithm>
+#include <cstring>
 #include <map>
 #include <tuple>
 
@@ -129,6 +130,16 @@ Status VulkanPassBuilder::checkFeatures(const ScenePipeline& scene) const {
     VERNIER_TRY(need(scene.depthClamp, features.depthClamp, "depthClamp"));
     VERNIER_TRY(need(scene.depthBias && scene.depthBiasClamp != 0, features.depthBiasClamp, "depthBiasClamp"));
     VERNIER_TRY(need(scene.polygonMode != VK_POLYGON_MODE_FILL, features.fillModeNonSolid, "fillModeNonSolid"));
+    VERNIER_TRY(need(scene.lineWidth != 1, features.wideLines, "wideLines"));
+    VERNIER_TRY(need(scene.depthBoundsTest, features.depthBounds, "depthBounds"));
+    VERNIER_TRY(need(scene.logicOpEnable, features.logicOp, "logicOp"));
+    VERNIER_TRY(need(scene.alphaToOne, features.alphaToOne, "alphaToOne"));
+    VERNIER_TRY(need(scene.sampleShading, features.sampleRateShading, "sampleRateShading"));
+    const auto differs = [&](const VkPipelineColorBlendAttachmentState& each) {
+        return std::memcmp(&each, &scene.blend[0], sizeof each) != 0;
+    };
+    VERNIER_TRY(need(std::any_of(scene.blend.begin(), scene.blend.end(), differs), features.independentBlend,
+                     "independentBlend"));
     return {};
 }
 
@@ -226,22 +237,30 @@ Result<VulkanPipeline> VulkanPassBuilder::createPipeline(const SceneDraw& draw, 
     raster.depthBiasConstantFactor = scene.depthBiasConstant;
     raster.depthBiasClamp = scene.depthBiasClamp;
     raster.depthBiasSlopeFactor = scene.depthBiasSlope;
-    raster.lineWidth = 1;
+    raster.lineWidth = scene.lineWidth;
     VkPipelineMultisampleStateCreateInfo multisample{};
     multisample.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
     multisample.rasterizationSamples = scene.samples;
     multisample.pSampleMask = &scene.sampleMask;
     multisample.alphaToCoverageEnable = scene.alphaToCoverage ? VK_TRUE : VK_FALSE;
+    multisample.alphaToOneEnable = scene.alphaToOne ? VK_TRUE : VK_FALSE;
+    multisample.sampleShadingEnable = scene.sampleShading ? VK_TRUE : VK_FALSE;
+    multisample.minSampleShading = scene.minSampleShading;
     VkPipelineDepthStencilStateCreateInfo depth{};
     depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
     depth.depthTestEnable = scene.depthTest ? VK_TRUE : VK_FALSE;
     depth.depthWriteEnable = scene.depthWrite ? VK_TRUE : VK_FALSE;
     depth.depthCompareOp = scene.depthCompare;
+    depth.depthBoundsTestEnable = scene.depthBoundsTest ? VK_TRUE : VK_FALSE;
+    depth.minDepthBounds = scene.minDepthBounds;
+    depth.maxDepthBounds = scene.maxDepthBounds;
     depth.stencilTestEnable = scene.stencilTest ? VK_TRUE : VK_FALSE;
     depth.front = scene.front;
     depth.back = scene.back;
     VkPipelineColorBlendStateCreateInfo blend{};
     blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
+    blend.logicOpEnable = scene.logicOpEnable ? VK_TRUE : VK_FALSE;
+    blend.logicOp = scene.logicOp;
     blend.attachmentCount = static_cast<uint32_t>(scene.blend.size());
     blend.pAttachments = scene.blend.data();
     std::copy(scene.blendConstants.begin(), scene.blendConstants.end(), blend.blendConstants);

@@ -179,6 +179,8 @@ Result<VkImageView> VulkanResources::attachmentView(uint32_t index, uint32_t mip
 
 Status VulkanResources::createSampler(const SceneSampler& scene) {
     const VkDevice device = context_.device();
+    if (scene.maxAnisotropy > 0 && context_.features().samplerAnisotropy == VK_FALSE)
+        return unsupported("the device lacks feature samplerAnisotropy");
     VkSamplerCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
     info.magFilter = scene.magFilter;
@@ -188,7 +190,8 @@ Status VulkanResources::createSampler(const SceneSampler& scene) {
     info.addressModeV = scene.addressModeV;
     info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     info.mipLodBias = scene.mipLodBias;
-    info.maxAnisotropy = 1;
+    info.anisotropyEnable = scene.maxAnisotropy > 0 ? VK_TRUE : VK_FALSE;
+    info.maxAnisotropy = std::max(scene.maxAnisotropy, 1.0f);
     info.compareEnable = scene.compareEnable ? VK_TRUE : VK_FALSE;
     info.compareOp = scene.compareOp;
     info.minLod = scene.minLod;

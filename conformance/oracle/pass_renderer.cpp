@@ -122,7 +122,7 @@ class PassRenderer {
 
     Status draw(const SceneDraw& draw) {
         const ScenePipeline& pipeline = scene_.pipelines[draw.pipeline];
-        if (pipeline.polygonMode != VK_POLYGON_MODE_FILL) return unsupported("oracle: polygonMode other than FILL");
+        if (Status s = checkModelled(draw, pipeline); !s) return s;
         OutputState output = output_;
         output.pipeline = &pipeline;
         output.viewport = draw.viewport;
@@ -158,6 +158,18 @@ class PassRenderer {
         for (const Status& s : status) {
             if (!s) return s;
         }
+        return {};
+    }
+
+    Status checkModelled(const SceneDraw& draw, const ScenePipeline& pipeline) const {
+        if (pipeline.polygonMode != VK_POLYGON_MODE_FILL) return unsupported("oracle: polygonMode other than FILL");
+        if (pipeline.logicOpEnable) return unsupported("oracle: logic operations");
+        if (pipeline.depthBoundsTest) return unsupported("oracle: the depth bounds test");
+        if (pipeline.sampleShading && samples_ > 1) return unsupported("oracle: shading of samples");
+        if (pipeline.alphaToOne) return unsupported("oracle: alpha to one");
+        for (const SceneBinding& binding : draw.bindings)
+            if (binding.sampler != kNone && scene_.samplers[binding.sampler].maxAnisotropy > 1)
+                return unsupported("oracle: anisotropic filtering");
         return {};
     }
 

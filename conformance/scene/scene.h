@@ -49,6 +49,7 @@ struct SceneSampler {
     float mipLodBias = 0;
     float minLod = 0;
     float maxLod = VK_LOD_CLAMP_NONE;
+    float maxAnisotropy = 0;  // 0: off
     VkBorderColor borderColor = VK_BORDER_COLOR_FLOAT_TRANSPARENT_BLACK;
     bool compareEnable = false;
     VkCompareOp compareOp = VK_COMPARE_OP_ALWAYS;
@@ -72,19 +73,26 @@ struct ScenePipeline {
     VkPolygonMode polygonMode = VK_POLYGON_MODE_FILL;
     VkCullModeFlags cullMode = VK_CULL_MODE_NONE;
     VkFrontFace frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
+    float lineWidth = 1;
     bool depthClamp = false;
     bool depthBias = false;
     float depthBiasConstant = 0, depthBiasClamp = 0, depthBiasSlope = 0;
     VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
-    bool alphaToCoverage = false;
+    bool alphaToCoverage = false, alphaToOne = false;
     uint32_t sampleMask = ~0u;
+    bool sampleShading = false;
+    float minSampleShading = 0;
     bool depthTest = false, depthWrite = false;
     VkCompareOp depthCompare = VK_COMPARE_OP_LESS;
+    bool depthBoundsTest = false;
+    float minDepthBounds = 0, maxDepthBounds = 1;
     bool stencilTest = false;
     VkStencilOpState front{}, back{};
     // One per colour attachment of the pass; blendEnable and colorWriteMask included.
     std::vector<VkPipelineColorBlendAttachmentState> blend;
     std::array<float, 4> blendConstants{};
+    bool logicOpEnable = false;
+    VkLogicOp logicOp = VK_LOGIC_OP_COPY;
     uint32_t pushConstantBytes = 0;  // visible to both stages, from offset 0
 };
 

@@ -86,6 +86,28 @@ PipelineRecorder& PipelineRecorder::depth(VkCompareOp compare, bool write) {
     return *this;
 }
 
+PipelineRecorder& PipelineRecorder::polygonMode(VkPolygonMode mode) {
+    state().polygonMode = mode;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::lineWidth(float width) {
+    state().lineWidth = width;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::depthClamp() {
+    state().depthClamp = true;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::depthBounds(float min, float max) {
+    state().depthBoundsTest = true;
+    state().minDepthBounds = min;
+    state().maxDepthBounds = max;
+    return *this;
+}
+
 PipelineRecorder& PipelineRecorder::depthBias(float constant, float slope, float clamp) {
     state().depthBias = true;
     state().depthBiasConstant = constant;
@@ -111,8 +133,15 @@ PipelineRecorder& PipelineRecorder::sampleMask(uint32_t mask) {
     return *this;
 }
 
-PipelineRecorder& PipelineRecorder::depthClamp() {
-    state().depthClamp = true;
+PipelineRecorder& PipelineRecorder::sampleShading(float least) {
+    state().sampleShading = true;
+    state().minSampleShading = least;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::alphaToCoverage(bool alphaToOne) {
+    state().alphaToCoverage = true;
+    state().alphaToOne = alphaToOne;
     return *this;
 }
 
@@ -133,6 +162,12 @@ PipelineRecorder& PipelineRecorder::blend(const VkPipelineColorBlendAttachmentSt
 
 PipelineRecorder& PipelineRecorder::blendConstants(const std::array<float, 4>& constants) {
     state().blendConstants = constants;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::logicOp(VkLogicOp op) {
+    state().logicOpEnable = true;
+    state().logicOp = op;
     return *this;
 }
 

@@ -42,16 +42,22 @@ class PipelineRecorder {
     PipelineRecorder& topology(VkPrimitiveTopology topology, bool primitiveRestart = false);
     PipelineRecorder& cull(VkCullModeFlags mode, VkFrontFace frontFace);
     PipelineRecorder& depth(VkCompareOp compare, bool write = true);
+    PipelineRecorder& polygonMode(VkPolygonMode mode);
+    PipelineRecorder& lineWidth(float width);
+    PipelineRecorder& depthClamp();
+    PipelineRecorder& depthBounds(float min, float max);
     PipelineRecorder& depthBias(float constant, float slope, float clamp = 0);
     PipelineRecorder& stencil(const VkStencilOpState& front, const VkStencilOpState& back);
     PipelineRecorder& samples(VkSampleCountFlagBits samples);
     PipelineRecorder& sampleMask(uint32_t mask);
     PipelineRecorder& depthClamp();
-    PipelineRecorder& alphaToCoverage();
+    PipelineRecorder& sampleShading(float least);
+    PipelineRecorder& alphaToCoverage(bool alphaToOne = false);
     /// The number of colour attachments (1 unless said); all unblended, all components written.
     PipelineRecorder& targets(uint32_t count);
     PipelineRecorder& blend(const VkPipelineColorBlendAttachmentState& state, uint32_t target = 0);
     PipelineRecorder& blendConstants(const std::array<float, 4>& constants);
+    PipelineRecorder& logicOp(VkLogicOp op);
     PipelineRecorder& writeMask(VkColorComponentFlags mask, uint32_t target = 0);
     PipelineRecorder& pushConstants(uint32_t bytes);
 

@@ -18,7 +18,7 @@ uint64_t statisticOf(VkQueryPipelineStatisticFlags bit, const PassStatistics& s)
         case VK_QUERY_PIPELINE_STATISTIC_CLIPPING_INVOCATIONS_BIT:
             return s.clippingInvocations;
         case VK_QUERY_PIPELINE_STATISTIC_CLIPPING_PRIMITIVES_BIT:
-            return s.rasterPrimitives;
+            return s.clippingPrimitives;
         case VK_QUERY_PIPELINE_STATISTIC_FRAGMENT_SHADER_INVOCATIONS_BIT:
             return s.fragmentInvocations;
         case VK_QUERY_PIPELINE_STATISTIC_COMPUTE_SHADER_INVOCATIONS_BIT:

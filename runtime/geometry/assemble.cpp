@@ -156,6 +156,9 @@ void Assembler::assemble(const PreparedDraw& draw, uint32_t drawIndex, Chunk& ch
             if (!vertices_.culled.empty()) culled &= vertices_.culled[v];
         }
         if ((any & kNotFinite) != 0 || (all & (kOutsideVolume | kOutsideUserAll)) != 0 || culled != 0) continue;
+        // Primitives with a vertex inside must count; others may (specification, "Pipeline Statistics Queries").
+        ++statistics_.clippingPrimitives;
+        if (draw.state->rasterizerDiscard) continue;
         const uint32_t provoking = primitive.vertex[primitive.provoking];
         PrimitiveInfo info{drawIndex, primitive.primitiveId, attributesOf(provoking), draw.viewIndex, 0};
         if (routed && !route(draw, provoking, info)) continue;
@@ -191,7 +194,6 @@ bool Assembler::run(std::span<const PreparedDraw> draws, uint64_t token, std::sp
         finished &= shadeVertices(draw, token + range.draw, refs_, contexts_, vertices_, chunk);
         statistics_.inputPrimitives += range.count;
         statistics_.vertexInvocations += refs_.size();
-        if (draw.state->rasterizerDiscard) continue;
         statistics_.clippingInvocations += range.count;
         assemble(draw, range.draw, chunk);
     }

@@ -19,7 +19,7 @@ struct PrimitiveRange {
 };
 
 struct GeometryStatistics {
-    uint64_t inputPrimitives = 0, vertexInvocations = 0, clippingInvocations = 0;
+    uint64_t inputPrimitives = 0, vertexInvocations = 0, clippingInvocations = 0, clippingPrimitives = 0;
     uint64_t clippedPrimitives = 0, rasterPrimitives = 0;
 };
 

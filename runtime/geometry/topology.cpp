@@ -90,7 +90,7 @@ std::vector<VertexRun> vertexRuns(const DrawCall& call, VkPrimitiveTopology topo
     const auto add = [&](uint32_t first, uint32_t count) {
         const uint32_t n = primitiveCount(topology, count);
         if (n == 0) return;
-        runs.push_back({first, primitives, n});
+        runs.push_back({first, primitives, n, count});
         primitives += n;
     };
     if (!restart || call.indices.data == nullptr) {

@@ -30,6 +30,7 @@ struct VertexRun {
     uint32_t first = 0;           // vertex or index number, counted from the draw's first
     uint32_t firstPrimitive = 0;  // of the draw (one instance)
     uint32_t primitives = 0;
+    uint32_t vertices = 0;  // those of an incomplete last primitive too
 };
 
 /// The runs of a draw that have primitives: one, or as many as primitive restart makes of it.

@@ -127,6 +127,12 @@ bool changesStencil(const VkStencilOpState& face) {
            face.depthFailOp != VK_STENCIL_OP_KEEP;
 }
 
+/// The test passes always, and nothing that then happens changes the stencil.
+bool isIdle(const VkStencilOpState& face) {
+    return face.compareOp == VK_COMPARE_OP_ALWAYS && face.passOp == VK_STENCIL_OP_KEEP &&
+           face.depthFailOp == VK_STENCIL_OP_KEEP;
+}
+
 void planDepth(const GraphicsState& state, const ir::Program* fragment, Plan& plan) {
     DepthPlan& depth = plan.depth;
     const FormatInfo* info = findFormat(state.depthStencilFormat);
@@ -137,7 +143,7 @@ void planDepth(const GraphicsState& state, const ir::Program* fragment, Plan& pl
     depth.test = hasDepth && state.depthTest;
     depth.write = depth.test && state.depthWrite;
     depth.bounds = hasDepth && state.depthBoundsTest;
-    depth.stencil = depth.hasStencil && state.stencilTest;
+    depth.stencil = depth.hasStencil && state.stencilTest && !(isIdle(state.stencilFront) && isIdle(state.stencilBack));
     depth.compare = static_cast<uint8_t>(state.depthCompare & 7);
     if (depth.test && state.depthCompare == VK_COMPARE_OP_ALWAYS && !depth.write) depth.test = false;
     if (fragment == nullptr || fragment->earlyFragmentTests) return;

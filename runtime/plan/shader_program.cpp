@@ -14,6 +14,16 @@ ir::Program emptyFragment() {
     return program;
 }
 
+/// Linking, which optimises, then removes what only these outputs needed.
+void dropColors(ir::Program& fragment, uint32_t kept) {
+    const auto dropped = [&](const ir::Inst& inst) {
+        if (inst.op != ir::Op::storeOutput) return false;
+        const ir::InterfaceSlot& slot = fragment.outputs[inst.imm];
+        return slot.builtin == ir::Builtin::user && slot.location < 32 && (kept >> slot.location & 1) == 0;
+    };
+    for (ir::Block& block : fragment.blocks) std::erase_if(block.insts, dropped);
+}
+
 }  // namespace
 
 Result<std::shared_ptr<const ShaderProgram>> ShaderProgram::create(const ShaderProgramDesc& desc) {
@@ -22,6 +32,7 @@ Result<std::shared_ptr<const ShaderProgram>> ShaderProgram::create(const ShaderP
     program->isa_ = desc.isa;
     const bool hasFragment = desc.fragment != nullptr;
     ir::Program vertexIr = *desc.vertex, fragmentIr = hasFragment ? *desc.fragment : emptyFragment();
+    if (hasFragment) dropColors(fragmentIr, desc.keptColors);
     ir::LinkFacts facts;
     if (Status status = ir::linkStages(vertexIr, fragmentIr, &facts); !status) return status.error();
     program->removedVaryings_ = facts.removedOutputs;

@@ -14,6 +14,9 @@ namespace vernier {
 struct ShaderProgramDesc {
     const ir::Program* vertex = nullptr;    // as loadShader gives it
     const ir::Program* fragment = nullptr;  // nullptr: no fragment stage (depth only, or rasterizer discard)
+    // A bit per location whose colours some attachment keeps; what is behind the others is not computed. A program that
+    // is used with any attachments keeps all.
+    uint32_t keptColors = ~0u;
     Accuracy accuracy;
     Isa isa = Isa::sse4;
 };

@@ -47,6 +47,7 @@ struct PassStatistics {
     uint64_t inputPrimitives = 0;
     uint64_t vertexInvocations = 0;  // depends on the chunking, which does not depend on threads
     uint64_t clippingInvocations = 0;
+    uint64_t clippingPrimitives = 0;   // not all outside; those to be culled are in it
     uint64_t clippedPrimitives = 0;    // primitives that really were cut
     uint64_t rasterPrimitives = 0;     // primitives that reached the rasteriser
     uint64_t fragmentInvocations = 0;  // helper lanes not counted

@@ -262,6 +262,7 @@ void RenderPass::Impl::sumStatistics() {
         statistics.inputPrimitives += geometry.inputPrimitives;
         statistics.vertexInvocations += geometry.vertexInvocations;
         statistics.clippingInvocations += geometry.clippingInvocations;
+        statistics.clippingPrimitives += geometry.clippingPrimitives;
         statistics.clippedPrimitives += geometry.clippedPrimitives;
         statistics.rasterPrimitives += geometry.rasterPrimitives;
         const PassStatistics& fragments = worker->renderer.fragments().statistics();
@@ -314,7 +315,7 @@ void RenderPass::draw(const DrawCall& call) {
 void RenderPass::Impl::add(PreparedDraw draw) {
     Impl& self = *this;
     const DrawCall& call = draw.call;
-    self.inputVertices += uint64_t{call.count} * call.instances;
+    for (const VertexRun& run : draw.runs) self.inputVertices += uint64_t{run.vertices} * call.instances;
     const auto index = static_cast<uint32_t>(self.draws.size());
     // Neighbours that differ in geometry only fill the same fragment batches.
     const bool same = index > 0 && self.draws.back().call.pipeline == call.pipeline &&
