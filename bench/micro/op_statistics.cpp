@@ -109,7 +109,7 @@ int main(int argc, char** argv) {
     for (const proof::Case& subject : cases()) {
         const proof::Program program = proof::lower(subject);
         std::vector<uint64_t> runs(kMostBlocks);
-        const BatchOptions options{bestIsa(), MathTier::standard, 0, runs};
+        const BatchOptions options{.isa = bestIsa(), .blockRuns = runs};
         const proof::Shape all{"all", std::vector<bool>(subject.invocations, true),
                                std::vector<bool>(subject.invocations, true)};
         const proof::Ending ending = proof::runBatch(subject, program.ir, all, options);

@@ -145,11 +145,6 @@ PipelineRecorder& PipelineRecorder::alphaToCoverage(bool alphaToOne) {
     return *this;
 }
 
-PipelineRecorder& PipelineRecorder::alphaToCoverage() {
-    state().alphaToCoverage = true;
-    return *this;
-}
-
 PipelineRecorder& PipelineRecorder::targets(uint32_t count) {
     state().blend.assign(count, unblended());
     return *this;

@@ -50,7 +50,6 @@ class PipelineRecorder {
     PipelineRecorder& stencil(const VkStencilOpState& front, const VkStencilOpState& back);
     PipelineRecorder& samples(VkSampleCountFlagBits samples);
     PipelineRecorder& sampleMask(uint32_t mask);
-    PipelineRecorder& depthClamp();
     PipelineRecorder& sampleShading(float least);
     PipelineRecorder& alphaToCoverage(bool alphaToOne = false);
     /// The number of colour attachments (1 unless said); all unblended, all components written.

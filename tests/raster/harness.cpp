@@ -108,8 +108,10 @@ std::shared_ptr<const GraphicsPipeline> makePipeline(const PipelineOptions& opti
     const ir::Program vertex = load(options.vertex, ir::Stage::vertex);
     ir::Program fragment;
     if (!options.fragment.empty()) fragment = load(options.fragment, ir::Stage::fragment);
-    auto program =
-        ShaderProgram::create({&vertex, options.fragment.empty() ? nullptr : &fragment, options.accuracy, options.isa});
+    auto program = ShaderProgram::create({.vertex = &vertex,
+                                          .fragment = options.fragment.empty() ? nullptr : &fragment,
+                                          .accuracy = options.accuracy,
+                                          .isa = options.isa});
     if (!program) {
         ADD_FAILURE() << program.error().message;
         std::abort();
