@@ -62,7 +62,10 @@ class Sampler {
         });
     }
 
-    void gather() const {
+    void gather() {
+        // The four outputs are texels of one component, whichever of them are wanted.
+        const Route route = compare_ ? Route::r : routeOf(view_.swizzle, request_.component);
+        neededComponents_ = route <= Route::a ? 1u << static_cast<uint32_t>(route) : 0;
         forEachVector([&](uint32_t first, uint32_t count) HWY_ATTR { gatherVector(first, count); });
     }
 

@@ -322,9 +322,10 @@ void Lowerer::lowerImage(const ir::Inst& inst) {
     rows(places.coords, op.coords, 4, hidden);
     hidden.push_back(row(places.dref));
     hidden.push_back(row(places.lodOrBias));
-    rows(places.gradients, op.gradients, 3, hidden);
-    const uint32_t ddy = places.gradients == ir::kNoIndex ? ir::kNoIndex : places.gradients + op.gradients;
-    rows(ddy, op.gradients, 3, hidden);
+    const uint32_t directions = op.gradients / 2u;  // along x, then along y
+    rows(places.gradients, directions, 3, hidden);
+    const uint32_t ddy = places.gradients == ir::kNoIndex ? ir::kNoIndex : places.gradients + directions;
+    rows(ddy, directions, 3, hidden);
     rows(places.offsets, op.offsets, 3, hidden);
     hidden.push_back(row(places.sample));
     hidden.push_back(row(places.minLod));

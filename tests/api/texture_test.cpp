@@ -114,7 +114,7 @@ TEST_F(TextureTest, compressedImages) {
     for (uint16_t i = 0; i < 6; ++i) data[i][0] = static_cast<uint16_t>((i + 1) << 11);
     update(blocks, nullptr, data, sizeof data);
     const auto pixels =
-        draw("sampler2D", "color = texelFetch(tex, ivec2(uv * vec2(10, 6)), 0) * 31.0 / 255.0;", view(blocks), {}, 60);
+        draw("sampler2D", "color = texelFetch(tex, ivec2(uv * vec2(10, 6)), 0) * 31.0 / 255.0;", view(blocks), sampler({}), 60);
     EXPECT_EQ(pixels[0] & 255, 1u);
     EXPECT_EQ(pixels[59] & 255, 3u);
     EXPECT_EQ(pixels[59 * 60] & 255, 4u);

@@ -195,8 +195,8 @@ TEST(Checks, RefuseWithAReason) {
         EXPECT_NE(status.error().message.find(field), std::string::npos) << status.error().message;
     };
     EXPECT_TRUE(checkSampling(image.view(bestIsa()), good).ok());
-    refused([](TextureView& v, SamplerState&) { v.format = VK_FORMAT_BC1_RGB_UNORM_BLOCK; }, "TextureView.format");
-    refused([](TextureView& v, SamplerState&) { v.format = VK_FORMAT_R32G32B32_SFLOAT; }, "R32G32B32_SFLOAT");
+    refused([](TextureView& v, SamplerState&) { v.format = VK_FORMAT_G8B8G8R8_422_UNORM; }, "TextureView.format");
+    refused([](TextureView& v, SamplerState&) { v.format = VK_FORMAT_R16G16B16_SFLOAT; }, "R16G16B16_SFLOAT");
     refused([](TextureView& v, SamplerState&) { v.aspect = VK_IMAGE_ASPECT_DEPTH_BIT; }, "aspect");
     refused([](TextureView& v, SamplerState&) { v.levelCount = 17; }, "levelCount is 17");
     refused([](TextureView& v, SamplerState&) { v.layerCount = 0; }, "layerCount is 0");
