@@ -14,8 +14,7 @@ int main() {
     VkClearColorValue white{};
     for (float& component : white.float32) component = 1;
     uint32_t pixel = 0;
-    const bool works = vnCreateDevice(nullptr, &device) == VN_SUCCESS &&
-                       vnGetDeviceInfo(device, &info) == VN_SUCCESS &&
+    const bool works = vnCreateDevice(nullptr, &device) == VN_SUCCESS && vnGetDeviceInfo(device, &info) == VN_SUCCESS &&
                        vnCreateContext(device, nullptr, &context) == VN_SUCCESS &&
                        vnCreateImage(device, &desc, &image) == VN_SUCCESS &&
                        vnClearImage(context, image, &white) == VN_SUCCESS &&
