@@ -43,7 +43,7 @@ room(conformance/drivers base conformance/scene api/include)
 room(conformance/report base conformance/scene conformance/oracle conformance/differ conformance/drivers)
 room(conformance/tool base conformance/scene conformance/scenes conformance/oracle conformance/differ conformance/drivers
     conformance/report)
-room(conformance/hardcases base spirv_interp/reference conformance/scene conformance/scenes conformance/oracle
+room(conformance/hardcases base spirv_interp/reference conformance/scene conformance/scenes conformance/oracle conformance/differ
     conformance/drivers conformance/tool)
 room(conformance/precision base spirv_interp spirv_interp/reference conformance/drivers api/include)
 
