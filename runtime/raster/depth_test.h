@@ -1,4 +1,4 @@
-// The early depth test: blocks of 8x8 pixels at once, when there is neither stencil nor a bounds test.
+// The early depth and stencil tests: blocks of 8x8 pixels at once, when there is no bounds test.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,11 @@ struct DepthTestInput {
     int32_t tileX, tileY;
     uint32_t samples;
     const SamplePosition* positions;
+    const DepthStencilState::Face* face;  // of the stencil test; nullptr: there is none
 };
 
-/// Tests the samples of the blocks and writes the depth of those that pass. Clears the bits of those that
-/// fail; returns how many blocks have bits left, moved to the front in order.
+/// Tests the samples of the blocks and writes the depth of those that pass, and the stencil of all. Clears the bits of
+/// those that fail; returns how many blocks have bits left, moved to the front in order.
 using DepthTestFn = uint32_t (*)(const DepthTestInput& input, BlockCoverage* blocks, uint32_t count);
 DepthTestFn depthTestFunction(Isa isa);
 

@@ -32,10 +32,13 @@ enum class LaneOrder : uint8_t {
     quads,  // such a rectangle, quad by quad: upper left, upper right, lower left, lower right
 };
 
-/// In rows and quads, all pixels belong to one primitive, which covers all their samples.
+/// In rows and quads, all pixels belong to one primitive. It covers all samples of all of them, or, with one sample, a
+/// part of them (`partial`).
 struct FragmentBatch {
     uint32_t count = 0;
     LaneOrder order = LaneOrder::spans;
+    bool partial = false;                                 // rows, quads: store and execute tell which lanes count
+    uint32_t running = 0;                                 // partial: lanes that execute names
     int32_t originX = 0, originY = 0;                     // rows, quads: first pixel of the rectangle
     alignas(64) std::array<int32_t, kLaneRoom> x, y;      // pixels; in rows and quads only where somebody reads them
     alignas(64) std::array<uint32_t, kLaneRoom> execute;  // ~0: the lane runs, as a helper perhaps

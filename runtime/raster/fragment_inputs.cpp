@@ -9,55 +9,62 @@ namespace vernier {
 
 /// Sorts the varyings that the program reads by how they get their values.
 void FragmentStage::bindInputs() {
-    centreTargets_.clear();
-    centroidTargets_.clear();
+    for (VaryingTargets* targets : {&centreTargets_, &centroidTargets_}) {
+        targets->smooth.clear();
+        targets->linear.clear();
+    }
     flatTargets_.clear();
     for (uint32_t k = 0; k < plan_->varyings.size(); ++k) {
         const Varying& varying = plan_->varyings[k];
-        const VaryingTarget target{k, varying.interpolation == ir::Interpolation::noPerspective,
-                                   context_->input(varying.fragmentSlot)};
+        const VaryingTarget target{k, context_->input(varying.fragmentSlot)};
         if (target.plane == nullptr) continue;
         const bool centroid = varying.sampling == ir::Sampling::centroid && plan_->needsCentroid && !plan_->perSample;
+        VaryingTargets& targets = centroid ? centroidTargets_ : centreTargets_;
         if (varying.interpolation == ir::Interpolation::flat) {
             flatTargets_.push_back(target);
         } else {
-            (centroid ? centroidTargets_ : centreTargets_).push_back(target);
+            (varying.interpolation == ir::Interpolation::noPerspective ? targets.linear : targets.smooth)
+                .push_back(target);
         }
     }
 }
 
 void FragmentStage::fillInputs(const FragmentBatch& batch) {
-    const auto evaluate = [&](InterpolationInput& input, std::span<const VaryingTarget> targets) {
+    const auto evaluate = [&](InterpolationInput& input, const VaryingTargets& targets) {
+        const auto setTargets = [&] {
+            input.smooth = targets.smooth;
+            input.linear = targets.linear;
+        };
         // In double, the weights in float serve gl_FragCoord alone.
-        if (!plan_->preciseInterpolation) input.targets = targets;
-        statistics_.perspectiveDivides += interpolate_(input);
+        if (!plan_->preciseInterpolation) setTargets();
+        const uint32_t divided = interpolate_(input);
+        statistics_.perspectiveDivides += batch.partial ? std::min(divided, batch.running) : divided;
         if (!plan_->preciseInterpolation) return;
-        input.targets = targets;
+        setTargets();
         interpolatePrecise(input);
     };
-    if (plan_->needsBarycentrics || plan_->usesFragCoord) {
-        InterpolationInput input{};
-        input.batch = &batch;
-        input.capacity = capacity_;
-        input.perspective = plan_->smoothCount > 0;
-        if (plan_->perSample) {
-            input.offsetX = batch.offsetX.data();
-            input.offsetY = batch.offsetY.data();
-        }
-        if (plan_->usesFragCoord) {
-            input.fragZ = fragZ_.data();
-            input.fragInverseW = fragInverseW_.data();
-        }
-        evaluate(input, centreTargets_);
-        if (!centroidTargets_.empty()) {
-            centroidOffsets(batch);
-            input.offsetX = centroidX_.data();
-            input.offsetY = centroidY_.data();
-            input.fragZ = input.fragInverseW = nullptr;
-            evaluate(input, centroidTargets_);
-        }
+    InterpolationInput input{};
+    input.batch = &batch;
+    input.capacity = capacity_;
+    input.perspective = plan_->smoothCount > 0;
+    input.flat = flatTargets_;
+    if (plan_->perSample) {
+        input.offsetX = batch.offsetX.data();
+        input.offsetY = batch.offsetY.data();
     }
-    for (const VaryingTarget& target : flatTargets_) copyFlat(batch, target);
+    if (plan_->usesFragCoord) {
+        input.fragZ = fragZ_.data();
+        input.fragInverseW = fragInverseW_.data();
+    }
+    evaluate(input, centreTargets_);
+    if (!centroidTargets_.smooth.empty() || !centroidTargets_.linear.empty()) {
+        centroidOffsets(batch);
+        input.offsetX = centroidX_.data();
+        input.offsetY = centroidY_.data();
+        input.fragZ = input.fragInverseW = nullptr;
+        input.flat = {};
+        evaluate(input, centroidTargets_);
+    }
     fillBuiltins(batch);
 }
 

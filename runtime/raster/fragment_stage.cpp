@@ -4,12 +4,24 @@
 #include <bit>
 #include <cstring>
 
+#include "runtime/raster/bits.h"
+
 namespace vernier {
 
 namespace {
 
 /// Lanes of a block that is run at once, at most.
 constexpr uint32_t kBlockLanes = kBlockSize * kBlockSize;
+
+/// A block with so many covered pixels is run at once: what packing would gain is less than what it costs.
+constexpr uint32_t kMostOfABlock = 28;
+
+/// The upper left pixels of the quads that have some of `pixels`.
+uint64_t quadsOf(uint64_t pixels) {
+    constexpr uint64_t kQuadOrigins = 0x0055005500550055;
+    const uint64_t pairs = pixels | pixels >> 1;
+    return (pairs | pairs >> 8) & kQuadOrigins;
+}
 
 /// The samples of one pixel of a block.
 uint32_t coverageOf(const BlockCoverage& block, uint32_t bit, uint32_t samples) {
@@ -64,6 +76,7 @@ void FragmentStage::bind(const PreparedDraw& draw, uint64_t token) {
     const Isa isa = draw.call.pipeline->isa();
     interpolate_ = interpolateFunction(isa);
     placeLanes_ = placeLanesFunction(isa);
+    spreadPixels_ = spreadPixelsFunction(isa);
     blend_ = blendFunction(isa);
 
     const DynamicState& dynamic = *draw.call.dynamic;
@@ -96,7 +109,6 @@ void FragmentStage::bind(const PreparedDraw& draw, uint64_t token) {
     block_.count = std::min(capacity_, kBlockLanes);
     block_.order = plan_->usesQuads ? LaneOrder::quads : LaneOrder::rows;
     block_.segmentCount = 1;
-    block_.store.fill(~0u);
 }
 
 TrianglePlanes& FragmentStage::startPrimitive() {
@@ -136,10 +148,12 @@ void FragmentStage::add(const BlockCoverage& block) {
         all &= block.masks[s];
     }
     const auto index = static_cast<size_t>(block.y / kBlockSize * (kTileSize / kBlockSize) + block.x / kBlockSize);
-    const bool whole = all == ~uint64_t{0} && !plan_->perSample;
+    // With several samples, a lane's coverage is more than a bit.
+    const bool atOnce =
+        !plan_->perSample && (all == ~uint64_t{0} || (samples_ == 1 && countBits(any) >= kMostOfABlock));
     // What waits for these pixels comes first.
-    if ((plan_->ordered || whole) && (inBatch_[index] & any) != 0) flush();
-    if (whole) return runBlock(block);
+    if ((plan_->ordered || atOnce) && (inBatch_[index] & any) != 0) flush();
+    if (atOnce) return runBlock(block, any);
     if (plan_->perSample) {
         for (uint32_t s = 0; s < samples_; ++s) {
             if (plan_->usesQuads) {
@@ -158,16 +172,33 @@ void FragmentStage::add(const BlockCoverage& block) {
 
 void FragmentStage::placeBlock() {
     placeLanes_(block_);
-    std::fill_n(block_.coverage.begin(), block_.count, (1u << samples_) - 1);
+    if (!block_.partial) std::fill_n(block_.store.begin(), block_.count, ~0u);
+    const uint32_t full = (1u << samples_) - 1;
+    for (uint32_t lane = 0; lane < block_.count; ++lane) block_.coverage[lane] = block_.store[lane] & full;
 }
 
-/// A block that the current primitive covers completely: shaded and written without being collected.
-void FragmentStage::runBlock(const BlockCoverage& block) {
+/// A block of which the current primitive covers `pixels`: shaded and written without being collected.
+void FragmentStage::runBlock(const BlockCoverage& block, uint64_t pixels) {
     const uint32_t lanes = block_.count, rows = lanes / static_cast<uint32_t>(kBlockSize);
+    uint64_t running = pixels;
+    if (plan_->usesQuads) {
+        const uint64_t quads = quadsOf(pixels);
+        running = quads | quads << 1 | quads << 8 | quads << 9;
+    }
     block_.segments[0] = {&planes_[planesCount_ - 1], 0, lanes};
     block_.originX = tileX_ + block.x;
     for (uint32_t row = 0; row < static_cast<uint32_t>(kBlockSize); row += rows) {
         block_.originY = tileY_ + block.y + static_cast<int32_t>(row);
+        const uint64_t rectangle = ~uint64_t{0} >> (64 - lanes);
+        const uint64_t stored = pixels >> (8 * row) & rectangle;
+        if (stored == 0) continue;
+        block_.partial = stored != rectangle;
+        if (block_.partial) {
+            const uint64_t run = running >> (8 * row) & rectangle;
+            block_.running = countBits(run);
+            spreadPixels_(stored, block_.order, lanes, block_.store.data());
+            spreadPixels_(run, block_.order, lanes, block_.execute.data());
+        }
         if (readsPixels_) placeBlock();
         run(block_);
     }
@@ -204,9 +235,7 @@ void FragmentStage::addSamples(const BlockCoverage& block, uint32_t sample) {
 
 /// Quads with a covered pixel, four lanes each: upper left, upper right, lower left, lower right.
 void FragmentStage::addQuads(const BlockCoverage& block, uint64_t any, uint32_t samples, uint32_t sample) {
-    constexpr uint64_t kQuadOrigins = 0x0055005500550055;
-    uint64_t quads = any | any >> 1;
-    quads = (quads | quads >> 8) & kQuadOrigins;
+    uint64_t quads = quadsOf(any);
     const SamplePosition position = positions_[sample];
     const uint32_t wanted = ((1u << samples) - 1) << sample;
     for (; quads != 0; quads &= quads - 1) {
@@ -245,32 +274,44 @@ void FragmentStage::flush() {
 
 void FragmentStage::run(FragmentBatch& batch) {
     const uint32_t count = batch.count, lanes = (count + 3) / 4 * 4;
-    const bool spans = batch.order == LaneOrder::spans;
+    const bool masked = batch.order == LaneOrder::spans || batch.partial;
     current_ = &batch;
     fillInputs(batch);
-    const uint32_t* execute = spans ? batch.execute.data() : nullptr;
-    const uint32_t* store = spans ? batch.store.data() : nullptr;
+    const uint32_t* execute = masked ? batch.execute.data() : nullptr;
+    const uint32_t* store = masked ? batch.store.data() : nullptr;
     if (!context_->run(lanes, execute, store)) outOfBudget_ = true;
     ++statistics_.batches;
     uint32_t stored = count;
-    if (plan_->usesQuads && spans)
+    if (batch.partial || (masked && plan_->usesQuads))
         for (uint32_t lane = 0; lane < count; ++lane) stored -= 1 - (batch.store[lane] & 1);
     statistics_.fragmentInvocations += stored;
-    statistics_.helperInvocations += count - stored;
+    statistics_.helperInvocations += (batch.partial ? batch.running : count) - stored;
     if (!plan_->keepsCoverage) {
         const uint32_t* live = context_->liveMask();
         for (uint32_t lane = 0; lane < count; ++lane) batch.coverage[lane] &= live[lane];
         reduceCoverage(batch);
         if (!plan_->depth.early && testsDepth()) testLate(batch);
+    } else if (batch.partial) {
+        // One sample, and nothing dropped it.
+        statistics_.samplesPassed += stored;
+        writeColors(batch, 0, batch.store.data());
+        return;
     }
-    const bool full = plan_->coverageIsFull || (!spans && plan_->keepsCoverage);
-    if (full) statistics_.samplesPassed += uint64_t{count} * samples_;
-    for (uint32_t s = 0; s < samples_ && !full; ++s) {
+    if (plan_->keepsCoverage && (plan_->coverageIsFull || !masked)) {
+        statistics_.samplesPassed += uint64_t{count} * samples_;
+        for (uint32_t s = 0; s < samples_; ++s) writeColors(batch, s, nullptr);
+        return;
+    }
+    for (uint32_t s = 0; s < samples_; ++s) {
         uint32_t passed = 0;
-        for (uint32_t lane = 0; lane < count; ++lane) passed += batch.coverage[lane] >> s & 1;
+        for (uint32_t lane = 0; lane < count; ++lane) {
+            const uint32_t covered = batch.coverage[lane] >> s & 1;
+            mask_[lane] = 0 - covered;
+            passed += covered;
+        }
         statistics_.samplesPassed += passed;
+        if (passed != 0) writeColors(batch, s, mask_.data());
     }
-    writeColors(batch, full);
 }
 
 /// Coverage after the program: its own sample mask, and alpha to coverage.
@@ -340,30 +381,22 @@ void FragmentStage::bindColors(Isa isa) {
     }
 }
 
-/// `full`: all lanes are written in all samples.
-void FragmentStage::writeColors(const FragmentBatch& batch, bool full) {
-    for (uint32_t s = 0; s < samples_; ++s) {
-        uint32_t any = full ? 1 : 0;
-        for (uint32_t lane = 0; lane < batch.count && !full; ++lane) {
-            mask_[lane] = (batch.coverage[lane] >> s & 1) != 0 ? ~0u : 0u;
-            any |= mask_[lane];
+/// `mask`: the lanes that are written; nullptr: all.
+void FragmentStage::writeColors(const FragmentBatch& batch, uint32_t sample, const uint32_t* mask) {
+    for (size_t k = 0; k < boundColorCount_; ++k) {
+        BoundColor& color = boundColors_[k];
+        color.general.batch = &batch;
+        color.general.mask = color.block.mask = mask;
+        color.general.sample = sample;
+        if (color.blockRoutine == nullptr || batch.order == LaneOrder::spans) {
+            statistics_.destinationReads += outputColors(color.general, colors_);
+            continue;
         }
-        if (any == 0) continue;
-        for (size_t k = 0; k < boundColorCount_; ++k) {
-            BoundColor& color = boundColors_[k];
-            color.general.batch = &batch;
-            color.general.mask = color.block.mask = full ? nullptr : mask_.data();
-            color.general.sample = s;
-            if (color.blockRoutine == nullptr || batch.order == LaneOrder::spans) {
-                statistics_.destinationReads += outputColors(color.general, colors_);
-                continue;
-            }
-            color.block.texels = texelAddress(color.general, batch.originX, batch.originY);
-            color.block.order = batch.order;
-            color.block.lanes = batch.count;
-            color.blockRoutine(color.block);
-            if (color.general.plan->readsDestination) statistics_.destinationReads += writtenLanes(color.general);
-        }
+        color.block.texels = texelAddress(color.general, batch.originX, batch.originY);
+        color.block.order = batch.order;
+        color.block.lanes = batch.count;
+        color.blockRoutine(color.block);
+        if (color.general.plan->readsDestination) statistics_.destinationReads += writtenLanes(color.general);
     }
 }
 

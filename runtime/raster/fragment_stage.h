@@ -52,7 +52,7 @@ class FragmentStage {
     void addSamples(const BlockCoverage& block, uint32_t sample);
     void bindInputs();
     void placeBlock();
-    void runBlock(const BlockCoverage& block);
+    void runBlock(const BlockCoverage& block, uint64_t pixels);
 
     void run(FragmentBatch& batch);
     void fillInputs(const FragmentBatch& batch);
@@ -62,7 +62,7 @@ class FragmentStage {
     void reduceCoverage(FragmentBatch& batch);
     void testLate(FragmentBatch& batch);
     void bindColors(Isa isa);
-    void writeColors(const FragmentBatch& batch, bool full);
+    void writeColors(const FragmentBatch& batch, uint32_t sample, const uint32_t* mask);
     const float* outputPlane(uint32_t slot, uint32_t component) const;
     static void interpolateAt(void* self, uint32_t slot, uint32_t where, uint32_t lanes, const float* a, const float* b,
                               float* result);
@@ -77,9 +77,14 @@ class FragmentStage {
     uint32_t samples_ = 1;
     const SamplePosition* positions_ = nullptr;
     // Inputs of the program: those taken at the pixel (or sample), at the centroid, and from the provoking vertex.
-    std::vector<VaryingTarget> centreTargets_, centroidTargets_, flatTargets_;
+    struct VaryingTargets {
+        std::vector<VaryingTarget> smooth, linear;
+    };
+    VaryingTargets centreTargets_, centroidTargets_;
+    std::vector<VaryingTarget> flatTargets_;
     InterpolateFn interpolate_ = nullptr;
     PlaceLanesFn placeLanes_ = nullptr;
+    SpreadPixelsFn spreadPixels_ = nullptr;
     BlendFn blend_ = nullptr;
     /// An attachment that changes, bound to the planes of the program's outputs.
     struct BoundColor {
@@ -93,7 +98,7 @@ class FragmentStage {
     DepthStencilState depthState_;
 
     FragmentBatch batch_;                     // waiting, in spans
-    FragmentBatch block_;                     // a completely covered block, run at once
+    FragmentBatch block_;                     // a block of which most is covered, run at once
     const FragmentBatch* current_ = nullptr;  // the one that runs
     // Of the primitives in batch_; slot planesCount_ - 1 belongs to the primitive being added.
     std::array<TrianglePlanes, kMaxFragmentLanes + 1> planes_;

@@ -116,17 +116,6 @@ HWY_INLINE Weights weightsAt(const InterpolationInput& in, const SegmentPlanes& 
     return w;
 }
 
-/// An attribute as a function of the weights: its value at the first vertex, and the differences of the others.
-struct AttributePlane {
-    float base, d1, d2;
-};
-
-HWY_INLINE VF valueAt(const AttributePlane& plane, VF w1, VF w2) {
-    const F f;
-    const VF change = hn::Add(hn::Mul(w1, hn::Set(f, plane.d1)), hn::Mul(w2, hn::Set(f, plane.d2)));
-    return hn::Add(hn::Set(f, plane.base), change);
-}
-
 /// Lanes past the segment are overwritten by the next one; lanes past the plane must not be.
 HWY_INLINE void storeLanes(VF value, float* plane, uint32_t n, uint32_t capacity) {
     if (HWY_LIKELY(n + kLanes <= capacity)) {
@@ -138,30 +127,79 @@ HWY_INLINE void storeLanes(VF value, float* plane, uint32_t n, uint32_t capacity
     }
 }
 
+/// An attribute as a function of the weights: its value at the first vertex, and the differences of the others.
+struct AttributePlane {
+    AttributePlane(const TrianglePlanes& p, uint32_t varying) {
+        const float first = p.attributes[0][varying];
+        base = hn::Set(F(), first);
+        d1 = hn::Set(F(), p.attributes[1][varying] - first);
+        d2 = hn::Set(F(), p.attributes[2][varying] - first);
+    }
+    HWY_INLINE VF at(VF w1, VF w2) const { return hn::Add(base, hn::Add(hn::Mul(w1, d1), hn::Mul(w2, d2))); }
+
+    VF base, d1, d2;
+};
+
+/// One vector of lanes.
+HWY_INLINE void evaluate(const InterpolationInput& in, const SegmentPlanes& planes, uint32_t n) {
+    const Weights w = weightsAt(in, planes, n);
+    for (const VaryingTarget& target : in.smooth)
+        storeLanes(AttributePlane(planes.planes, target.varying).at(w.perspective1, w.perspective2), target.plane, n,
+                   in.capacity);
+    for (const VaryingTarget& target : in.linear)
+        storeLanes(AttributePlane(planes.planes, target.varying).at(w.linear1, w.linear2), target.plane, n,
+                   in.capacity);
+}
+
+/// Four vectors, side by side: the weights stay in registers, and none waits for another.
+HWY_INLINE void evaluateFour(const InterpolationInput& in, const SegmentPlanes& planes, uint32_t n) {
+    const F f;
+    const Weights w0 = weightsAt(in, planes, n), w1 = weightsAt(in, planes, n + kLanes);
+    const Weights w2 = weightsAt(in, planes, n + 2 * kLanes), w3 = weightsAt(in, planes, n + 3 * kLanes);
+    for (const VaryingTarget& target : in.smooth) {
+        const AttributePlane plane(planes.planes, target.varying);
+        float* lanes = target.plane + n;
+        hn::StoreU(plane.at(w0.perspective1, w0.perspective2), f, lanes);
+        hn::StoreU(plane.at(w1.perspective1, w1.perspective2), f, lanes + kLanes);
+        hn::StoreU(plane.at(w2.perspective1, w2.perspective2), f, lanes + 2 * kLanes);
+        hn::StoreU(plane.at(w3.perspective1, w3.perspective2), f, lanes + 3 * kLanes);
+    }
+    for (const VaryingTarget& target : in.linear) {
+        const AttributePlane plane(planes.planes, target.varying);
+        float* lanes = target.plane + n;
+        hn::StoreU(plane.at(w0.linear1, w0.linear2), f, lanes);
+        hn::StoreU(plane.at(w1.linear1, w1.linear2), f, lanes + kLanes);
+        hn::StoreU(plane.at(w2.linear1, w2.linear2), f, lanes + 2 * kLanes);
+        hn::StoreU(plane.at(w3.linear1, w3.linear2), f, lanes + 3 * kLanes);
+    }
+}
+
+/// The bits of the provoking vertex: an integer, perhaps, which no float operation may touch.
+HWY_INLINE void copyFlat(const InterpolationInput& in, const FragmentSegment& segment) {
+    for (const VaryingTarget& target : in.flat) {
+        uint32_t bits;
+        std::memcpy(&bits, segment.planes->flat + target.varying, 4);
+        const VF value = hn::BitCast(F(), hn::Set(hn::RebindToUnsigned<F>(), bits));
+        for (uint32_t n = segment.first; n < segment.first + segment.count; n += kLanes)
+            storeLanes(value, target.plane, n, in.capacity);
+    }
+}
+
 uint32_t interpolate(const InterpolationInput& in) {
     uint32_t divides = 0;
     const PixelSource pixels(*in.batch);
-    const size_t targets = in.targets.size();
-    std::array<AttributePlane, kMaxInterfaceComponents> attributes;
+    const bool weighted = !in.smooth.empty() || !in.linear.empty() || in.fragZ != nullptr;
     for (uint32_t s = 0; s < in.batch->segmentCount; ++s) {
         const FragmentSegment& segment = in.batch->segments[s];
-        const TrianglePlanes& p = *segment.planes;
-        const SegmentPlanes planes(in, pixels, p);
+        copyFlat(in, segment);
+        if (!weighted && !in.perspective) continue;
+        const SegmentPlanes planes(in, pixels, *segment.planes);
         if (planes.divide && in.perspective) divides += segment.count;
-        for (size_t k = 0; k < targets; ++k) {
-            const uint32_t varying = in.targets[k].varying;
-            const float base = p.attributes[0][varying];
-            attributes[k] = {base, p.attributes[1][varying] - base, p.attributes[2][varying] - base};
-        }
-        for (uint32_t n = segment.first; n < segment.first + segment.count; n += kLanes) {
-            const Weights w = weightsAt(in, planes, n);
-            for (size_t k = 0; k < targets; ++k) {
-                const VaryingTarget& target = in.targets[k];
-                const VF w1 = target.linear ? w.linear1 : w.perspective1;
-                const VF w2 = target.linear ? w.linear2 : w.perspective2;
-                storeLanes(valueAt(attributes[k], w1, w2), target.plane, n, in.capacity);
-            }
-        }
+        if (!weighted) continue;
+        const uint32_t end = segment.first + segment.count;
+        uint32_t n = segment.first;
+        for (; n + 4 * kLanes <= end; n += 4 * kLanes) evaluateFour(in, planes, n);
+        for (; n < end; n += kLanes) evaluate(in, planes, n);
     }
     return divides;
 }
@@ -176,6 +214,31 @@ void placeLanes(FragmentBatch& batch) {
     }
 }
 
+/// The bit of a lane's pixel among those of its 16 lanes, which are two rows of 8 pixels in either order.
+struct LaneBits {
+    alignas(64) uint32_t bit[2][16];
+};
+
+constexpr LaneBits laneBits() {
+    LaneBits bits{};
+    for (uint32_t lane = 0; lane < 16; ++lane) {
+        bits.bit[0][lane] = 1u << lane;
+        bits.bit[1][lane] = 1u << (rowOf(LaneOrder::quads, lane) * 8 + columnOf(LaneOrder::quads, lane));
+    }
+    return bits;
+}
+
+void spreadPixels(uint64_t pixels, LaneOrder order, uint32_t count, uint32_t* lanes) {
+    static constexpr LaneBits kBits = laneBits();
+    const hn::RebindToUnsigned<F> u;
+    const auto* bits = kBits.bit[order == LaneOrder::quads ? 1 : 0];
+    for (uint32_t n = 0; n < count; n += kLanes) {
+        const auto part = hn::Set(u, static_cast<uint32_t>(pixels >> (n & ~15u) & 0xFFFF));
+        const auto set = hn::Ne(hn::And(part, hn::Load(u, bits + n % 16)), hn::Zero(u));
+        hn::StoreU(hn::VecFromMask(u, set), u, lanes + n);
+    }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace vernier
 HWY_AFTER_NAMESPACE();
@@ -185,8 +248,10 @@ namespace vernier {
 
 InterpolateFn interpolateFunction(Isa isa){VERNIER_SELECT_ISA(isa, interpolate)}
 
-PlaceLanesFn placeLanesFunction(Isa isa) {
-    VERNIER_SELECT_ISA(isa, placeLanes)
+PlaceLanesFn placeLanesFunction(Isa isa){VERNIER_SELECT_ISA(isa, placeLanes)}
+
+SpreadPixelsFn spreadPixelsFunction(Isa isa) {
+    VERNIER_SELECT_ISA(isa, spreadPixels)
 }
 
 void interpolatePrecise(const InterpolationInput& in) {
@@ -198,24 +263,15 @@ void interpolatePrecise(const InterpolationInput& in) {
             const float ox = in.offsetX != nullptr ? in.offsetX[n] : 0.5f;
             const float oy = in.offsetY != nullptr ? in.offsetY[n] : 0.5f;
             const Barycentrics at = barycentricsAt(p, batch.x[n], batch.y[n], ox, oy);
-            for (const VaryingTarget& target : in.targets) {
+            const auto evaluate = [&](const VaryingTarget& target, double w1, double w2) {
                 const double a = double{p.attributes[0][target.varying]};
                 const double d1 = double{p.attributes[1][target.varying]} - a;
                 const double d2 = double{p.attributes[2][target.varying]} - a;
-                const double w1 = target.linear ? at.l1 : at.b1, w2 = target.linear ? at.l2 : at.b2;
                 target.plane[n] = static_cast<float>(a + (w1 * d1 + w2 * d2));
-            }
+            };
+            for (const VaryingTarget& target : in.smooth) evaluate(target, at.b1, at.b2);
+            for (const VaryingTarget& target : in.linear) evaluate(target, at.l1, at.l2);
         }
-    }
-}
-
-void copyFlat(const FragmentBatch& batch, const VaryingTarget& target) {
-    for (uint32_t s = 0; s < batch.segmentCount; ++s) {
-        const FragmentSegment& segment = batch.segments[s];
-        uint32_t bits;  // a float move could quieten a NaN that is really an integer
-        std::memcpy(&bits, segment.planes->flat + target.varying, 4);
-        for (uint32_t n = segment.first; n < segment.first + segment.count; ++n)
-            std::memcpy(target.plane + n, &bits, 4);
     }
 }
 

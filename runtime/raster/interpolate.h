@@ -6,7 +6,6 @@
 #include <span>
 
 #include "base/simd.h"
-#include "runtime/limits.h"
 #include "runtime/raster/fragment_batch.h"
 
 namespace vernier {
@@ -14,7 +13,6 @@ namespace vernier {
 /// A varying that the fragment program reads, and where its lanes go.
 struct VaryingTarget {
     uint32_t varying = 0;  // index into Plan::varyings
-    bool linear = false;   // noperspective
     float* plane = nullptr;
 };
 
@@ -22,26 +20,30 @@ struct InterpolationInput {
     const FragmentBatch* batch;
     const float* offsetX;  // per lane; nullptr: the pixel's centre
     const float* offsetY;
-    std::span<const VaryingTarget> targets;
-    uint32_t capacity;  // lanes that the planes have room for
-    bool perspective;   // some attribute of the plan is interpolated with perspective
+    std::span<const VaryingTarget> smooth, linear;  // linear: noperspective
+    std::span<const VaryingTarget> flat;            // get the bits of the provoking vertex
+    uint32_t capacity;                              // lanes that the planes have room for
+    bool perspective;                               // some attribute of the plan is interpolated with perspective
     // What else the fragment program wants; nullptr: not wanted. Room for kLaneRoom lanes.
     float* fragZ;
     float* fragInverseW;
 };
 
-/// Of a batch in rows or quads, x and y need not be filled. At most kMaxInterfaceComponents targets.
+/// Of a batch in rows or quads, x and y need not be filled.
 /// Returns the number of lanes for which 1/w was divided.
 using InterpolateFn = uint32_t (*)(const InterpolationInput& input);
 InterpolateFn interpolateFunction(Isa isa);
 
-/// The targets in double, rounded once. From x and y of the batch.
+/// The smooth and linear targets in double, rounded once. From x and y of the batch.
 void interpolatePrecise(const InterpolationInput& input);
-/// Copies the bits of the provoking vertex.
-void copyFlat(const FragmentBatch& batch, const VaryingTarget& target);
 
 /// Fills x and y of a batch in rows or quads.
 using PlaceLanesFn = void (*)(FragmentBatch& batch);
 PlaceLanesFn placeLanesFunction(Isa isa);
+
+/// Bit 8 y + x of `pixels` to ~0 or 0 in the lane of pixel (x, y), for `count` lanes (a multiple of 16) in rows or
+/// quads.
+using SpreadPixelsFn = void (*)(uint64_t pixels, LaneOrder order, uint32_t count, uint32_t* lanes);
+SpreadPixelsFn spreadPixelsFunction(Isa isa);
 
 }  // namespace vernier

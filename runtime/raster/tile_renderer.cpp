@@ -10,7 +10,7 @@
 namespace vernier {
 namespace {
 
-/// Early tests one sample at a time, where stencil or depth bounds take part.
+/// Early tests one sample at a time, where depth bounds take part.
 uint32_t testSamples(const DepthStencilState& state, const TrianglePlanes& planes, int32_t tileX, int32_t tileY,
                      uint32_t samples, const SamplePosition* positions, BlockCoverage* blocks, uint32_t count) {
     uint32_t kept = 0;
@@ -124,10 +124,14 @@ uint32_t TileRenderer::testEarly(const PreparedDraw& draw, const TrianglePlanes&
         count = left;
     }
     statistics.depthReads += countSamples(blocks_.data(), count, plan.samples);
-    if (plan.depth.stencil || plan.depth.bounds) {
+    if (plan.depth.bounds) {
         count = testSamples(state, planes, tileX_, tileY_, plan.samples, draw.positions, blocks_.data(), count);
     } else {
-        const DepthTestInput input{&plan.depth, state.target, &planes, tileX_, tileY_, plan.samples, draw.positions};
+        const DepthTestInput input{
+            &plan.depth,    state.target,
+            &planes,        tileX_,
+            tileY_,         plan.samples,
+            draw.positions, !plan.depth.stencil ? nullptr : planes.primitive->front ? &state.front : &state.back};
         count = depthTestFunction(draw.call.pipeline->isa())(input, blocks_.data(), count);
     }
     if (plan.depth.write) coarse_.update(plan.depth, planes, tileX_, tileY_, plan.samples, blocks_.data(), count);
