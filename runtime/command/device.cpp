@@ -6,6 +6,7 @@
 
 #include "base/cpu_budget.h"
 #include "runtime/command/executor.h"
+#include "spirv_interp/prepare.h"
 
 namespace vernier {
 
@@ -37,6 +38,8 @@ struct Queue::Impl {
 };
 
 void Queue::Impl::main() {
+    // Beside the application, which has nothing to draw yet.
+    prepareBatches(device.isa(), device.desc().accuracy.math);
     uint64_t done = 0;
     std::unique_lock lock(mutex);
     while (true) {

@@ -91,16 +91,17 @@ void fragmentFacts(const ir::Program* fragment, const Plan& plan, FactWriter& fa
 void rateFacts(const std::string& stage, const std::string& item, const ir::Program& program,
                const BatchStatistics& statistics, FactWriter& facts) {
     std::string rates;
-    const auto counts = ir::countByRate(program);
+    const auto counts = ir::countByRate(program), costs = ir::costByRate(program);
     for (size_t rate = 0; rate < ir::kRateCount; ++rate) {
         if (counts[rate] == 0) continue;
         rates += (rates.empty() ? "" : ", ") + std::string(ir::rateName(static_cast<ir::Rate>(rate))) + " " +
-                 std::to_string(counts[rate]);
+                 std::to_string(counts[rate]) + " (cost " + std::to_string(costs[rate]) + ")";
     }
     if (!rates.empty())
         facts.runs("operations of the " + stage + " by rate: " + rates,
-                   "how often their values can change; " + count(statistics.instructions, "instruction") + " per " +
-                       std::to_string(statistics.lanes) + " lanes");
+                   "how often their values can change, and what they cost, in additions; " +
+                       count(statistics.instructions, "instruction") + " per " + std::to_string(statistics.lanes) +
+                       " lanes");
     if (statistics.drawRateInstructions > 0)
         facts.runs(
             count(statistics.drawRateInstructions, "instruction") + " of the " + stage + ", once per draw and thread",

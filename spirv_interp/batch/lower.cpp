@@ -63,7 +63,12 @@ Operand Lowerer::wordOf(ir::ValueId value, uint8_t word) {
 
 Operand Lowerer::rowOf(ir::ValueId value) {
     if (!isScalar(value)) return Operand::read(registerOf(value));
+    // What is known before the piece stays as it is: a block spreads it once.
+    const bool stays = isGiven(value);
+    const auto known = spread_.find(value);
+    if (stays && known != spread_.end()) return Operand::read(known->second);
     const uint32_t temporary = newRegister(isWide(value));
+    if (stays) spread_[value] = temporary;
     emit(Op::broadcast, {Operand::write(temporary), wordOf(value, 0)});
     if (isWide(value)) emit(Op::broadcast, {Operand::write(temporary, 1), wordOf(value, 1)});
     return Operand::read(temporary);

@@ -206,6 +206,7 @@ void Lowerer::lowerBatch() {
     for (ir::BlockId b = 0; b < count; ++b) {
         const ir::Block& block = program_.blocks[b];
         block_ = b;
+        spread_.clear();
         if (block.loopHeader) {
             MachineLoop loop;
             loop.header = b;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "spirv_interp/batch/fuse.h"
@@ -90,7 +91,7 @@ class Lowerer {
     uint32_t scalarOf(ir::ValueId value);
     uint32_t newRegister(bool wide);
     uint32_t registerOf(ir::ValueId value);
-    /// A row with the value: its own, or a temporary one into which a scalar is spread.
+    /// A row with the value: its own, or one into which a scalar is spread.
     Operand rowOf(ir::ValueId value);
     Operand wordOf(ir::ValueId value, uint8_t word);
     Operand operandOf(ir::ValueId value) { return wordOf(value, 0); }
@@ -146,8 +147,9 @@ class Lowerer {
     std::vector<uint32_t>& scalarIndex_;  // by value
     const ir::Rate rate_;
     MachineCode& code_;
-    std::vector<uint32_t> registers_;  // by value
-    uint32_t loop_ = kNone;            // header of the loop being lowered
+    std::vector<uint32_t> registers_;                   // by value
+    std::unordered_map<ir::ValueId, uint32_t> spread_;  // in this block: rows of scalars
+    uint32_t loop_ = kNone;                             // header of the loop being lowered
     uint32_t line_ = 0;
     Fusions fusions_;
     std::vector<bool> fallsIn_;   // blocks that run on from the block before, with its mask

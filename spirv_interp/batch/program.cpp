@@ -6,6 +6,7 @@
 #include "spirv_interp/batch/handlers.h"
 #include "spirv_interp/batch/schedule.h"
 #include "spirv_interp/ir/verify.h"
+#include "spirv_interp/prepare.h"
 
 namespace vernier {
 namespace batch {
@@ -157,6 +158,10 @@ std::string CompiledProgram::text() const {
 }
 
 }  // namespace batch
+
+void prepareBatches(Isa isa, MathTier tier) {
+    batch::handlerTables(isa, tier);
+}
 
 Result<std::shared_ptr<const BatchProgram>> BatchProgram::compile(ir::Program program, const BatchOptions& options) {
     constexpr uint32_t kLanes[] = {0, 16, 32, 64, 128};

@@ -36,6 +36,7 @@ void optimise(Program& program, const OptimiseOptions& options) {
     run("simplifyPhis", simplifyPhis);
     run("foldConstants", foldConstants);
     if (options.contract) run("contract", contract);
+    run("hoistInvariants", hoistInvariants);
     run("removeDead", removeDead);
     run("closeLoops", closeLoops);
     compact(program);

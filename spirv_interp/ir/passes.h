@@ -30,6 +30,9 @@ bool convertIfs(Program& program);
 /// one. Only innermost loops that their header alone leaves.
 bool unrollLoops(Program& program);
 
+/// Operations that give the same in every round of a loop, and that every round runs, are done before the loop.
+bool hoistInvariants(Program& program);
+
 /// Operations whose results nobody uses are removed, and stores of undefined values to outputs.
 bool removeDead(Program& program);
 

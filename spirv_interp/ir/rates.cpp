@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "spirv_interp/ir/cost.h"
 #include "spirv_interp/ir/ops.h"
 
 namespace vernier::ir {
@@ -81,17 +82,34 @@ std::vector<Rate> computeRates(const Program& program) {
     return rates;
 }
 
-std::array<uint32_t, kRateCount> countByRate(const Program& program) {
+namespace {
+
+/// The sum of weightOf(inst) by the rate of the result.
+template <class F>
+std::array<uint32_t, kRateCount> sumByRate(const Program& program, F&& weightOf) {
     const std::vector<Rate> rates = computeRates(program);
-    std::array<uint32_t, kRateCount> counts{};
+    std::array<uint32_t, kRateCount> sums{};
     for (const Block& block : program.blocks) {
         for (const Inst& inst : block.insts) {
             const bool leaf = inst.op == Op::constant || inst.op == Op::undef || inst.op == Op::input ||
                               inst.op == Op::phi || inst.op == Op::copy;
-            if (inst.result != kNoValue && !leaf) ++counts[static_cast<size_t>(rates[inst.result])];
+            if (inst.result != kNoValue && !leaf) sums[static_cast<size_t>(rates[inst.result])] += weightOf(inst);
         }
     }
-    return counts;
+    return sums;
+}
+
+}  // namespace
+
+std::array<uint32_t, kRateCount> countByRate(const Program& program) {
+    return sumByRate(program, [](const Inst&) { return 1u; });
+}
+
+std::array<uint32_t, kRateCount> costByRate(const Program& program) {
+    return sumByRate(program, [&](const Inst& inst) {
+        const uint32_t cost = costOf(program, inst);
+        return cost < kTooDear ? cost : inst.op == Op::image ? kImageCost : kAccessCost;
+    });
 }
 
 std::string_view rateName(Rate rate) {

@@ -35,4 +35,9 @@ std::vector<Rate> computeRates(const Program& program);
 /// Operations by the rate of their result; constants, inputs, phis and what has no result are not counted.
 std::array<uint32_t, kRateCount> countByRate(const Program& program);
 
+/// What they cost, in simple operations, each of them counted once (ir/cost.h); an image is `kImageCost`, another
+/// access to memory `kAccessCost`.
+std::array<uint32_t, kRateCount> costByRate(const Program& program);
+inline constexpr uint32_t kImageCost = 40, kAccessCost = 4;
+
 }  // namespace vernier::ir

@@ -210,6 +210,7 @@ void main() {
     EXPECT_THAT(text, HasSubstr("of the fragment program, once per draw and thread"));
     EXPECT_THAT(text, HasSubstr("operations of the fragment program by rate: draw"));
     EXPECT_THAT(text, HasSubstr("operations of the vertex program by rate: "));
+    EXPECT_THAT(text, HasSubstr(" (cost "));
     // The first vertex provokes: its id is 9, root 3, and 81 % 7 < 5.
     EXPECT_THAT(read(target, kSize, kSize), testing::Each(0xFF00FFFFu));
 }

@@ -91,30 +91,30 @@ b0:
   %3 i32 = constant 0x0
   %4 i32 = constant 0x14
   %5 f32 = input #0
+  %6 i32 = loadBuffer #0 %3 %3
   jump b1
 b1 loop b5 <- b0 b4:
-  %6 i32 = phi %3 %18
-  %7 f32 = phi %5 %17
-  %8 i32 = loadBuffer #0 %3 %3
-  %9 b1 = slt.i32 %6 %8
+  %7 i32 = phi %3 %18
+  %8 f32 = phi %5 %17
+  %9 b1 = slt.i32 %7 %6
   branch %9 b2 b5
 b2 <- b1:
-  %10 i32 = shl %6 %0
+  %10 i32 = shl %7 %0
   %11 i32 = iadd %10 %4
   %12 f32 = loadBuffer #0 %3 %11
   %13 b1 = folt.f32 %1 %12
   branch %13 b4 b3
 b3 <- b2:
   %14 f32 = fsin %12
-  %15 f32 = fadd %7 %14
+  %15 f32 = fadd %8 %14
   %16 f32 = fmul %12 %15
   jump b4
 b4 <- b3 b2:
-  %17 f32 = phi %16 %7
-  %18 i32 = iadd %2 %6
+  %17 f32 = phi %16 %8
+  %18 i32 = iadd %2 %7
   jump b1
 b5 <- b1:
-  %19 f32 = phi %7
+  %19 f32 = phi %8
   storeOutput #0 %19
   ret
 )");

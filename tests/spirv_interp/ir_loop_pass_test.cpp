@@ -267,6 +267,67 @@ b4 <- b1 b2:
 )");
 }
 
+TEST(Pass, HoistInvariants) {
+    // What every round runs and the loop does not change goes before it, with what follows from it; what only some
+    // rounds run stays.
+    EXPECT_EQ(after(hoistInvariants, R"(b0:
+  %0 f32 = input #0
+  %1 i32 = constant 0x0
+  %2 i32 = constant 0x8
+  jump b1
+b1 loop b5 <- b0 b4:
+  %3 i32 = phi %1 %11
+  %4 f32 = phi %0 %8
+  %5 b1 = slt.i32 %3 %2
+  branch %5 b2 b5
+b2 <- b1:
+  %6 f32 = fsqrt %0
+  %7 f32 = fmul %6 %0
+  %8 f32 = fadd %4 %7
+  %9 b1 = folt.f32 %0 %4
+  branch %9 b3 b4
+b3 <- b2:
+  %10 f32 = fneg %0
+  storeBuffer #0 %1 %3 %10
+  jump b4
+b4 <- b2 b3:
+  %11 i32 = iadd %3 %2
+  jump b1
+b5 <- b1:
+  %12 f32 = phi %4
+  storeOutput #0 %12
+  ret
+)"),
+              R"(b0:
+  %0 f32 = input #0
+  %1 i32 = constant 0x0
+  %2 i32 = constant 0x8
+  %3 f32 = fsqrt %0
+  %4 f32 = fmul %3 %0
+  jump b1
+b1 loop b5 <- b0 b4:
+  %5 i32 = phi %1 %11
+  %6 f32 = phi %0 %8
+  %7 b1 = slt.i32 %5 %2
+  branch %7 b2 b5
+b2 <- b1:
+  %8 f32 = fadd %6 %4
+  %9 b1 = folt.f32 %0 %6
+  branch %9 b3 b4
+b3 <- b2:
+  %10 f32 = fneg %0
+  storeBuffer #0 %1 %5 %10
+  jump b4
+b4 <- b2 b3:
+  %11 i32 = iadd %5 %2
+  jump b1
+b5 <- b1:
+  %12 f32 = phi %6
+  storeOutput #0 %12
+  ret
+)");
+}
+
 TEST(Pass, CloseLoops) {
     // Out of two loops at once, and along two ways that meet.
     Result<Program> p = parse(std::string(kHead) + R"(b0:
