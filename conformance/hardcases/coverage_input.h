@@ -37,6 +37,7 @@ struct CountOptions {
     VkCullModeFlags cull = VK_CULL_MODE_NONE;
     VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
     bool depthClamp = false;
+    float lineWidth = 1;
     bool drawEach = false;  // one draw per three vertices instead of one for all
 };
 

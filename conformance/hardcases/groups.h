@@ -9,10 +9,16 @@
     X('C', clippingCases, "Clipping")                           \
     X('W', homogeneousCases, "w near zero and guard band")      \
     X('I', interpolationCases, "Interpolation and perspective") \
+    X('T', textureCases, "Texture filtering and addressing")    \
     X('D', depthCases, "Depth precision, bias, clamp")          \
     X('S', stencilCases, "Stencil")                             \
     X('M', multisampleCases, "Multisampling")                   \
-    X('B', blendingCases, "Blending, rounding, formats")
+    X('B', blendingCases, "Blending, rounding, formats")        \
+    X('P', lineAndPointCases, "Lines and points")               \
+    X('N', specialValueCases, "NaN, infinities, denormals")     \
+    X('X', arithmeticCases, "Shader arithmetic")                \
+    X('G', integerCases, "Integer operations")                  \
+    X('V', viewportCases, "Set-up overflow, viewport, topology")
 
 namespace vernier::conformance::hardcases {
 

@@ -61,7 +61,8 @@ struct ColorVertex {
 
 /// Draws vertices with their colours interpolated in perspective into one target.
 Result<Scene> colorScene(std::string_view name, const std::vector<ColorVertex>& vertices, VkExtent2D extent,
-                         VkFormat format = VK_FORMAT_R8G8B8A8_UNORM, bool depthClamp = false);
+                         VkFormat format = VK_FORMAT_R8G8B8A8_UNORM,
+                         VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST);
 
 /// The same with two targets of floats: smooth and noperspective.
 Result<Scene> interpolationScene(std::string_view name, const std::vector<ColorVertex>& vertices, VkExtent2D extent);

@@ -1,0 +1,104 @@
+#include "conformance/hardcases/value_input.h"
+
+#include "conformance/hardcases/judges.h"
+#include "conformance/scenes/recorder.h"
+#include "conformance/scenes/shapes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace vernier::conformance::hardcases {
+namespace {
+
+std::string hex(uint32_t bits) {
+    char text[64];
+    std::snprintf(text, sizeof text, "0x%08x (%.9g)", bits, static_cast<double>(std::bit_cast<float>(bits)));
+    return text;
+}
+
+Result<Scene> valueScene(std::string_view name, std::string_view expression, std::string_view declarations,
+                         const std::vector<ValueRow>& rows) {
+    const VkExtent2D extent{static_cast<uint32_t>(rows.size()), 1};
+    SceneRecorder record(name, "An expression on a table of inputs.");
+    std::vector<uint32_t> texels;
+    for (size_t k = 0; k < 3; ++k) {
+        for (const ValueRow& row : rows) texels.push_back(row.in[k]);
+    }
+    const uint32_t inputs = record.texture("inputs", VK_FORMAT_R32_UINT, {extent.width, 3}, {bytesOf(texels)});
+    const uint32_t target = record.colorTarget("results", VK_FORMAT_R32_UINT, extent);
+    const std::string glsl =
+        "#version 450\nlayout(binding = 0) uniform usampler2D inputs;\n"
+        "layout(location = 0) out uint result;\n"
+        "uint u(int k) { return texelFetch(inputs, ivec2(int(gl_FragCoord.x), k), 0).r; }\n"
+        "int i(int k) { return int(u(k)); }\n"
+        "float f(int k) { return uintBitsToFloat(u(k)); }\n" +
+        std::string(declarations) + "void main() { result = " + std::string(expression) + "; }\n";
+    record.pass(extent).color(target, {0, 0, 0, 0});
+    record.draw(record.pipeline(record.vertex(kCoverVertexGlsl), record.fragment(glsl)), 3)
+        .texture(0, inputs, record.sampler(VK_FILTER_NEAREST));
+    record.output(target);
+    return record.finish();
+}
+
+}  // namespace
+
+void addValues(CaseInput& input, std::string_view name, std::string_view expression, std::vector<ValueRow> rows,
+               std::string_view declarations) {
+    const size_t scene = input.scene(valueScene(name, expression, declarations, rows));
+    const VkExtent2D extent{static_cast<uint32_t>(rows.size()), 1};
+    judgePixels(input, scene, 0, extent,
+                [rows = std::move(rows), text = std::string(expression)](const PixelReader& pixels, const Declared&) {
+                    Verdict worst;
+                    for (uint32_t x = 0; x < rows.size(); ++x) {
+                        const auto bits = static_cast<uint32_t>(pixels.code(x, 0, 0));
+                        Verdict verdict = rows[x].judge(bits);
+                        if (verdict.outcome != Outcome::exact) {
+                            std::string inputs;
+                            for (const uint32_t in : rows[x].in) inputs += (inputs.empty() ? "" : ", ") + hex(in);
+                            verdict.witness = text + " of " + inputs + " is " + hex(bits) + "; " + verdict.witness;
+                        }
+                        worst = worst.worse(verdict);
+                    }
+                    return worst;
+                });
+}
+
+double ulpOf(double value) {
+    const double size = std::max(std::abs(value), 0x1p-126);
+    return std::ldexp(1.0, std::ilogb(size) - 23);
+}
+
+std::function<Verdict(uint32_t)> floatNear(double exactly, double tolerance) {
+    return [=](uint32_t bits) -> Verdict {
+        if (std::isnan(exactly)) return {};
+        const double got = std::bit_cast<float>(bits);
+        char text[80];
+        std::snprintf(text, sizeof text, "exactly %.9g, permitted within %.3g", exactly, tolerance);
+        if (got == static_cast<double>(static_cast<float>(exactly))) return {};
+        const bool flushed = got == 0 && std::abs(exactly) < 0x1p-126;
+        const bool overflown =
+            std::isinf(got) && std::abs(exactly) + tolerance > 0x1.fffffep127 && (got > 0) == (exactly > 0);
+        if (flushed || overflown || std::abs(got - exactly) <= tolerance) return Verdict::allowed(text);
+        return Verdict::wrong(text);
+    };
+}
+
+std::function<Verdict(uint32_t)> floatWithin(double exactly, double ulps) {
+    return floatNear(exactly, ulps * ulpOf(exactly));
+}
+
+std::function<Verdict(uint32_t)> oneOf(std::vector<uint32_t> bits) {
+    return [bits = std::move(bits)](uint32_t got) -> Verdict {
+        if (got == bits.front()) return {};
+        const std::string text = "exactly " + hex(bits.front());
+        return std::ranges::count(bits, got) != 0 ? Verdict::allowed(text + "; this is permitted too")
+                                                  : Verdict::wrong(text);
+    };
+}
+
+std::function<Verdict(uint32_t)> anything() {
+    return [](uint32_t) { return Verdict{}; };
+}
+
+}  // namespace vernier::conformance::hardcases

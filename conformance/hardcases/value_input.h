@@ -1,0 +1,45 @@
+// Cases about single operations of shaders: an expression on a table of inputs, and what its result may be row by row.
+#pragma once
+
+#include "conformance/hardcases/hard_case.h"
+
+#include <array>
+#include <bit>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace vernier::conformance::hardcases {
+
+/// Inputs by bits, which the compiler cannot see, and the judge of the 32 bits of the result.
+struct ValueRow {
+    std::array<uint32_t, 3> in{};
+    std::function<Verdict(uint32_t result)> judge;
+};
+
+/// Adds a scene that computes `expression`, a GLSL uint, for every row, with u(k) the k-th input as uint, i(k) as int
+/// and f(k) as float; and the judge of all rows. `declarations` go before main.
+void addValues(CaseInput& input, std::string_view name, std::string_view expression, std::vector<ValueRow> rows,
+               std::string_view declarations = "");
+
+inline uint32_t bitsOf(float value) {
+    return std::bit_cast<uint32_t>(value);
+}
+
+/// Judges of a float result: exact when it is the float nearest to `exactly`, allowed within `tolerance` of it.
+/// Denormals may be flushed to 0. Infinities stand for themselves; where `exactly` is NaN nothing is asked.
+std::function<Verdict(uint32_t)> floatNear(double exactly, double tolerance);
+
+/// The same with the tolerance in units in the last place of a float of that size.
+std::function<Verdict(uint32_t)> floatWithin(double exactly, double ulps);
+
+/// Exact when the bits are the first of these, allowed when they are another one.
+std::function<Verdict(uint32_t)> oneOf(std::vector<uint32_t> bits);
+
+/// Nothing is asked but that it runs.
+std::function<Verdict(uint32_t)> anything();
+
+/// The distance between neighbouring floats around a number.
+double ulpOf(double value);
+
+}  // namespace vernier::conformance::hardcases
