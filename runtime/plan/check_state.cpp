@@ -21,10 +21,10 @@ std::string formatName(VkFormat format) {
 Status checkVertexInput(const GraphicsState& state) {
     for (const auto& binding : state.vertexBindings)
         if (binding.binding >= kMaxVertexBindings)
-            return invalidArgument("GraphicsState::vertexBindings: binding " + number(binding.binding) +
-                                   " is not below " + number(kMaxVertexBindings));
+            return invalidArgument("vertexBindings: binding " + number(binding.binding) + " is not below " +
+                                   number(kMaxVertexBindings));
     for (const auto& attribute : state.vertexAttributes) {
-        const std::string name = "GraphicsState::vertexAttributes: location " + number(attribute.location);
+        const std::string name = "vertex attribute of location " + number(attribute.location);
         const FormatInfo* info = findFormat(attribute.format);
         if (info == nullptr || (info->bufferFeatures & VK_FORMAT_FEATURE_VERTEX_BUFFER_BIT) == 0)
             return unsupported(name + ": " + formatName(attribute.format) + " is not a vertex format");
@@ -45,27 +45,24 @@ Status checkRasterization(const GraphicsState& state) {
         case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN:
             break;
         default:
-            return unsupported("GraphicsState::topology: VkPrimitiveTopology " + number(state.topology) +
+            return unsupported("topology: VkPrimitiveTopology " + number(state.topology) +
                                " (adjacency and patches) is not supported");
     }
     if (state.polygonMode > VK_POLYGON_MODE_POINT)
-        return unsupported("GraphicsState::polygonMode: VkPolygonMode " + number(state.polygonMode) +
-                           " is not supported");
+        return unsupported("polygonMode: VkPolygonMode " + number(state.polygonMode) + " is not supported");
     if (!isSampleCount(state.samples))
-        return unsupported("GraphicsState::samples: " + number(state.samples) +
-                           " samples are not supported (1, 2, 4, 8, 16 are)");
+        return unsupported("samples: " + number(state.samples) + " samples are not supported (1, 2, 4, 8, 16 are)");
     return {};
 }
 
 Status checkAttachments(const GraphicsState& state) {
     if (state.colorCount > kMaxColorAttachments)
-        return invalidArgument("GraphicsState::colorCount: " + number(state.colorCount) + " is above " +
-                               number(kMaxColorAttachments));
+        return invalidArgument("colorCount: " + number(state.colorCount) + " is above " + number(kMaxColorAttachments));
     for (uint32_t n = 0; n < state.colorCount; ++n) {
         const VkFormat format = state.colorFormats[n];
         if (format == VK_FORMAT_UNDEFINED) continue;
         const FormatInfo* info = findFormat(format);
-        const std::string name = "GraphicsState::colorFormats[" + number(n) + "]: " + formatName(format);
+        const std::string name = "colorFormats[" + number(n) + "]: " + formatName(format);
         if (info == nullptr || (info->optimalTilingFeatures & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT) == 0)
             return unsupported(name + " cannot be a colour attachment");
         if (state.blend[n].blendEnable && !state.logicOpEnable) {
@@ -73,14 +70,14 @@ Status checkAttachments(const GraphicsState& state) {
                 return invalidArgument(name + " cannot be blended");
             for (const VkBlendOp op : {state.blend[n].colorBlendOp, state.blend[n].alphaBlendOp})
                 if (op > VK_BLEND_OP_MAX)
-                    return unsupported("GraphicsState::blend[" + number(n) + "]: VkBlendOp " +
-                                       number(static_cast<uint64_t>(op)) + " is not supported");
+                    return unsupported("blend[" + number(n) + "]: VkBlendOp " + number(static_cast<uint64_t>(op)) +
+                                       " is not supported");
         }
     }
     if (state.depthStencilFormat == VK_FORMAT_UNDEFINED) return {};
     const FormatInfo* info = findFormat(state.depthStencilFormat);
     if (info == nullptr || (info->optimalTilingFeatures & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT) == 0)
-        return unsupported("GraphicsState::depthStencilFormat: " + formatName(state.depthStencilFormat) +
+        return unsupported("depthStencilFormat: " + formatName(state.depthStencilFormat) +
                            " cannot be a depth/stencil attachment");
     return {};
 }
@@ -115,7 +112,7 @@ Status checkInterfaces(const GraphicsState& state, const ir::Program& vertex, co
                                        [&](const auto& attribute) { return attribute.location == slot.location; });
         if (!found)
             return invalidArgument("vertex shader: input location " + number(slot.location) +
-                                   " has no entry in GraphicsState::vertexAttributes");
+                                   " has no vertex attribute");
     }
     if (fragment == nullptr) return {};
     return refuseBuiltins(*fragment);

@@ -4,6 +4,7 @@
 #include <immintrin.h>
 
 #include <atomic>
+#include <new>
 #include <numeric>
 #include <set>
 
@@ -68,6 +69,34 @@ TEST(ThreadPool, SerialisesCallersFromSeveralThreads) {
     for (auto& caller : callers) caller.join();
     EXPECT_EQ(sum, 4 * 50 * 16);
     EXPECT_FALSE(mixed);
+}
+
+TEST(ThreadPool, PassesOnWhatAStepThrowsAndGoesOnWorking) {
+    for (const uint32_t threads : {1u, 4u}) {
+        ThreadPool pool(threads);
+        for (int round = 0; round < 20; ++round) {
+            std::atomic<uint32_t> begun{0};
+            EXPECT_THROW(pool.parallelFor(1000,
+                                          [&](uint32_t index, uint32_t) {
+                                              ++begun;
+                                              if (index >= 3) throw std::bad_alloc();
+                                          }),
+                         std::bad_alloc);
+            EXPECT_LE(begun, 3 + threads) << "steps went on after the first that threw";
+            std::atomic<uint32_t> sum{0};
+            pool.parallelFor(100, [&](uint32_t index, uint32_t) { sum += index; });
+            EXPECT_EQ(sum, 4950u);
+        }
+    }
+}
+
+TEST(Arena, SizesThatNoMemoryHasAreRefused) {
+    Arena arena;
+    arena.allocate(16);
+    EXPECT_THROW(static_cast<void>(arena.allocate(SIZE_MAX)), std::bad_alloc);
+    EXPECT_THROW(static_cast<void>(arena.allocate(SIZE_MAX - 8)), std::bad_alloc);
+    EXPECT_THROW(static_cast<void>(arena.array<uint64_t>(SIZE_MAX / 4)), std::bad_alloc);
+    EXPECT_NE(arena.allocate(16), nullptr);
 }
 
 TEST(ThreadPool, SetsTheFloatingPointControlWordAndRestoresTheCallers) {

@@ -22,7 +22,8 @@
  *
  * Errors: every function that can fail returns a VnResult; on failure nothing has changed, vnGetError tells in words what
  * was wrong, naming the object, the field and the value, and the device goes on working. A NULL or destroyed handle is an
- * error, never a crash. A failed command in a context is skipped.
+ * error, never a crash (but a VnDevice or VnContext is a pointer: do not use it after its destruction). A failed command
+ * in a context is skipped.
  *
  * Threads: functions that take a VnDevice may be called from any thread at any time, except vnDestroyDevice. A context
  * is used by one thread at a time; several contexts of a device may be used by several threads. Destroying an object that
@@ -62,7 +63,8 @@ typedef enum VnResult {
     VN_ERROR_UNSUPPORTED = -4,      /* legal, but not implemented; the message names the feature */
     VN_ERROR_SHADER = -5,           /* the SPIR-V is broken or does not fit the other state */
     VN_ERROR_OUT_OF_MEMORY = -6,
-    VN_ERROR_DEVICE_LOST = -7 /* a shader looped beyond the budget; the device accepts no more work */
+    VN_ERROR_DEVICE_LOST =
+        -7 /* a shader looped beyond the budget, or memory ran out while work ran: nothing more runs */
 } VnResult;
 
 typedef enum VnSeverity { VN_SEVERITY_INFO = 0, VN_SEVERITY_WARNING = 1, VN_SEVERITY_ERROR = 2 } VnSeverity;
@@ -416,10 +418,12 @@ VN_API VnResult vnBindVertexBuffer(VnContext context, uint32_t binding, VnBuffer
 /* `type`: VK_INDEX_TYPE_UINT16 or VK_INDEX_TYPE_UINT32; `offset` in bytes, a multiple of the index size. */
 VN_API VnResult vnBindIndexBuffer(VnContext context, VnBuffer buffer, uint64_t offset, VkIndexType type);
 /* Uniform or storage buffer at (set, binding, element); set 0 .. 7, binding 0 .. 255, element 0 .. 255. `offset` is a
- * multiple of 4 bytes; `size` 0: to the end. {0} unbinds. Accesses outside read 0 and drop writes. */
+ * multiple of 4 bytes; `size` 0: to the end. {0} unbinds. Accesses outside read 0 and drop writes (64
+ * bits count as two words; offsets are computed modulo 2^32). */
 VN_API VnResult vnBindBuffer(VnContext context, uint32_t set, uint32_t binding, uint32_t element, VnBuffer buffer,
                              uint64_t offset, uint64_t size);
-/* A combined image and sampler. For a separate texture or sampler, or a storage image, the other handle is {0}. */
+/* A combined image and sampler. For a separate texture or sampler, or a storage image, the other handle is {0}. The
+ * view must be of the dimension that the program reads: checked by draws and dispatches. */
 VN_API VnResult vnBindTexture(VnContext context, uint32_t set, uint32_t binding, uint32_t element, VnView view,
                               VnSampler sampler);
 /* A range of a buffer as texels of `format` (samplerBuffer, imageBuffer and their kind). `offset` is a multiple of 16
@@ -485,6 +489,7 @@ VN_API VnResult vnUpdateImage(VnContext context, VnImage image, const VnRegion* 
 VN_API VnResult vnReadImage(VnContext context, VnImage image, const VnRegion* region, void* data, uint64_t size);
 VN_API VnResult vnReadBuffer(VnContext context, VnBuffer buffer, uint64_t offset, void* data, uint64_t size);
 
+/* Ranges and regions of one resource must not overlap, here and below. */
 VN_API VnResult vnCopyBuffer(VnContext context, VnBuffer source, uint64_t sourceOffset, VnBuffer destination,
                              uint64_t destinationOffset, uint64_t size);
 /* The regions have the same size, counted in blocks where a format is compressed; the formats have the same texel (or
