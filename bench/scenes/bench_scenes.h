@@ -39,21 +39,37 @@
     X(deferred)                 \
     X(msaa4)
 
+#define VERNIER_TRANSFER_SCENES(X) \
+    X(transfer_copy)               \
+    X(transfer_nearest)            \
+    X(transfer_linear)             \
+    X(transfer_mirror)             \
+    X(transfer_convert)            \
+    X(transfer_mips)               \
+    X(transfer_clear)              \
+    X(transfer_resolve)
+
 namespace vernier::bench {
 
 /// 1024 x 768 (procedural ones 512 x 384); each bound by one thing: fill, small triangles, textures, arithmetic, ...
 std::span<const conformance::SceneEntry> speedScenes();
 
+/// 2048 x 2048 texels moved, and nothing drawn.
+std::span<const conformance::SceneEntry> transferScenes();
+
 /// Small enough for the exact oracle; each sensitive to one axis of accuracy.
 std::span<const conformance::SceneEntry> accuracyScenes();
 
-/// The scene called `name`: of either list, or of a measurement of growth ("triangles:4096").
+/// The scene called `name`: of a list above, or of a measurement of growth ("triangles:4096").
 Result<conformance::Scene> buildBenchScene(std::string_view name);
 
 namespace speed {
 #define VERNIER_DECLARE_SCENE(name) Result<conformance::Scene> name();
 VERNIER_SPEED_SCENES(VERNIER_DECLARE_SCENE)
-#undef VERNIER_DECLARE_SCENE
 }  // namespace speed
+namespace transfer {
+VERNIER_TRANSFER_SCENES(VERNIER_DECLARE_SCENE)
+}  // namespace transfer
+#undef VERNIER_DECLARE_SCENE
 
 }  // namespace vernier::bench

@@ -12,14 +12,24 @@ constexpr SceneEntry kSpeedScenes[] = {
 #undef VERNIER_SCENE_ENTRY
 };
 
+constexpr SceneEntry kTransferScenes[] = {
+#define VERNIER_SCENE_ENTRY(name) {#name, &transfer::name},
+    VERNIER_TRANSFER_SCENES(VERNIER_SCENE_ENTRY)
+#undef VERNIER_SCENE_ENTRY
+};
+
 }  // namespace
 
 std::span<const SceneEntry> speedScenes() {
     return kSpeedScenes;
 }
 
+std::span<const SceneEntry> transferScenes() {
+    return kTransferScenes;
+}
+
 Result<Scene> buildBenchScene(std::string_view name) {
-    for (const std::span<const SceneEntry> list : {speedScenes(), accuracyScenes()})
+    for (const std::span<const SceneEntry> list : {speedScenes(), transferScenes(), accuracyScenes()})
         for (const SceneEntry& entry : list)
             if (entry.name == name) return entry.build();
     return growthScene(name);

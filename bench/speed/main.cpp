@@ -103,6 +103,9 @@ int main(int argc, char** argv) {
     RunOptions options;
     CLI::App* runCommand = app.add_subcommand("run", "Time all scenes on all drivers");
     addRunOptions(*runCommand, options, "--scene");
+    CLI::App* transferCommand =
+        app.add_subcommand("transfer", "Time copies, blits, clears and resolves on all drivers");
+    addRunOptions(*transferCommand, options, "--scene");
     CLI::App* computeCommand =
         app.add_subcommand("compute", "Time all compute kernels on all Vulkan drivers and compare what they compute");
     addRunOptions(*computeCommand, options, "--kernel");
@@ -126,7 +129,8 @@ int main(int argc, char** argv) {
     if (*computeCommand)
         for (const Kernel& kernel : kernels()) names.emplace_back(kernel.name);
     else
-        for (const SceneEntry& entry : speedScenes()) names.emplace_back(entry.name);
+        for (const SceneEntry& entry : *transferCommand ? transferScenes() : speedScenes())
+            names.emplace_back(entry.name);
     return run(paths, options, names, computeCommand->parsed());
 }
 

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <vector>
 
 #include "runtime/format/resolve.h"
@@ -78,70 +80,130 @@ void unpackBlocks(const FormatInfo& format, const FormatOps& ops, const std::byt
     }
 }
 
+/// What all rows of a blit share.
+struct BlitSource {
+    const Image& image;
+    uint32_t mip;
+    FormatOps ops;
+    VkFilter filter;
+    std::vector<Axis::Taps> taps;  // along x
+};
+
+/// Makes rows of a blit, one after the other on one thread. Neighbouring rows share source rows: those read last are
+/// kept, filtered along x.
 class Blitter {
   public:
-    Blitter(const Image& source, uint32_t mip, FormatOps ops, Axis x, VkFilter filter)
-        : source_(source), mip_(mip), ops_(ops), filter_(filter) {
-        taps_.reserve(x.count);
-        for (uint32_t i = 0; i < x.count; ++i) taps_.push_back(x.at(x.begin + i, filter));
-    }
+    explicit Blitter(const BlitSource& source)
+        : source_(source),
+          width_(static_cast<uint32_t>(source.taps.size())),
+          texels_(source.image.level(source.mip).extent.width),
+          front_(width_),
+          back_(width_) {}
 
-    /// One destination row from the source rows around (y, z).
-    void row(const Axis::Taps& y, const Axis::Taps& z, PlaneRow& result) const {
-        const auto width = static_cast<uint32_t>(taps_.size());
-        horizontal(y.first, z.first, result);
-        if (filter_ == VK_FILTER_NEAREST) return;
-        PlaneRow other(width);
-        blend(y, z.first, result, other);
-        if (z.weight == 0) return;
-        PlaneRow back(width);
-        horizontal(y.first, z.second, back);
-        blend(y, z.second, back, other);
-        combine(result, back, z.weight);
+    /// One destination row from the source rows around (y, z); valid until the next call.
+    PlaneRow& row(const Axis::Taps& y, const Axis::Taps& z) {
+        PlaneRow& front = plane(y, z.first, front_);
+        if (z.weight == 0) return front;
+        return combine(front, plane(y, z.second, back_), z.weight, front_);
     }
 
   private:
-    void blend(const Axis::Taps& y, uint32_t z, PlaneRow& result, PlaneRow& scratch) const {
-        if (y.weight == 0) return;
-        horizontal(y.second, z, scratch);
-        combine(result, scratch, y.weight);
+    static constexpr size_t kKept = 4;  // two rows of two slices
+    struct Kept {
+        uint64_t key = ~uint64_t{0};
+        uint64_t used = 0;  // when last
+        PlaneRow row{0};
+    };
+
+    PlaneRow& plane(const Axis::Taps& y, uint32_t z, PlaneRow& result) {
+        PlaneRow& first = horizontal(y.first, z);
+        if (y.weight == 0) return first;
+        return combine(first, horizontal(y.second, z), y.weight, result);
     }
 
-    void combine(PlaneRow& result, PlaneRow& other, float weight) const {
-        for (size_t c = 0; c < 4; ++c)
-            for (size_t i = 0; i < taps_.size(); ++i)
-                result.plane(c)[i] = mix(result.plane(c)[i], other.plane(c)[i], weight);
-    }
-
-    void horizontal(uint32_t y, uint32_t z, PlaneRow& result) const {
-        const uint32_t width = source_.level(mip_).extent.width;
-        PlaneRow texels(width);
-        const FormatInfo& format = source_.format();
-        const std::byte* row = rowAddress(source_, mip_, y / format.blockHeight(), z, 0);
-        if (format.block != nullptr) {
-            unpackBlocks(format, ops_, row, y, width, texels.writable());
-        } else {
-            ops_.unpack(row, width, texels.writable());
-        }
+    PlaneRow& combine(PlaneRow& a, PlaneRow& b, float weight, PlaneRow& result) const {
         for (size_t c = 0; c < 4; ++c) {
-            const float* from = texels.plane(c);
+            const float *from = a.plane(c), *other = b.plane(c);
             float* to = result.plane(c);
-            for (size_t i = 0; i < taps_.size(); ++i) {
-                const Axis::Taps& tap = taps_[i];
-                if (filter_ == VK_FILTER_NEAREST)
-                    std::memcpy(to + i, from + tap.first, sizeof(float));  // integers travel as bits
-                else
+            for (size_t i = 0; i < width_; ++i) to[i] = mix(from[i], other[i], weight);
+        }
+        return result;
+    }
+
+    /// Source row (y, z) filtered along x; it stays while no more than kKept are asked for.
+    PlaneRow& horizontal(uint32_t y, uint32_t z) {
+        const uint64_t key = uint64_t{z} << 32 | y;
+        ++clock_;
+        for (Kept& kept : kept_) {
+            if (kept.key != key) continue;
+            kept.used = clock_;
+            return kept.row;
+        }
+        Kept& kept =
+            *std::min_element(kept_.begin(), kept_.end(), [](const Kept& a, const Kept& b) { return a.used < b.used; });
+        kept.used = clock_;
+        if (kept.key == ~uint64_t{0}) kept.row = PlaneRow(width_);
+        kept.key = key;
+        read(y, z);
+        for (size_t c = 0; c < 4; ++c) {
+            const float* from = texels_.plane(c);
+            float* to = kept.row.plane(c);
+            if (source_.filter == VK_FILTER_NEAREST) {
+                // Integers travel as bits.
+                for (size_t i = 0; i < width_; ++i) std::memcpy(to + i, from + source_.taps[i].first, sizeof(float));
+            } else {
+                for (size_t i = 0; i < width_; ++i) {
+                    const Axis::Taps& tap = source_.taps[i];
                     to[i] = mix(from[tap.first], from[tap.second], tap.weight);
+                }
             }
         }
+        return kept.row;
     }
 
-    const Image& source_;
-    uint32_t mip_;
-    FormatOps ops_;
-    VkFilter filter_;
-    std::vector<Axis::Taps> taps_;
+    void read(uint32_t y, uint32_t z) {
+        const FormatInfo& format = source_.image.format();
+        const uint32_t width = source_.image.level(source_.mip).extent.width;
+        const std::byte* row = rowAddress(source_.image, source_.mip, y / format.blockHeight(), z, 0);
+        if (format.block != nullptr) {
+            unpackBlocks(format, source_.ops, row, y, width, texels_.writable());
+        } else {
+            source_.ops.unpack(row, width, texels_.writable());
+        }
+    }
+
+    const BlitSource& source_;
+    uint32_t width_;
+    PlaneRow texels_, front_, back_;
+    std::array<Kept, kKept> kept_;
+    uint64_t clock_ = 0;
 };
+
+/// A row of texels of one format picked from another, bit for bit.
+template <size_t kBytes>
+void pickTexels(const std::vector<Axis::Taps>& taps, const std::byte* from, std::byte* to) {
+    for (size_t i = 0; i < taps.size(); ++i) std::memcpy(to + i * kBytes, from + taps[i].first * kBytes, kBytes);
+}
+
+using PickTexels = void (*)(const std::vector<Axis::Taps>& taps, const std::byte* from, std::byte* to);
+
+/// nullptr: no format has texels of this size.
+PickTexels pickFunction(uint32_t bytes) {
+    switch (bytes) {
+        case 1:
+            return pickTexels<1>;
+        case 2:
+            return pickTexels<2>;
+        case 4:
+            return pickTexels<4>;
+        case 8:
+            return pickTexels<8>;
+        case 16:
+            return pickTexels<16>;
+        default:
+            return nullptr;
+    }
+}
 
 }  // namespace
 
@@ -161,7 +223,14 @@ void blitImage(const TransferContext& context, const Image& source, const Image&
     if (x.count == 0 || (aspect & source.format().aspects) == 0 || (aspect & destination.format().aspects) == 0) return;
     if (destination.format().block != nullptr) return;  // nothing encodes blocks
     const FormatOps pack = formatOps(destination.info().format, aspect, context.isa);
-    const Blitter blitter(source, from.mipLevel, formatOps(source.info().format, aspect, context.isa), x, filter);
+    BlitSource blit{source, from.mipLevel, formatOps(source.info().format, aspect, context.isa), filter, {}};
+    blit.taps.reserve(x.count);
+    for (uint32_t i = 0; i < x.count; ++i) blit.taps.push_back(x.at(x.begin + i, filter));
+    // Nothing to convert and nothing to weigh: texels move as they are.
+    const PickTexels pick = filter == VK_FILTER_NEAREST && source.info().format == destination.info().format &&
+                                    source.format().aspects == aspect
+                                ? pickFunction(source.format().bytesPerTexel)
+                                : nullptr;
 
     const bool fromVolume = source.info().type == VK_IMAGE_TYPE_3D;
     const bool toVolume = destination.info().type == VK_IMAGE_TYPE_3D;
@@ -171,15 +240,22 @@ void blitImage(const TransferContext& context, const Image& source, const Image&
     };
     if (!fits(source, fromVolume, from) || !fits(destination, toVolume, to)) return;
     const TexelBox box{x.begin, y.begin, 0, x.count, y.count, slices};
-    forEachRow(context, box, [&](uint32_t row, uint32_t slice) {
-        const uint32_t target = toVolume ? z.begin + slice : to.baseArrayLayer + slice;
-        const uint32_t layer = std::min(from.baseArrayLayer + slice, source.info().arrayLayers - 1);
-        const Axis::Taps depth = fromVolume ? z.at(target, filter) : Axis::Taps{layer, layer, 0};
-        PlaneRow result(x.count);
-        blitter.row(y.at(y.begin + row, filter), depth, result);
-        pack.pack(result.planes(), x.count,
-                  rowAddress(destination, to.mipLevel, y.begin + row, target, 0) +
-                      uint64_t{x.begin} * destination.format().bytesPerTexel);
+    forEachRun(context, box, [&](uint64_t begin, uint64_t end) {
+        std::optional<Blitter> blitter;
+        if (!pick) blitter.emplace(blit);
+        for (uint64_t i = begin; i < end; ++i) {
+            const auto row = static_cast<uint32_t>(i % box.height), slice = static_cast<uint32_t>(i / box.height);
+            const uint32_t target = toVolume ? z.begin + slice : to.baseArrayLayer + slice;
+            const uint32_t layer = std::min(from.baseArrayLayer + slice, source.info().arrayLayers - 1);
+            const Axis::Taps depth = fromVolume ? z.at(target, filter) : Axis::Taps{layer, layer, 0};
+            const Axis::Taps line = y.at(y.begin + row, filter);
+            std::byte* texels = rowAddress(destination, to.mipLevel, y.begin + row, target, 0) +
+                                uint64_t{x.begin} * destination.format().bytesPerTexel;
+            if (pick)
+                pick(blit.taps, rowAddress(source, from.mipLevel, line.first, depth.first, 0), texels);
+            else
+                pack.pack(blitter->row(line, depth).planes(), x.count, texels);
+        }
     });
 }
 

@@ -7,6 +7,19 @@ namespace vernier {
 namespace {
 
 constexpr uint32_t kMaxTexelBytes = 16;
+constexpr uint64_t kFillStep = 1 << 20;  // bytes a thread fills at a time
+
+/// Fills `size` bytes with copies of the first `unit`, which are there already: each memcpy takes as much as there is,
+/// up to what a first-level cache holds.
+void repeat(std::byte* bytes, size_t unit, size_t size) {
+    constexpr size_t kMost = 8192;
+    for (size_t done = unit; done < size;) {
+        const size_t most = std::min(done, kMost / unit * unit);
+        const size_t n = std::min(most, size - done);
+        std::memcpy(bytes + done, bytes, n);
+        done += n;
+    }
+}
 
 /// Writes n copies of a texel; `keep` has the bits that must stay as they are.
 void fillRow(std::byte* row, uint32_t n, uint32_t texelBytes, const std::byte* texel, const std::byte* keep) {
@@ -47,10 +60,8 @@ void clearRange(const TransferContext& context, const Image& image, VkImageAspec
             forEachRow(context, box, [&](uint32_t y, uint32_t z) {
                 std::byte* row = rowAddress(image, mip, y, box.z + z, sample);
                 if (!whole) return fillRow(row, box.width, bytes, texel.data(), keep.data());
-                // Doubling copies: each memcpy fills as much as is there already.
                 std::memcpy(row, texel.data(), bytes);
-                for (size_t done = bytes, all = size_t{box.width} * bytes; done < all; done *= 2)
-                    std::memcpy(row + done, row, std::min(done, all - done));
+                repeat(row, bytes, size_t{box.width} * bytes);
             });
         }
     }
@@ -73,12 +84,21 @@ void clearDepthStencilImage(const TransferContext& context, const Image& image, 
                range);
 }
 
-void fillBuffer(const TransferContext&, const Buffer& buffer, VkDeviceSize offset, VkDeviceSize size, uint32_t value) {
+void fillBuffer(const TransferContext& context, const Buffer& buffer, VkDeviceSize offset, VkDeviceSize size,
+                uint32_t value) {
     if (offset >= buffer.size()) return;
     // vkCmdFillBuffer: VK_WHOLE_SIZE is rounded down to a multiple of 4.
-    const VkDeviceSize words = std::min(size, buffer.size() - offset) / 4;
+    const VkDeviceSize bytes = std::min(size, buffer.size() - offset) / 4 * 4;
     std::byte* target = buffer.data() + offset;
-    for (VkDeviceSize i = 0; i < words; ++i) std::memcpy(target + i * 4, &value, 4);
+    const auto fill = [&](uint64_t begin, uint64_t end) {
+        if (begin >= end) return;
+        std::memcpy(target + begin, &value, sizeof value);
+        repeat(target + begin, sizeof value, end - begin);
+    };
+    if (bytes < 2 * kFillStep) return fill(0, bytes);
+    context.pool.parallelFor(static_cast<uint32_t>((bytes + kFillStep - 1) / kFillStep), [&](uint32_t step, uint32_t) {
+        fill(step * kFillStep, std::min(bytes, (step + 1) * kFillStep));
+    });
 }
 
 void updateBuffer(const Buffer& buffer, VkDeviceSize offset, std::span<const std::byte> bytes) {

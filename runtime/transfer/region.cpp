@@ -43,19 +43,23 @@ std::byte* rowAddress(const Image& image, uint32_t mip, uint32_t y, uint32_t z, 
     return image.address(mip, volume ? 0 : z, volume ? z : 0, sample) + uint64_t{y} * image.level(mip).rowPitch;
 }
 
-void forEachRow(const TransferContext& context, const TexelBox& box,
-                const std::function<void(uint32_t y, uint32_t z)>& row) {
+void forEachRun(const TransferContext& context, const TexelBox& box,
+                const std::function<void(uint64_t begin, uint64_t end)>& run) {
     if (box.empty()) return;
     const uint64_t rows = uint64_t{box.height} * box.depth;
-    const auto run = [&](uint64_t begin, uint64_t end) {
-        for (uint64_t i = begin; i < end; ++i)
-            row(static_cast<uint32_t>(i % box.height), static_cast<uint32_t>(i / box.height));
-    };
     if (rows * box.width < kParallelTexels) return run(0, rows);
     const auto steps = static_cast<uint32_t>((rows + kRowsPerStep - 1) / kRowsPerStep);
     context.pool.parallelFor(steps, [&](uint32_t step, uint32_t) {
         const uint64_t begin = uint64_t{step} * kRowsPerStep;
         run(begin, std::min(rows, begin + kRowsPerStep));
+    });
+}
+
+void forEachRow(const TransferContext& context, const TexelBox& box,
+                const std::function<void(uint32_t y, uint32_t z)>& row) {
+    forEachRun(context, box, [&](uint64_t begin, uint64_t end) {
+        for (uint64_t i = begin; i < end; ++i)
+            row(static_cast<uint32_t>(i % box.height), static_cast<uint32_t>(i / box.height));
     });
 }
 

@@ -32,4 +32,9 @@ std::byte* rowAddress(const Image& image, uint32_t mip, uint32_t y, uint32_t z, 
 void forEachRow(const TransferContext& context, const TexelBox& box,
                 const std::function<void(uint32_t y, uint32_t z)>& row);
 
+/// The same by runs of rows, for work that keeps something from one row to the next: run(begin, end), where row i is
+/// y = i % box.height of z = i / box.height.
+void forEachRun(const TransferContext& context, const TexelBox& box,
+                const std::function<void(uint64_t begin, uint64_t end)>& run);
+
 }  // namespace vernier
