@@ -39,6 +39,32 @@ BoundResource* elementAt(VnContext context, const char* function, uint32_t set, 
     return &elements[element];
 }
 
+VnResult checkViewport(VnContext context, const VkViewport& viewport) {
+    const float fields[] = {viewport.x, viewport.y, viewport.width, viewport.height};
+    constexpr float kLimit = 32768;
+    for (const float field : fields)
+        if (!(std::abs(field) <= kLimit))
+            return invalid(context->device, "vnSetViewports",
+                           "x, y, width or height is " + std::to_string(field) + ", beyond +-32768");
+    if (!(viewport.width >= 0))
+        return invalid(context->device, "vnSetViewports", "width is " + std::to_string(viewport.width));
+    if (!(viewport.minDepth >= 0 && viewport.minDepth <= 1 && viewport.maxDepth >= 0 && viewport.maxDepth <= 1))
+        return invalid(context->device, "vnSetViewports",
+                       "depth range " + std::to_string(viewport.minDepth) + " .. " + std::to_string(viewport.maxDepth) +
+                           " is not inside 0 .. 1");
+    return VN_SUCCESS;
+}
+
+VnResult checkViewportRange(VnContext context, const char* function, uint32_t first, uint32_t count,
+                            const void* values) {
+    if (!values && count) return invalid(context->device, function, "the array is NULL");
+    if (first > kMaxViewports || count > kMaxViewports - first)
+        return invalid(context->device, function,
+                       std::to_string(first) + " + " + std::to_string(count) + " are not inside the " +
+                           std::to_string(kMaxViewports) + " there are");
+    return VN_SUCCESS;
+}
+
 }  // namespace
 
 VnResult vnBindProgram(VnContext context, VnProgram program) {
@@ -193,38 +219,37 @@ VnResult vnPushConstants(VnContext context, uint32_t offset, const void* data, u
     });
 }
 
-VnResult vnSetViewport(VnContext context, const VkViewport* viewport) {
+VnResult vnSetViewports(VnContext context, uint32_t first, uint32_t count, const VkViewport* viewports) {
     return guardedContext(context, __func__, [&] {
-        if (!viewport) return invalid(context->device, "vnSetViewport", "viewport is NULL");
-        const float fields[] = {viewport->x, viewport->y, viewport->width, viewport->height};
-        constexpr float kLimit = 32768;
-        for (const float field : fields)
-            if (!(std::abs(field) <= kLimit))
-                return invalid(context->device, "vnSetViewport",
-                               "x, y, width or height is " + std::to_string(field) + ", beyond +-32768");
-        if (!(viewport->width >= 0))
-            return invalid(context->device, "vnSetViewport", "width is " + std::to_string(viewport->width));
-        if (!(viewport->minDepth >= 0 && viewport->minDepth <= 1 && viewport->maxDepth >= 0 && viewport->maxDepth <= 1))
-            return invalid(context->device, "vnSetViewport",
-                           "depth range " + std::to_string(viewport->minDepth) + " .. " +
-                               std::to_string(viewport->maxDepth) + " is not inside 0 .. 1");
-        context->viewport = *viewport;
+        if (VnResult result = checkViewportRange(context, "vnSetViewports", first, count, viewports)) return result;
+        for (uint32_t n = 0; n < count; ++n)
+            if (VnResult result = checkViewport(context, viewports[n])) return result;
+        std::copy_n(viewports, count, context->viewports.begin() + first);
+        context->dynamicChanged = true;
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnSetViewport(VnContext context, const VkViewport* viewport) {
+    return vnSetViewports(context, 0, 1, viewport);
+}
+
+VnResult vnSetScissors(VnContext context, uint32_t first, uint32_t count, const VkRect2D* scissors) {
+    return guardedContext(context, __func__, [&] {
+        if (VnResult result = checkViewportRange(context, "vnSetScissors", first, count, scissors)) return result;
+        for (uint32_t n = 0; n < count; ++n)
+            if (scissors[n].offset.x < 0 || scissors[n].offset.y < 0)
+                return invalid(context->device, "vnSetScissors",
+                               "offset is (" + std::to_string(scissors[n].offset.x) + ", " +
+                                   std::to_string(scissors[n].offset.y) + ")");
+        std::copy_n(scissors, count, context->scissors.begin() + first);
         context->dynamicChanged = true;
         return VN_SUCCESS;
     });
 }
 
 VnResult vnSetScissor(VnContext context, const VkRect2D* scissor) {
-    return guardedContext(context, __func__, [&] {
-        if (!scissor) return invalid(context->device, "vnSetScissor", "scissor is NULL");
-        if (scissor->offset.x < 0 || scissor->offset.y < 0)
-            return invalid(
-                context->device, "vnSetScissor",
-                "offset is (" + std::to_string(scissor->offset.x) + ", " + std::to_string(scissor->offset.y) + ")");
-        context->scissor = *scissor;
-        context->dynamicChanged = true;
-        return VN_SUCCESS;
-    });
+    return vnSetScissors(context, 0, 1, scissor);
 }
 
 VnResult vnSetTopology(VnContext context, VkPrimitiveTopology topology, int primitiveRestart) {

@@ -1,7 +1,9 @@
 // Contexts and passes.
 #include <algorithm>
+#include <bit>
 
 #include "api/mini/context_guard.h"
+#include "runtime/raster/depth_resolve.h"
 
 using namespace vernier;
 using namespace vernier::mini;
@@ -98,6 +100,16 @@ VnResult attachmentOf(VnContext context, const VnAttachment& from, const char* n
         return invalid(
             context->device, "vnBeginPass",
             std::string(name) + " resolve must be single-sampled, of a multisampled view of the same size and format");
+    if (resolve->view.info().range.layerCount < view->view.info().range.layerCount)
+        return invalid(context->device, "vnBeginPass", std::string(name) + " resolve has fewer layers than the view");
+    const auto mode = [](VkResolveModeFlagBits wanted) {
+        return wanted == VK_RESOLVE_MODE_NONE ? VK_RESOLVE_MODE_SAMPLE_ZERO_BIT : wanted;
+    };
+    to.depthResolveMode = mode(from.depthResolve);
+    to.stencilResolveMode = mode(from.stencilResolve);
+    if ((to.depthResolveMode & kDepthResolveModes) == 0 || (to.stencilResolveMode & kStencilResolveModes) == 0)
+        return invalid(context->device, "vnBeginPass",
+                       std::string(name) + " depthResolve or stencilResolve is no mode of that aspect");
     to.resolve = &context->recording->keep(resolve).view;
     return VN_SUCCESS;
 }
@@ -128,11 +140,13 @@ class PassBuilder {
                            std::string(name) + " clear depth is " + std::to_string(clearDepth) + ", not in 0 .. 1");
         const VkExtent2D extent = view->view.extent();
         extent_ = {std::min(extent_.width, extent.width), std::min(extent_.height, extent.height)};
+        layers_ = std::min(layers_, view->view.info().range.layerCount);
         return VN_SUCCESS;
     }
 
     PipelineKey key_;
     VkExtent2D extent_{UINT32_MAX, UINT32_MAX};
+    uint32_t layers_ = UINT32_MAX;
 
   private:
     /// What two attachments write to the same texels would have no order.
@@ -181,6 +195,12 @@ VnResult beginPass(VnContext context, const VnPassDesc& desc) {
     }
     if (pass.key_.samples == 0) return invalid(context->device, "vnBeginPass", "there is no attachment");
     begin.samples = pass.key_.samples;
+    begin.layers = pass.layers_;
+    begin.viewMask = desc.viewMask;
+    if (static_cast<uint32_t>(std::bit_width(desc.viewMask)) > pass.layers_)
+        return invalid(context->device, "vnBeginPass",
+                       "viewMask is " + std::to_string(desc.viewMask) + ", but the attachments have " +
+                           std::to_string(pass.layers_) + " layers");
     begin.renderArea = desc.renderArea;
     if (begin.renderArea.extent.width == 0 && begin.renderArea.extent.height == 0)
         begin.renderArea = {{0, 0}, pass.extent_};
@@ -190,13 +210,10 @@ VnResult beginPass(VnContext context, const VnPassDesc& desc) {
 
     const VkRect2D& area = begin.renderArea;
     context->inPass = true;
-    context->renderArea = context->scissor = area;
-    context->viewport = {static_cast<float>(area.offset.x),
-                         static_cast<float>(area.offset.y),
-                         static_cast<float>(area.extent.width),
-                         static_cast<float>(area.extent.height),
-                         0,
-                         1};
+    context->renderArea = area;
+    context->scissors.fill(area);
+    context->viewports.fill({static_cast<float>(area.offset.x), static_cast<float>(area.offset.y),
+                             static_cast<float>(area.extent.width), static_cast<float>(area.extent.height), 0, 1});
     PipelineKey key = context->key;
     key.colorCount = pass.key_.colorCount;
     key.colorFormats = pass.key_.colorFormats;

@@ -87,8 +87,8 @@ struct VnContext_T {
     BoundRange indexBuffer;
     VkIndexType indexType = VK_INDEX_TYPE_UINT16;
     std::array<std::byte, vernier::kMaxPushConstantBytes> pushConstants{};
-    VkViewport viewport{};
-    VkRect2D scissor{};
+    std::array<VkViewport, vernier::kMaxViewports> viewports{};
+    std::array<VkRect2D, vernier::kMaxViewports> scissors{};
     std::array<float, 4> blendConstants{};
     uint32_t stencilFront = 0, stencilBack = 0;
 

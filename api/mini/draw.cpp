@@ -61,11 +61,19 @@ GraphicsState graphicsStateOf(const VnContext_T& context) {
     state.samples = context.key.samples;
     state.sampleMask = ~raster.sampleMaskOff;
     state.alphaToCoverage = raster.alphaToCoverage != 0;
+    state.alphaToOne = raster.alphaToOne != 0;
+    state.sampleShading = raster.minSampleShading > 0;
+    state.minSampleShading = raster.minSampleShading;
+    state.negativeOneToOne = raster.depthNegativeOneToOne != 0;
+    state.lineMode = raster.lineMode;
+    state.stippledLine = raster.lineStippleFactor != 0;
+    state.sampleLocations = raster.programmableSamples != 0;
     const VnDepthStencilStateDesc depth = context.depthStencil ? context.depthStencil->desc : VnDepthStencilStateDesc{};
     state.depthTest = depth.depthTest != 0;
     state.depthWrite = depth.depthWrite != 0;
     state.depthCompare = compareOf(depth.depthCompare, VK_COMPARE_OP_LESS);
     state.stencilTest = depth.stencilTest != 0;
+    state.depthBoundsTest = depth.depthBoundsTest != 0;
     state.stencilFront = stencilOf(depth.front);
     state.stencilBack = stencilOf(depth.back);
     const VnBlendStateDesc blend = context.blend ? context.blend->desc : VnBlendStateDesc{};
@@ -152,8 +160,9 @@ namespace vernier::mini {
 
 DynamicState dynamicStateOf(const VnContext_T& context) {
     DynamicState state;
-    state.viewports[0] = context.viewport;
-    state.scissors[0] = context.scissor;
+    state.viewports = context.viewports;
+    state.scissors = context.scissors;
+    state.viewportCount = kMaxViewports;
     state.blendConstants = context.blendConstants;
     if (context.raster) {
         const VnRasterStateDesc& raster = context.raster->desc;
@@ -161,8 +170,14 @@ DynamicState dynamicStateOf(const VnContext_T& context) {
         state.depthBiasConstant = raster.depthBiasConstant;
         state.depthBiasSlope = raster.depthBiasSlope;
         state.depthBiasClamp = raster.depthBiasClamp;
+        state.lineStippleFactor = raster.lineStippleFactor;
+        state.lineStipplePattern = raster.lineStipplePattern;
+        for (size_t s = 0; s < kMaxSamples; ++s)
+            state.sampleLocations[s] = {raster.sampleLocations[s][0], raster.sampleLocations[s][1]};
     }
     const VnDepthStencilStateDesc depth = context.depthStencil ? context.depthStencil->desc : VnDepthStencilStateDesc{};
+    state.minDepthBounds = depth.minDepth;
+    state.maxDepthBounds = depth.maxDepth;
     state.stencilFront = {0xFFu & ~depth.front.compareMaskOff, 0xFFu & ~depth.front.writeMaskOff, context.stencilFront};
     state.stencilBack = {0xFFu & ~depth.back.compareMaskOff, 0xFFu & ~depth.back.writeMaskOff, context.stencilBack};
     return state;

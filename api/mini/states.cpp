@@ -35,6 +35,17 @@ VnResult checkRaster(VnDevice device, const char* function, const VnRasterStateD
     if (VnResult r = checkFinite(device, function, "depthBiasClamp", desc.depthBiasClamp)) return r;
     if (!(desc.lineWidth >= 0) || std::isinf(desc.lineWidth))
         return invalid(device, function, "lineWidth is " + std::to_string(desc.lineWidth));
+    if (VnResult r =
+            checkEnum(device, function, "lineMode", desc.lineMode, VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT))
+        return r;
+    if (desc.lineStippleFactor > 256)
+        return invalid(device, function, "lineStippleFactor is " + std::to_string(desc.lineStippleFactor));
+    if (!(desc.minSampleShading >= 0 && desc.minSampleShading <= 1))
+        return invalid(device, function, "minSampleShading is " + std::to_string(desc.minSampleShading));
+    for (const auto& location : desc.sampleLocations)
+        for (const uint8_t sixteenths : location)
+            if (desc.programmableSamples && sixteenths > 15)
+                return invalid(device, function, "a sample location is " + std::to_string(sixteenths) + " / 16");
     return VN_SUCCESS;
 }
 
@@ -52,6 +63,8 @@ VnResult checkFace(VnDevice device, const char* function, const VnStencilFace& f
 
 VnResult checkDepthStencil(VnDevice device, const char* function, const VnDepthStencilStateDesc& desc) {
     if (desc.depthWrite && !desc.depthTest) return invalid(device, function, "depthWrite needs depthTest");
+    if (VnResult r = checkFinite(device, function, "minDepth", desc.minDepth)) return r;
+    if (VnResult r = checkFinite(device, function, "maxDepth", desc.maxDepth)) return r;
     if (VnResult r = checkCompare(device, function, "depthCompare", desc.depthCompare)) return r;
     if (VnResult r = checkFace(device, function, desc.front)) return r;
     return checkFace(device, function, desc.back);

@@ -124,6 +124,11 @@ VKAPI_ATTR void VKAPI_CALL CmdSetLineWidth(VkCommandBuffer commandBuffer, float 
     record(commandBuffer, command::SetLineWidth{lineWidth});
 }
 
+VKAPI_ATTR void VKAPI_CALL CmdSetLineStippleEXT(VkCommandBuffer commandBuffer, uint32_t lineStippleFactor,
+                                                uint16_t lineStipplePattern) {
+    record(commandBuffer, command::SetLineStipple{lineStippleFactor, lineStipplePattern});
+}
+
 VKAPI_ATTR void VKAPI_CALL CmdSetDepthBias(VkCommandBuffer commandBuffer, float depthBiasConstantFactor,
                                            float depthBiasClamp, float depthBiasSlopeFactor) {
     record(commandBuffer, command::SetDepthBias{depthBiasConstantFactor, depthBiasClamp, depthBiasSlopeFactor});

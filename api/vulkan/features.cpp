@@ -56,6 +56,12 @@ namespace {
     X(VkPhysicalDeviceTimelineSemaphoreFeatures, timelineSemaphore, true)                           \
     X(VkPhysicalDeviceDepthClipEnableFeaturesEXT, depthClipEnable, true)                            \
     X(VkPhysicalDeviceDepthClipControlFeaturesEXT, depthClipControl, true)                          \
+    X(VkPhysicalDeviceLineRasterizationFeaturesEXT, rectangularLines, true)                         \
+    X(VkPhysicalDeviceLineRasterizationFeaturesEXT, bresenhamLines, true)                           \
+    X(VkPhysicalDeviceLineRasterizationFeaturesEXT, smoothLines, true)                              \
+    X(VkPhysicalDeviceLineRasterizationFeaturesEXT, stippledRectangularLines, true)                 \
+    X(VkPhysicalDeviceLineRasterizationFeaturesEXT, stippledBresenhamLines, true)                   \
+    X(VkPhysicalDeviceLineRasterizationFeaturesEXT, stippledSmoothLines, true)                      \
     X(VkPhysicalDeviceMultiviewFeatures, multiview, true)                                           \
     X(VkPhysicalDeviceMultiviewFeatures, multiviewGeometryShader, false)                            \
     X(VkPhysicalDeviceMultiviewFeatures, multiviewTessellationShader, false)                        \

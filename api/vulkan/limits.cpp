@@ -8,6 +8,7 @@
 #include "runtime/geometry/primitive_setup.h"
 #include "runtime/limits.h"
 #include "runtime/plan/sample_positions.h"
+#include "runtime/raster/depth_resolve.h"
 #include "runtime/resource/buffer_view.h"
 #include "runtime/resource/memory.h"
 #include "runtime/texture/texture.h"
@@ -148,7 +149,7 @@ VkPhysicalDeviceLimits deviceLimits(const VkPhysicalDeviceFeatures& features, co
     limits.discreteQueuePriorities = 2;
     limits.pointSizeRange[0] = kMinPointSize;
     limits.pointSizeRange[1] = kMaxPointSize;
-    limits.lineWidthRange[0] = 1;
+    limits.lineWidthRange[0] = kMinLineWidth;
     limits.lineWidthRange[1] = kMaxLineWidth;
     limits.pointSizeGranularity = limits.lineWidthGranularity = 1.0f / static_cast<float>(1u << accuracy.subPixelBits);
     limits.strictLines = VK_TRUE;
@@ -156,7 +157,7 @@ VkPhysicalDeviceLimits deviceLimits(const VkPhysicalDeviceFeatures& features, co
     return limits;
 }
 
-void fillPropertyChain(void* chain) {
+void fillPropertyChain(const Accuracy& accuracy, void* chain) {
     if (auto* p = findInChain<VkPhysicalDeviceMaintenance3Properties>(chain)) {
         p->maxPerSetDescriptors = kMaxDescriptorsPerSet;
         p->maxMemoryAllocationSize = kMaxAllocation;
@@ -167,6 +168,17 @@ void fillPropertyChain(void* chain) {
     if (auto* p = findInChain<VkPhysicalDeviceProvokingVertexPropertiesEXT>(chain)) {
         p->provokingVertexModePerPipeline = VK_TRUE;
         p->transformFeedbackPreservesTriangleFanProvokingVertex = VK_FALSE;
+    }
+    if (auto* p = findInChain<VkPhysicalDevicePointClippingProperties>(chain)) {
+        p->pointClippingBehavior = VK_POINT_CLIPPING_BEHAVIOR_ALL_CLIP_PLANES;
+    }
+    if (auto* p = findInChain<VkPhysicalDeviceDepthStencilResolveProperties>(chain)) {
+        p->supportedDepthResolveModes = kDepthResolveModes;
+        p->supportedStencilResolveModes = kStencilResolveModes;
+        p->independentResolveNone = p->independentResolve = VK_TRUE;
+    }
+    if (auto* p = findInChain<VkPhysicalDeviceLineRasterizationPropertiesEXT>(chain)) {
+        p->lineSubPixelPrecisionBits = accuracy.subPixelBits;
     }
     if (auto* p = findInChain<VkPhysicalDeviceMultiviewProperties>(chain)) {
         p->maxMultiviewViewCount = kMaxViews;
@@ -186,9 +198,6 @@ void fillPropertyChain(void* chain) {
     if (auto* p = findInChain<VkPhysicalDeviceSamplerFilterMinmaxProperties>(chain)) {
         p->filterMinmaxSingleComponentFormats = VK_TRUE;
         p->filterMinmaxImageComponentMapping = VK_TRUE;
-    }
-    if (auto* p = findInChain<VkPhysicalDevicePointClippingProperties>(chain)) {
-        p->pointClippingBehavior = VK_POINT_CLIPPING_BEHAVIOR_ALL_CLIP_PLANES;
     }
     if (auto* p = findInChain<VkPhysicalDeviceFloatControlsProperties>(chain)) setFloatControls(*p);
     if (auto* p = findInChain<VkPhysicalDeviceShaderIntegerDotProductProperties>(chain)) {

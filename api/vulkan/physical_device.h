@@ -36,7 +36,7 @@ VkResult checkFeatures(const VkDeviceCreateInfo& info, const char*& missing);
 /// The limits of the specification's table "Required Limits" (limits.cpp).
 VkPhysicalDeviceLimits deviceLimits(const VkPhysicalDeviceFeatures& features, const Accuracy& accuracy);
 /// Fills every property structure of the chain that the driver knows (limits.cpp).
-void fillPropertyChain(void* chain);
+void fillPropertyChain(const Accuracy& accuracy, void* chain);
 
 /// The memory that allocations may come from (memory_heap.cpp): three quarters of what this process may use.
 VkDeviceSize heapSize();

@@ -78,6 +78,12 @@ void readRasterization(const VkPipelineRasterizationStateCreateInfo& info, Pipel
         state.provokingVertexLast = vertex->provokingVertexMode == VK_PROVOKING_VERTEX_MODE_LAST_VERTEX_EXT;
     }
     result.fixed.lineWidth = info.lineWidth;
+    if (const auto* line = findInChain<VkPipelineRasterizationLineStateCreateInfoEXT>(info.pNext)) {
+        state.lineMode = line->lineRasterizationMode;
+        state.stippledLine = line->stippledLineEnable != VK_FALSE;
+        result.fixed.lineStippleFactor = line->lineStippleFactor;
+        result.fixed.lineStipplePattern = line->lineStipplePattern;
+    }
     result.fixed.depthBiasConstant = info.depthBiasConstantFactor;
     result.fixed.depthBiasClamp = info.depthBiasClamp;
     result.fixed.depthBiasSlope = info.depthBiasSlopeFactor;

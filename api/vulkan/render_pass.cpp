@@ -8,12 +8,16 @@
 #include "api/vulkan/chain.h"
 #include "api/vulkan/device.h"
 #include "api/vulkan/entry_points.h"
+#include "runtime/raster/depth_resolve.h"
 #include "runtime/resource/image.h"
 
 namespace vernier::vulkan {
 namespace {
 
-std::vector<uint32_t> indices(uint32_t count, const VkAttachmentReference* references) {
+// The two versions of the descriptions differ in their heads and in a few members more: the templates take both.
+
+template <class Reference>
+std::vector<uint32_t> indices(uint32_t count, const Reference* references) {
     std::vector<uint32_t> result;
     for (uint32_t i = 0; i < count && references != nullptr; ++i) result.push_back(references[i].attachment);
     return result;
@@ -43,6 +47,13 @@ Status checkSamples(const RenderPassObject& pass, uint32_t number) {
     };
     if (!std::ranges::all_of(subpass.colors, same) || !same(subpass.depthStencil)) {
         return invalidArgument(name + "the attachments have different sample counts");
+    }
+    const VkAttachmentDescription* depth = describe(subpass.depthStencil);
+    const VkAttachmentDescription* depthTo = describe(subpass.depthStencilResolve);
+    if (depth != nullptr && depthTo != nullptr &&
+        (depthTo->samples != VK_SAMPLE_COUNT_1_BIT || !canResolveDepthStencil(depth->format, depthTo->format))) {
+        return invalidArgument(name + "resolve attachment " + std::to_string(subpass.depthStencilResolve) +
+                               " must have one sample and the depths and stencils of the depth-stencil attachment");
     }
     for (size_t i = 0; i < subpass.resolves.size(); ++i) {
         const VkAttachmentDescription* to = describe(subpass.resolves[i]);
@@ -86,12 +97,37 @@ Status checkInputs(const RenderPassObject& pass) {
     return {};
 }
 
-Result<RenderPassObject> makeRenderPass(const VkRenderPassCreateInfo& info) {
-    RenderPassObject pass;
+VkAttachmentDescription attachmentOf(const VkAttachmentDescription& from) {
+    return from;
+}
+
+VkAttachmentDescription attachmentOf(const VkAttachmentDescription2& from) {
+    return {from.flags,         from.format,         from.samples,       from.loadOp,     from.storeOp,
+            from.stencilLoadOp, from.stencilStoreOp, from.initialLayout, from.finalLayout};
+}
+
+void readExtensions(const VkRenderPassCreateInfo& info, uint32_t index, Subpass& to) {
     const auto* multiview = findInChain<VkRenderPassMultiviewCreateInfo>(info.pNext);
-    for (uint32_t i = 0; i < info.attachmentCount; ++i) pass.attachments.push_back({info.pAttachments[i]});
+    if (multiview != nullptr && index < multiview->subpassCount) to.viewMask = multiview->pViewMasks[index];
+}
+
+void readExtensions(const VkRenderPassCreateInfo2& info, uint32_t index, Subpass& to) {
+    const VkSubpassDescription2& from = info.pSubpasses[index];
+    to.viewMask = from.viewMask;
+    const auto* resolve = findInChain<VkSubpassDescriptionDepthStencilResolve>(from.pNext);
+    if (resolve == nullptr || resolve->pDepthStencilResolveAttachment == nullptr) return;
+    to.depthStencilResolve = resolve->pDepthStencilResolveAttachment->attachment;
+    to.depthResolveMode = resolve->depthResolveMode;
+    to.stencilResolveMode = resolve->stencilResolveMode;
+}
+
+template <class Info>
+Result<RenderPassObject> makeRenderPass(const Info& info) {
+    RenderPassObject pass;
+    for (uint32_t i = 0; i < info.attachmentCount; ++i)
+        pass.attachments.push_back({attachmentOf(info.pAttachments[i])});
     for (uint32_t i = 0; i < info.subpassCount; ++i) {
-        const VkSubpassDescription& from = info.pSubpasses[i];
+        const auto& from = info.pSubpasses[i];
         if (from.pipelineBindPoint != VK_PIPELINE_BIND_POINT_GRAPHICS) {
             return unsupported("subpass " + std::to_string(i) + ": pipelineBindPoint must be GRAPHICS");
         }
@@ -104,17 +140,30 @@ Result<RenderPassObject> makeRenderPass(const VkRenderPassCreateInfo& info) {
         to.resolves = indices(from.colorAttachmentCount, from.pResolveAttachments);
         to.inputs = indices(from.inputAttachmentCount, from.pInputAttachments);
         if (from.pDepthStencilAttachment != nullptr) to.depthStencil = from.pDepthStencilAttachment->attachment;
+        readExtensions(info, i, to);
         const size_t count = pass.attachments.size();
-        if (multiview != nullptr && i < multiview->subpassCount) to.viewMask = multiview->pViewMasks[i];
         if (Status s = checkReferences("colour attachment", i, to.colors, count); !s) return s.error();
         if (Status s = checkReferences("resolve attachment", i, to.resolves, count); !s) return s.error();
         if (Status s = checkReferences("input attachment", i, to.inputs, count); !s) return s.error();
-        if (Status s = checkReferences("depth-stencil attachment", i, {to.depthStencil}, count); !s) return s.error();
+        if (Status s = checkReferences("depth-stencil attachment", i, {to.depthStencil, to.depthStencilResolve}, count);
+            !s) {
+            return s.error();
+        }
         if (Status s = checkSamples(pass, i); !s) return s.error();
     }
     markUses(pass);
     if (Status s = checkInputs(pass); !s) return s.error();
     return pass;
+}
+
+template <class Info>
+VkResult createRenderPass(VkDevice device, const char* command, const Info& info,
+                          const VkAllocationCallbacks* callbacks, VkRenderPass* out) {
+    return guarded([&] {
+        Result<RenderPassObject> pass = makeRenderPass(info);
+        if (!pass) return object(device)->report(command, pass.error());
+        return createHandle(callbacks, out, std::move(pass).value());
+    });
 }
 
 /// The views in which earlier subpasses use an attachment.
@@ -209,6 +258,11 @@ command::BeginRendering renderingOf(const RenderPassObject& pass, const Framebuf
         }
     }
     rendering.depthStencil = attach(from.depthStencil);
+    if (from.depthStencilResolve != VK_ATTACHMENT_UNUSED && rendering.depthStencil.view != nullptr) {
+        rendering.depthStencil.resolve = framebuffer.views[from.depthStencilResolve];
+        rendering.depthStencil.depthResolveMode = from.depthResolveMode;
+        rendering.depthStencil.stencilResolveMode = from.stencilResolveMode;
+    }
     rendering.renderArea = area;
     rendering.layers = framebuffer.layers;
     rendering.viewMask = from.viewMask;
@@ -218,11 +272,12 @@ command::BeginRendering renderingOf(const RenderPassObject& pass, const Framebuf
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateRenderPass(VkDevice device, const VkRenderPassCreateInfo* pCreateInfo,
                                                 const VkAllocationCallbacks* pAllocator, VkRenderPass* pRenderPass) {
-    return guarded([&] {
-        Result<RenderPassObject> pass = makeRenderPass(*pCreateInfo);
-        if (!pass) return object(device)->report("vkCreateRenderPass", pass.error());
-        return createHandle(pAllocator, pRenderPass, std::move(pass).value());
-    });
+    return createRenderPass(device, "vkCreateRenderPass", *pCreateInfo, pAllocator, pRenderPass);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateRenderPass2(VkDevice device, const VkRenderPassCreateInfo2* pCreateInfo,
+                                                 const VkAllocationCallbacks* pAllocator, VkRenderPass* pRenderPass) {
+    return createRenderPass(device, "vkCreateRenderPass2", *pCreateInfo, pAllocator, pRenderPass);
 }
 
 VKAPI_ATTR void VKAPI_CALL DestroyRenderPass(VkDevice, VkRenderPass renderPass,

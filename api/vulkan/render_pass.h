@@ -16,6 +16,8 @@ struct Subpass {
     std::vector<uint32_t> colors;    // attachment indices, VK_ATTACHMENT_UNUSED
     std::vector<uint32_t> resolves;  // empty, or one per colour
     uint32_t depthStencil = VK_ATTACHMENT_UNUSED;
+    uint32_t depthStencilResolve = VK_ATTACHMENT_UNUSED;
+    VkResolveModeFlagBits depthResolveMode = VK_RESOLVE_MODE_NONE, stencilResolveMode = VK_RESOLVE_MODE_NONE;
     std::vector<uint32_t> inputs;
     uint32_t viewMask = 0;  // not 0: multiview
 };

@@ -25,7 +25,9 @@ struct PassStatistics;
 
 struct RenderingAttachment {
     const ImageView* view = nullptr;     // nullptr: not used
-    const ImageView* resolve = nullptr;  // average resolve at the end
+    const ImageView* resolve = nullptr;  // what the samples are resolved to at the end: the average of colours
+    // Of depth and stencil.
+    VkResolveModeFlagBits depthResolveMode = VK_RESOLVE_MODE_NONE, stencilResolveMode = VK_RESOLVE_MODE_NONE;
     VkAttachmentLoadOp loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
     VkAttachmentStoreOp storeOp = VK_ATTACHMENT_STORE_OP_STORE;
     VkAttachmentLoadOp stencilLoadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
@@ -97,6 +99,10 @@ struct SetScissors {
 };
 struct SetLineWidth {
     float width = 1;
+};
+struct SetLineStipple {
+    uint32_t factor = 1;
+    uint16_t pattern = 0xFFFF;
 };
 struct SetDepthBias {
     float constant = 0, clamp = 0, slope = 0;

@@ -16,6 +16,10 @@ void applyFixedState(const DynamicState& fixed, uint32_t dynamicMask, DynamicSta
     if (isFixed(VK_DYNAMIC_STATE_VIEWPORT)) state.viewports = fixed.viewports;
     if (isFixed(VK_DYNAMIC_STATE_SCISSOR)) state.scissors = fixed.scissors;
     if (isFixed(VK_DYNAMIC_STATE_LINE_WIDTH)) state.lineWidth = fixed.lineWidth;
+    if (isFixed(VK_DYNAMIC_STATE_LINE_STIPPLE_EXT)) {
+        state.lineStippleFactor = fixed.lineStippleFactor;
+        state.lineStipplePattern = fixed.lineStipplePattern;
+    }
     if (isFixed(VK_DYNAMIC_STATE_DEPTH_BIAS)) {
         state.depthBiasConstant = fixed.depthBiasConstant;
         state.depthBiasClamp = fixed.depthBiasClamp;
@@ -143,6 +147,12 @@ void Executor::run(const command::SetScissors& command) {
 
 void Executor::run(const command::SetLineWidth& command) {
     dynamic_.lineWidth = command.width;
+    dynamicSnapshot_ = nullptr;
+}
+
+void Executor::run(const command::SetLineStipple& command) {
+    dynamic_.lineStippleFactor = command.factor;
+    dynamic_.lineStipplePattern = command.pattern;
     dynamicSnapshot_ = nullptr;
 }
 

@@ -72,6 +72,9 @@ void Executor::run(const command::BeginRendering& command) {
         targets.resolves[i] = targetOf(command.colors[i].resolve);
     }
     targets.depthStencil = targetOf(command.depthStencil);
+    targets.depthStencilResolve = targetOf(command.depthStencil.resolve);
+    targets.depthResolveMode = command.depthStencil.depthResolveMode;
+    targets.stencilResolveMode = command.depthStencil.stencilResolveMode;
     targets.renderArea = command.renderArea;
     targets.layers = command.layers;
     targets.viewMask = command.viewMask;

@@ -53,6 +53,8 @@ void Assembler::number(const PreparedDraw& draw, const PrimitiveRange& range) {
     const VkPrimitiveTopology topology = draw.state->topology;
     const uint32_t vertexCount = verticesPerPrimitive(topology);
     const bool indexed = draw.call.indices.data != nullptr;
+    const bool isLineStrip =
+        topology == VK_PRIMITIVE_TOPOLOGY_LINE_STRIP || topology == VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY;
     const bool shared = indexed || topology != VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
     auto instance = static_cast<uint32_t>(range.first / draw.primitivesPerInstance);
     auto primitive = static_cast<uint32_t>(range.first % draw.primitivesPerInstance);
@@ -66,6 +68,7 @@ void Assembler::number(const PreparedDraw& draw, const PrimitiveRange& range) {
         const PrimitiveVertices numbers = primitiveVertices(topology, primitive - run->firstPrimitive);
         LocalPrimitive local{};
         local.primitiveId = primitive;
+        local.startsStrip = !isLineStrip || primitive == run->firstPrimitive;
         local.provoking = draw.state->provokingVertexLast ? numbers.provokingLast : numbers.provokingFirst;
         for (uint32_t v = 0; v < vertexCount; ++v) {
             const uint32_t number = run->first + numbers.vertex[v];
@@ -129,12 +132,14 @@ void Assembler::clipAndAdd(const PreparedDraw& draw, const PrimitiveInfo& info, 
     const ViewportTransform& viewport = draw.viewport(info.viewport).transform;
     if (clipPolygon(draw, viewport, polygon, chunk)) ++statistics_.clippedPrimitives;
     std::array<WindowVertex, kMaxPolygonVertices> window;
+    uint32_t hiddenEdges = 0;
     for (uint32_t n = 0; n < polygon.count; ++n) {
         if (!projectVertex(draw, viewport, polygon.vertices[n].position, window[n])) return;
         window[n].attributes = polygon.vertices[n].attributes;
+        if (polygon.vertices[n].hiddenEdge) hiddenEdges |= 1u << n;
     }
     if (polygon.count == 2 && vertexCount == 2) setup_.addLine(draw, info, window[0], window[1]);
-    if (polygon.count >= 3) setup_.addPolygon(draw, info, {window.data(), polygon.count});
+    if (polygon.count >= 3) setup_.addPolygon(draw, info, {window.data(), polygon.count}, hiddenEdges);
 }
 
 /// The layer and the viewport that the vertex program chose, of the provoking vertex. False: there is no such one.
@@ -147,7 +152,9 @@ bool Assembler::route(const PreparedDraw& draw, uint32_t provoking, PrimitiveInf
 void Assembler::assemble(const PreparedDraw& draw, uint32_t drawIndex, Chunk& chunk) {
     const uint32_t vertexCount = verticesPerPrimitive(draw.state->topology);
     const bool routed = !vertices_.layers.empty() || !vertices_.viewports.empty();
+    const bool stippled = draw.state->stippledLine && vertexCount == 2;
     for (const LocalPrimitive& primitive : primitives_) {
+        if (stippled && primitive.startsStrip) setup_.restartStipple();
         uint32_t all = ~0u, any = 0, culled = vertices_.culled.empty() ? 0 : 0xFF;
         for (uint32_t n = 0; n < vertexCount; ++n) {
             const uint32_t v = primitive.vertex[n];
@@ -167,7 +174,8 @@ void Assembler::assemble(const PreparedDraw& draw, uint32_t drawIndex, Chunk& ch
             continue;
         }
         constexpr uint32_t kMustClip = kOutsideGuard | kOutsideNear | kOutsideFar | kOutsideUserAll;
-        if ((any & kMustClip) != 0 || info.viewport != 0) {
+        constexpr uint32_t kSides = kOutsideLeft | kOutsideRight | kOutsideTop | kOutsideBottom;
+        if ((any & (vertexCount == 2 ? kMustClip | kSides : kMustClip)) != 0 || info.viewport != 0) {
             clipAndAdd(draw, info, primitive, vertexCount, chunk);
         } else if (vertexCount == 2) {
             setup_.addLine(draw, info, windowVertex(primitive.vertex[0]), windowVertex(primitive.vertex[1]));

@@ -39,6 +39,7 @@ class Assembler {
         std::array<uint32_t, 3> vertex;  // indices into the shaded vertices
         uint32_t provoking;              // position
         uint32_t primitiveId;
+        bool startsStrip;
     };
     void number(const PreparedDraw& draw, const PrimitiveRange& range);
     uint32_t localVertex(const VertexRef& ref);

@@ -23,8 +23,32 @@ static_assert(kGuardBandMax + 1 - kGuardBandMin == 1 << 15);
 inline constexpr int kMaxSubPixelBits = 16;
 static_assert(2 * (15 + kMaxSubPixelBits) < 63);
 
+/// What a point or a line covers. Lengths are in sub-units where nothing else is said.
+struct Shape {
+    enum class Kind : uint8_t {
+        square,     // a point
+        rectangle,  // a line with square ends
+        smooth,     // the same, and whatever it touches, with the area as alpha
+        bresenham,  // a row of pixels (diamond exit)
+    };
+    Kind kind = Kind::square;
+    std::array<double, 4> sides{};           // square: left, top, right, bottom, in pixels
+    int32_t ax = 0, ay = 0, bx = 0, by = 0;  // the segment
+    // rectangle, smooth: |2 cross(p - a, b - a)| <= reach, the greatest integer not above width * length. `sharp`: it
+    // is exactly that, and points on the long sides are ties.
+    int64_t reach = 0;
+    bool sharp = false;
+    // bresenham: pixels along the major axis, in the order in which they are drawn, and how many across.
+    bool yMajor = false;
+    int32_t first = 0, count = 0, step = 1, width = 1;
+    double stippleStart = 0;  // the counter at the segment's start
+};
+inline constexpr uint32_t kNoShape = ~0u;
+
 /// A triangle with vertices in canonical order: the one with the least (y, x) first, then clockwise on the
-/// screen (y down). The order of submission cannot be told from it, so neither can it change a pixel.
+/// screen (y down). The order of submission cannot be told from it, so neither can it change a pixel. Or a point or a
+/// line: then `shape` says what it covers, x and y have its ends in the order of submission, and the third vertex is
+/// the first again.
 struct Primitive {
     std::array<int32_t, 3> x, y;  // sub-units of 2^-b pixel
     std::array<float, 3> z;       // window depth
@@ -35,6 +59,7 @@ struct Primitive {
     std::array<int16_t, 4> bounds;       // pixels that may be covered: x0, y0, x1, y1, inclusive, scissored
     uint32_t draw;                       // index among the prepared draws
     uint32_t primitiveId;
+    uint32_t shape;              // index in Chunk::shapes; kNoShape: a triangle
     std::array<float, 3> point;  // of a point: centre x, y and 1 / size, in pixels
     int16_t wExponent;
     uint16_t layer;    // of the attachments; with multiview, the view
@@ -67,19 +92,29 @@ inline constexpr uint32_t kCoversTile = 1u << 31;
 
 struct Chunk {
     std::vector<Primitive> primitives;
+    std::vector<Shape> shapes;
+    // Line stipple goes on through a strip, and a strip through chunks. The first `continuingShapes` count from where
+    // the chunk before ended (all of them unless `restartsStipple`); stippleEnd is the counter at the end of this one.
+    uint32_t continuingShapes = 0;
+    bool restartsStipple = false;
+    double stippleEnd = 0;
     std::vector<float> attributes;
     std::vector<uint32_t> entries;
     std::vector<TileRange> ranges;
 
     void clear() {
         primitives.clear();
+        shapes.clear();
+        continuingShapes = 0;
+        restartsStipple = false;
+        stippleEnd = 0;
         attributes.clear();
         entries.clear();
         ranges.clear();
     }
     size_t bytes() const {
-        return primitives.size() * sizeof(Primitive) + attributes.size() * sizeof(float) +
-               entries.size() * sizeof(uint32_t);
+        return primitives.size() * sizeof(Primitive) + shapes.size() * sizeof(Shape) +
+               attributes.size() * sizeof(float) + entries.size() * sizeof(uint32_t);
     }
 };
 

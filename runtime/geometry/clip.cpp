@@ -25,13 +25,19 @@ ClipPlane guardPlane(const ViewportTransform& viewport, uint32_t axis, double li
     return plane;
 }
 
-uint32_t collectPlanes(const PreparedDraw& draw, const ViewportTransform& viewport,
+uint32_t collectPlanes(const PreparedDraw& draw, const ViewportTransform& viewport, bool isLine,
                        std::array<ClipPlane, kMaxClipPlanes>& planes) {
     uint32_t count = 0;
     planes[count++].coefficients = {0, 0, 0, 1};
     if (draw.state->depthClipEnable) {
         planes[count++].coefficients = {0, 0, 1, draw.state->negativeOneToOne ? 1.0 : 0.0};
         planes[count++].coefficients = {0, 0, -1, 1};
+    }
+    for (size_t axis = 0; isLine && axis < 2; ++axis) {
+        for (const double sign : {1.0, -1.0}) {
+            planes[count].coefficients[axis] = sign;
+            planes[count++].coefficients[3] = 1;
+        }
     }
     for (uint32_t axis = 0; axis < 2; ++axis) {
         planes[count++] = guardPlane(viewport, axis, kGuardBandMax, 1);
@@ -79,8 +85,8 @@ ClipVertex cutEdge(const PreparedDraw& draw, const ClipPlane& plane, const ClipV
 
 bool clipPolygon(const PreparedDraw& draw, const ViewportTransform& viewport, ClipPolygon& polygon, Chunk& chunk) {
     std::array<ClipPlane, kMaxClipPlanes> planes;
-    const uint32_t planeCount = collectPlanes(draw, viewport, planes);
     const bool isLine = polygon.count == 2;
+    const uint32_t planeCount = collectPlanes(draw, viewport, isLine, planes);
     bool cut = false;
     for (uint32_t p = 0; p < planeCount && polygon.count > 0; ++p) {
         std::array<double, kMaxPolygonVertices> distance;
@@ -101,8 +107,11 @@ bool clipPolygon(const PreparedDraw& draw, const ViewportTransform& viewport, Cl
             const bool closing = isLine && next == 0;
             if (in == nextIn || closing || result.count == kMaxPolygonVertices) continue;
             const uint32_t i = in ? n : next, o = in ? next : n;
-            result.vertices[result.count++] =
+            result.vertices[result.count] =
                 cutEdge(draw, planes[p], polygon.vertices[i], distance[i], polygon.vertices[o], distance[o], chunk);
+            // Where the polygon leaves, an edge along the plane follows; where it comes back, the rest of its own.
+            result.vertices[result.count++].hiddenEdge =
+                in ? planes[p].user == kMaxClipDistances : polygon.vertices[n].hiddenEdge;
         }
         polygon = result;
         if (polygon.count < (isLine ? 2u : 3u)) polygon.count = 0;

@@ -13,11 +13,13 @@ namespace vernier {
 struct ClipVertex {
     std::array<double, 4> position;  // clip coordinates
     std::array<double, kMaxClipDistances> distances;
-    uint32_t attributes;  // first float in Chunk::attributes
+    uint32_t attributes;      // first float in Chunk::attributes
+    bool hiddenEdge = false;  // the edge to the next vertex lies on a plane of the view volume
 };
 
-/// A plane adds at most one vertex to a convex polygon: w, near, far, four of the guard band, and the user's.
-inline constexpr uint32_t kMaxClipPlanes = 7 + kMaxClipDistances;
+/// A plane adds at most one vertex to a convex polygon: w, near, far, four sides (of lines), four of the guard band,
+/// and the user's.
+inline constexpr uint32_t kMaxClipPlanes = 11 + kMaxClipDistances;
 inline constexpr uint32_t kMaxPolygonVertices = 3 + kMaxClipPlanes;
 
 struct ClipPolygon {
@@ -25,9 +27,10 @@ struct ClipPolygon {
     uint32_t count = 0;
 };
 
-/// Clips a polygon (or, with two vertices, a line) to w >= 0, the near and far plane (unless depth clipping
-/// is off), the guard band, and the user's clip distances. Attributes of new vertices are appended to the
-/// chunk. What is left has count 0 when nothing is. Returns whether anything was cut.
+/// Clips a polygon to w >= 0, the near and far plane (unless depth clipping is off), the guard band, and the user's
+/// clip distances; a line (two vertices) to the sides of the view volume, too, which for polygons the rasteriser does.
+/// Attributes of new vertices are appended to the chunk. What is left has count 0 when nothing is. Returns whether
+/// anything was cut.
 ///
 /// New vertices depend on the two ends of the edge alone, not on the direction in which it is walked, so that
 /// primitives sharing an edge share its new vertices to the bit.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "runtime/geometry/depth_bias.h"
+#include "runtime/geometry/shapes.h"
 
 namespace vernier {
 namespace {
@@ -31,11 +32,6 @@ bool culled(VkCullModeFlags mode, bool front) {
     return (mode & static_cast<VkCullModeFlags>(front ? VK_CULL_MODE_FRONT_BIT : VK_CULL_MODE_BACK_BIT)) != 0;
 }
 
-int32_t snap(double pixels, uint32_t bits) {
-    const double bounded = std::clamp(pixels, double{kGuardBandMin}, double{kGuardBandMax});
-    return static_cast<int32_t>(std::nearbyint(bounded * static_cast<double>(1u << bits)));
-}
-
 bool before(const WindowVertex& a, const WindowVertex& b) {
     return a.y != b.y ? a.y < b.y : a.x < b.x;
 }
@@ -58,13 +54,14 @@ void PrimitiveSetup::begin(Chunk& chunk, const TileGrid& grid, uint32_t primitiv
     grid_ = grid;
     entries_.clear();
     touched_.clear();
+    stipple_ = 0;
     if (perTile_.size() < grid.count()) perTile_.resize(grid.count(), 0);
     // Most draws add a primitive for each of the chunk's; growing step by step would copy them several times.
     if (primitives > chunk.primitives.capacity()) chunk.primitives.reserve(primitives);
 }
 
 void PrimitiveSetup::addPolygon(const PreparedDraw& draw, const PrimitiveInfo& info,
-                                std::span<const WindowVertex> polygon) {
+                                std::span<const WindowVertex> polygon, uint32_t hiddenEdges) {
     // A fan over a clipped polygon has one facing: that of the whole. Snapping can turn a sliver of the fan
     // over; it is dropped rather than drawn twice.
     int64_t area = 0;
@@ -84,12 +81,12 @@ void PrimitiveSetup::addPolygon(const PreparedDraw& draw, const PrimitiveInfo& i
     }
     switch (draw.state->polygonMode) {
         case VK_POLYGON_MODE_LINE:
-            style.area = &draw.viewport(info.viewport).area;
+            if (draw.state->stippledLine) restartStipple();
             for (size_t n = 0; n < polygon.size(); ++n)
-                addSegment(draw, info, style, polygon[n], polygon[(n + 1) % polygon.size()]);
+                if ((hiddenEdges >> n & 1) == 0)
+                    addSegment(draw, info, style, polygon[n], polygon[(n + 1) % polygon.size()]);
             return;
         case VK_POLYGON_MODE_POINT: {
-            style.area = &draw.viewport(info.viewport).area;
             const double subUnits = static_cast<double>(1u << draw.subPixelBits);
             for (const WindowVertex& v : polygon) addSquare(draw, info, style, v, v.x / subUnits, v.y / subUnits, 1);
             return;
@@ -117,41 +114,79 @@ void PrimitiveSetup::addPoint(const PreparedDraw& draw, const PrimitiveInfo& inf
     addSquare(draw, info, style, vertex, x, y, size);
 }
 
+void PrimitiveSetup::restartStipple() {
+    if (!chunk_->restartsStipple) chunk_->continuingShapes = static_cast<uint32_t>(chunk_->shapes.size());
+    chunk_->restartsStipple = true;
+    stipple_ = 0;
+}
+
 void PrimitiveSetup::addSegment(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style,
                                 const WindowVertex& a, const WindowVertex& b) {
-    const double subUnits = static_cast<double>(1u << draw.subPixelBits);
-    const double ax = a.x / subUnits, ay = a.y / subUnits, bx = b.x / subUnits, by = b.y / subUnits;
-    const double length = std::sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay));
-    if (length == 0) return;
-    const double halfWidth = 0.5 * std::clamp(double{draw.call.dynamic->lineWidth}, 0.125, double{kMaxLineWidth});
-    const double nx = -(by - ay) / length * halfWidth, ny = (bx - ax) / length * halfWidth;
-    const auto corner = [&](const WindowVertex& v, double x, double y) {
-        WindowVertex result = v;
-        result.x = snap(x, draw.subPixelBits);
-        result.y = snap(y, draw.subPixelBits);
-        return result;
-    };
-    const WindowVertex a0 = corner(a, ax - nx, ay - ny), a1 = corner(a, ax + nx, ay + ny);
-    const WindowVertex b0 = corner(b, bx - nx, by - ny), b1 = corner(b, bx + nx, by + ny);
-    addTriangle(draw, info, style, a0, b0, b1);
-    addTriangle(draw, info, style, a0, b1, a1);
+    const uint32_t bits = draw.subPixelBits;
+    const std::array<int32_t, 2> from{a.x, a.y}, to{b.x, b.y};
+    const double width = std::clamp(double{draw.call.dynamic->lineWidth}, double{kMinLineWidth}, double{kMaxLineWidth});
+    const VkLineRasterizationModeEXT mode = draw.state->lineMode;
+    const bool pixels = mode == VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT;
+    Shape shape =
+        pixels ? bresenhamShape(from, to, width, bits)
+               : rectangleShape(from, to, width, bits, mode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT);
+    shape.stippleStart = stipple_;
+    if (draw.state->stippledLine) stipple_ += pixels ? shape.count : segmentLength(shape, bits);
+    if ((pixels && shape.count == 0) || from == to) return;
+    addShape(draw, info, style, shape, a, b, nullptr);
 }
 
 void PrimitiveSetup::addSquare(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style,
                                const WindowVertex& vertex, double x, double y, float size) {
     const double clamped = size >= kMinPointSize ? std::min(size, kMaxPointSize) : kMinPointSize;  // NaN: the least
     const std::array<float, 3> point{static_cast<float>(x), static_cast<float>(y), static_cast<float>(1 / clamped)};
-    Style square = style;
-    square.point = &point;
-    const auto corner = [&](double sx, double sy) {
-        WindowVertex result = vertex;
-        result.x = snap(x + sx * clamped, draw.subPixelBits);
-        result.y = snap(y + sy * clamped, draw.subPixelBits);
-        return result;
-    };
-    const WindowVertex tl = corner(-0.5, -0.5), tr = corner(0.5, -0.5), br = corner(0.5, 0.5), bl = corner(-0.5, 0.5);
-    addTriangle(draw, info, square, tl, tr, br);
-    addTriangle(draw, info, square, tl, br, bl);
+    addShape(draw, info, style, squareShape(x, y, clamped, draw.subPixelBits), vertex, vertex, &point);
+}
+
+void PrimitiveSetup::addShape(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style,
+                              const Shape& shape, const WindowVertex& a, const WindowVertex& b,
+                              const std::array<float, 3>* point) {
+    std::array<int32_t, 4> bounds = shapeBounds(shape, draw.subPixelBits);
+    bounds = {std::max(bounds[0], style.area->x0), std::max(bounds[1], style.area->y0),
+              std::min(bounds[2], style.area->x1 - 1), std::min(bounds[3], style.area->y1 - 1)};
+    if (bounds[0] > bounds[2] || bounds[1] > bounds[3]) return;
+    const auto index = static_cast<uint32_t>(chunk_->primitives.size());
+    const auto shapeIndex = static_cast<uint32_t>(chunk_->shapes.size());
+    chunk_->shapes.push_back(shape);
+    Primitive& p = addPrimitive(info, style, {&a, &b, &a}, bounds);
+    p.shape = shapeIndex;
+    p.isPoint = point != nullptr;
+    p.point = p.isPoint ? *point : std::array<float, 3>{};
+    binShape(p, shape, index, draw.subPixelBits);
+}
+
+/// What triangles, points and lines have in common; the caller sets the rest.
+Primitive& PrimitiveSetup::addPrimitive(const PrimitiveInfo& info, const Style& style,
+                                        const std::array<const WindowVertex*, 3>& vertices,
+                                        const std::array<int32_t, 4>& bounds) {
+    Primitive& p = chunk_->primitives.emplace_back();
+    double inverseW[3];
+    for (size_t n = 0; n < 3; ++n) {
+        const WindowVertex& vertex = *vertices[n];
+        p.x[n] = vertex.x;
+        p.y[n] = vertex.y;
+        p.z[n] = vertex.z;
+        p.attributes[n] = vertex.attributes;
+        inverseW[n] = vertex.inverseW;
+    }
+    p.wExponent = exponentOf(std::max({inverseW[0], inverseW[1], inverseW[2]}));
+    const double scale = powerOfTwo(-p.wExponent);
+    for (size_t n = 0; n < 3; ++n) p.w[n] = static_cast<float>(inverseW[n] * scale);
+    p.affine = p.w[0] == p.w[1] && p.w[1] == p.w[2];
+    p.depthBias = style.depthBias;
+    p.flat = info.flat;
+    for (size_t n = 0; n < 4; ++n) p.bounds[n] = static_cast<int16_t>(bounds[n]);
+    p.draw = info.draw;
+    p.primitiveId = info.primitiveId;
+    p.layer = static_cast<uint16_t>(info.layer);
+    p.viewport = static_cast<uint8_t>(info.viewport);
+    p.front = style.front;
+    return p;
 }
 
 void PrimitiveSetup::addTriangle(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style,
@@ -172,30 +207,9 @@ void PrimitiveSetup::addTriangle(const PreparedDraw& draw, const PrimitiveInfo& 
     const int least = before(*v[1], *v[0]) ? (before(*v[2], *v[1]) ? 2 : 1) : (before(*v[2], *v[0]) ? 2 : 0);
 
     const auto index = static_cast<uint32_t>(chunk_->primitives.size());
-    Primitive& p = chunk_->primitives.emplace_back();
-    double inverseW[3];
-    for (int n = 0; n < 3; ++n) {
-        const WindowVertex& vertex = *v[(least + n) % 3];
-        p.x[n] = vertex.x;
-        p.y[n] = vertex.y;
-        p.z[n] = vertex.z;
-        p.attributes[n] = vertex.attributes;
-        inverseW[n] = vertex.inverseW;
-    }
-    p.wExponent = exponentOf(std::max({inverseW[0], inverseW[1], inverseW[2]}));
-    const double scale = powerOfTwo(-p.wExponent);
-    for (int n = 0; n < 3; ++n) p.w[n] = static_cast<float>(inverseW[n] * scale);
-    p.affine = p.w[0] == p.w[1] && p.w[1] == p.w[2];
-    p.depthBias = style.depthBias;
-    p.flat = info.flat;
-    p.bounds = {static_cast<int16_t>(x0), static_cast<int16_t>(y0), static_cast<int16_t>(x1), static_cast<int16_t>(y1)};
-    p.draw = info.draw;
-    p.primitiveId = info.primitiveId;
-    p.layer = static_cast<uint16_t>(info.layer);
-    p.viewport = static_cast<uint8_t>(info.viewport);
-    p.front = style.front;
-    p.isPoint = style.point != nullptr;
-    p.point = p.isPoint ? *style.point : std::array<float, 3>{};
+    Primitive& p = addPrimitive(info, style, {v[least], v[(least + 1) % 3], v[(least + 2) % 3]}, {x0, y0, x1, y1});
+    p.shape = kNoShape;
+    p.isPoint = false;
     const auto span = [](const std::array<int32_t, 3>& values) {
         return int64_t{std::max({values[0], values[1], values[2]})} - std::min({values[0], values[1], values[2]});
     };
@@ -213,13 +227,9 @@ void PrimitiveSetup::bin(const Primitive& p, uint32_t index, const PreparedDraw&
     const auto row = [&](int32_t y) { return static_cast<uint32_t>((y - grid_.y0) / kTileSize); };
     const uint32_t tx0 = column(p.bounds[0]), tx1 = column(p.bounds[2]);
     const uint32_t ty0 = row(p.bounds[1]), ty1 = row(p.bounds[3]);
-    const auto add = [&](uint32_t tile, uint32_t flags) {
-        if (perTile_[tile]++ == 0) touched_.push_back(tile);
-        entries_.push_back({tile, index | flags});
-    };
     const bool spansTile = p.bounds[2] - p.bounds[0] == kTileSize - 1 && p.bounds[3] - p.bounds[1] == kTileSize - 1;
     if (tx0 == tx1 && ty0 == ty1 && !spansTile) {
-        add(firstTile + ty0 * grid_.columns + tx0, 0);
+        addEntry(firstTile + ty0 * grid_.columns + tx0, index);
         return;
     }
     // Edge functions at the corner of the first tile, and how far they change over one tile.
@@ -248,12 +258,39 @@ void PrimitiveSetup::bin(const Primitive& p, uint32_t index, const PreparedDraw&
             const int32_t y = grid_.y0 + static_cast<int32_t>(ty) * kTileSize;
             inside &= p.bounds[0] <= x && p.bounds[1] <= y && p.bounds[2] >= x + kTileSize - 1 &&
                       p.bounds[3] >= y + kTileSize - 1;
-            add(firstTile + ty * grid_.columns + tx, inside && mayCoverTiles ? kCoversTile : 0);
+            addEntry(firstTile + ty * grid_.columns + tx, index | (inside && mayCoverTiles ? kCoversTile : 0));
         }
     }
 }
 
+/// A line is handed to the tiles near it, a point to all that its bounds touch.
+void PrimitiveSetup::binShape(const Primitive& p, const Shape& shape, uint32_t index, uint32_t subPixelBits) {
+    const auto tileOf = [](int32_t pixel, int32_t origin) {
+        return static_cast<uint32_t>((pixel - origin) / kTileSize);
+    };
+    const uint32_t firstTile = p.layer * grid_.perLayer();
+    const double unit = static_cast<double>(1u << subPixelBits), half = 0.5 * kTileSize * unit;
+    const double dx = double(shape.bx) - shape.ax, dy = double(shape.by) - shape.ay;
+    // The farthest that a covered place can be from the segment's line, times the segment's length.
+    const double length = segmentLength(shape, subPixelBits) * unit;
+    const double band = (std::abs(dx) + std::abs(dy)) * half + (kMaxLineWidth + 2) * unit * length;
+    for (uint32_t ty = tileOf(p.bounds[1], grid_.y0); ty <= tileOf(p.bounds[3], grid_.y0); ++ty) {
+        for (uint32_t tx = tileOf(p.bounds[0], grid_.x0); tx <= tileOf(p.bounds[2], grid_.x0); ++tx) {
+            const double cx = (grid_.x0 + static_cast<double>(tx) * kTileSize) * unit + half;
+            const double cy = (grid_.y0 + static_cast<double>(ty) * kTileSize) * unit + half;
+            const bool near = std::abs((cx - shape.ax) * dy - (cy - shape.ay) * dx) <= band;
+            if (shape.kind == Shape::Kind::square || near) addEntry(firstTile + ty * grid_.columns + tx, index);
+        }
+    }
+}
+
+void PrimitiveSetup::addEntry(uint32_t tile, uint32_t entry) {
+    if (perTile_[tile]++ == 0) touched_.push_back(tile);
+    entries_.push_back({tile, entry});
+}
+
 void PrimitiveSetup::finish() {
+    chunk_->stippleEnd = stipple_;
     uint32_t first = 0;
     for (const uint32_t tile : touched_) {
         chunk_->ranges.push_back({tile, first, perTile_[tile]});

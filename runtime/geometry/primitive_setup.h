@@ -12,7 +12,7 @@
 namespace vernier {
 
 inline constexpr float kMinPointSize = 1.0f, kMaxPointSize = 256.0f;
-inline constexpr float kMaxLineWidth = 64.0f;
+inline constexpr float kMinLineWidth = 1.0f, kMaxLineWidth = 64.0f;
 
 /// The tiles of a render area: tile (0, 0) of the grid has its first pixel at (x0, y0), a multiple of
 /// kTileSize.
@@ -48,10 +48,14 @@ class PrimitiveSetup {
   public:
     /// `primitives`: how many are expected.
     void begin(Chunk& chunk, const TileGrid& grid, uint32_t primitives);
-    /// A convex polygon of at least three vertices, in order: culled, then drawn as the polygon mode says.
-    void addPolygon(const PreparedDraw& draw, const PrimitiveInfo& info, std::span<const WindowVertex> polygon);
-    /// A rectangle of the line width around the segment.
+    /// A convex polygon of at least three vertices, in order: culled, then drawn as the polygon mode says. Bit n of
+    /// `hiddenEdges`: the edge from vertex n to the next is no edge of the primitive.
+    void addPolygon(const PreparedDraw& draw, const PrimitiveInfo& info, std::span<const WindowVertex> polygon,
+                    uint32_t hiddenEdges = 0);
+    /// A segment of a line list or strip.
     void addLine(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& a, const WindowVertex& b);
+    /// Line stipple starts anew: before every segment of a list, and before a strip.
+    void restartStipple();
     /// A square around a centre in pixels, not snapped.
     void addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& vertex, double x, double y,
                   float size);
@@ -66,7 +70,6 @@ class PrimitiveSetup {
         bool front = true;
         float depthBias = 0;
         const PixelRect* area = nullptr;
-        const std::array<float, 3>* point = nullptr;
     };
     void addTriangle(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style, const WindowVertex& a,
                      const WindowVertex& b, const WindowVertex& c);
@@ -74,13 +77,20 @@ class PrimitiveSetup {
                     const WindowVertex& b);
     void addSquare(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style, const WindowVertex& vertex,
                    double x, double y, float size);
+    Primitive& addPrimitive(const PrimitiveInfo& info, const Style& style,
+                            const std::array<const WindowVertex*, 3>& vertices, const std::array<int32_t, 4>& bounds);
+    void addShape(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style, const Shape& shape,
+                  const WindowVertex& a, const WindowVertex& b, const std::array<float, 3>* point);
     void bin(const Primitive& primitive, uint32_t index, const PreparedDraw& draw);
+    void binShape(const Primitive& primitive, const Shape& shape, uint32_t index, uint32_t subPixelBits);
+    void addEntry(uint32_t tile, uint32_t entry);
 
     Chunk* chunk_ = nullptr;
     TileGrid grid_;
     std::vector<Entry> entries_;
     std::vector<uint32_t> perTile_;  // zero between chunks
     std::vector<uint32_t> touched_;
+    double stipple_ = 0;  // the counter of line stipple, in pixels
 };
 
 /// Twice the signed area; positive when clockwise on the screen (y down).

@@ -33,6 +33,8 @@ uint32_t verticesPerPrimitive(VkPrimitiveTopology topology) {
             return 1;
         case VK_PRIMITIVE_TOPOLOGY_LINE_LIST:
         case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP:
+        case VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY:
+        case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY:
             return 2;
         default:
             return 3;
@@ -49,6 +51,14 @@ uint32_t primitiveCount(VkPrimitiveTopology topology, uint32_t vertices) {
             return vertices < 2 ? 0 : vertices - 1;
         case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST:
             return vertices / 3;
+        case VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY:
+            return vertices / 4;
+        case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY:
+            return vertices < 4 ? 0 : vertices - 3;
+        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST_WITH_ADJACENCY:
+            return vertices / 6;
+        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY:
+            return vertices < 6 ? 0 : (vertices - 4) / 2;
         default:
             return vertices < 3 ? 0 : vertices - 2;
     }
@@ -67,6 +77,15 @@ PrimitiveVertices primitiveVertices(VkPrimitiveTopology topology, uint32_t primi
             return {{3 * p, 3 * p + 1, 3 * p + 2}, 0, 2};
         case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN:
             return {{p + 1, p + 2, 0}, 0, 1};
+        // The adjacent vertices are for geometry shaders: without one they are read past.
+        case VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY:
+            return {{4 * p + 1, 4 * p + 2, 4 * p + 1}, 0, 1};
+        case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY:
+            return {{p + 1, p + 2, p + 1}, 0, 1};
+        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST_WITH_ADJACENCY:
+            return {{6 * p, 6 * p + 2, 6 * p + 4}, 0, 2};
+        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY:
+            return {{2 * p, 2 * p + 2 + 2 * (p & 1), 2 * p + 4 - 2 * (p & 1)}, 0, 2 - (p & 1)};
         default:  // a strip: every other triangle swaps its last two vertices to keep the winding
             return {{p, p + 1 + (p & 1), p + 2 - (p & 1)}, 0, 2 - (p & 1)};
     }

@@ -43,11 +43,18 @@ Status checkRasterization(const GraphicsState& state) {
         case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST:
         case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP:
         case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN:
+        case VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY:
+        case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY:
+        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST_WITH_ADJACENCY:
+        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY:
             break;
         default:
             return unsupported("topology: VkPrimitiveTopology " + number(state.topology) +
-                               " (adjacency and patches) is not supported");
+                               " (patches) is not supported");
     }
+    if (state.lineMode > VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT)
+        return unsupported("lineMode: VkLineRasterizationModeEXT " + number(state.lineMode) +
+                           " is not supported");
     if (state.polygonMode > VK_POLYGON_MODE_POINT)
         return unsupported("polygonMode: VkPolygonMode " + number(state.polygonMode) + " is not supported");
     if (!isSampleCount(state.samples))

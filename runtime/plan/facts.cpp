@@ -35,6 +35,9 @@ void geometryFacts(const GraphicsState& state, const Plan& plan, const Accuracy&
         "coverage, exact on a grid of 1/" + std::to_string(1u << accuracy.subPixelBits) + " pixel",
         std::to_string(accuracy.subPixelBits) + " sub-pixel bits; " + count(plan.samples, "sample") + " per pixel");
     if (plan.clipDistanceSlots.empty()) facts.leftOut("user clip planes", "no clip distance is written");
+    if (plan.layerSlot != kNoSlot) facts.runs("a layer for each primitive", "the vertex program chooses it");
+    if (plan.viewportIndexSlot != kNoSlot) facts.runs("a viewport for each primitive", "the vertex program chooses it");
+    if (plan.smoothLines) facts.runs("the area that a line covers of each pixel, into alpha", "lines are smooth");
     if (!state.depthClipEnable) facts.leftOut("clipping to near and far", "depth clipping is off");
     if (state.cullMode == VK_CULL_MODE_NONE) facts.leftOut("culling", "cull mode is none");
     if (!state.depthBiasEnable) facts.leftOut("depth bias", "it is off");

@@ -28,6 +28,8 @@ struct GraphicsState {
     VkFrontFace frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
     bool depthBiasEnable = false;
     bool provokingVertexLast = false;
+    VkLineRasterizationModeEXT lineMode = VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT;  // the default is rectangular
+    bool stippledLine = false;
 
     uint32_t samples = 1;
     uint32_t sampleMask = ~0u;
@@ -59,6 +61,8 @@ constexpr uint32_t dynamicStateBit(VkDynamicState state) {
     switch (state) {
         case VK_DYNAMIC_STATE_SAMPLE_LOCATIONS_EXT:
             return 1u << 9;
+        case VK_DYNAMIC_STATE_LINE_STIPPLE_EXT:
+            return 1u << 10;
         default:
             return 0;
     }
@@ -70,6 +74,8 @@ struct DynamicState {
     std::array<VkRect2D, kMaxViewports> scissors{};
     uint32_t viewportCount = 1;
     float lineWidth = 1;
+    uint32_t lineStippleFactor = 1;
+    uint16_t lineStipplePattern = 0xFFFF;
     float depthBiasConstant = 0, depthBiasClamp = 0, depthBiasSlope = 0;
     std::array<float, 4> blendConstants{};
     float minDepthBounds = 0, maxDepthBounds = 1;

@@ -88,6 +88,20 @@ void planVertexOutputs(const ir::Program& vertex, Plan& plan) {
     }
 }
 
+bool drawsLines(const GraphicsState& state) {
+    switch (state.topology) {
+        case VK_PRIMITIVE_TOPOLOGY_POINT_LIST:
+            return false;
+        case VK_PRIMITIVE_TOPOLOGY_LINE_LIST:
+        case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP:
+        case VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY:
+        case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY:
+            return true;
+        default:
+            return state.polygonMode == VK_POLYGON_MODE_LINE;
+    }
+}
+
 /// Inputs that the vertex stage writes and interpolation carries over; the others are made by the rasteriser.
 bool isInterpolated(ir::Builtin builtin) {
     return builtin == ir::Builtin::user || builtin == ir::Builtin::clipDistance || builtin == ir::Builtin::cullDistance;
@@ -257,6 +271,7 @@ Plan makePlan(const GraphicsState& state, const ShaderProgram& program) {
     plan.sampleMask = state.sampleMask;
     plan.alphaToCoverage = state.alphaToCoverage && fragment != nullptr;
     plan.alphaToOne = state.alphaToOne;
+    plan.smoothLines = state.lineMode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT && drawsLines(state);
     plan.preciseInterpolation = accuracy.interpolation == InterpolationArithmetic::doubleFloat;
     plan.perSample = state.samples > 1 && fragment != nullptr &&
                      (fragment->perSample ||

@@ -119,6 +119,7 @@ struct Plan {
     uint32_t samples = 1;
     uint32_t sampleMask = ~0u;
     bool alphaToCoverage = false, alphaToOne = false;
+    bool smoothLines = false;  // alpha of colour 0 is multiplied with what a line covers of the pixel
     std::vector<BuiltinSlot> fragmentBuiltins;
     uint32_t fragDepthSlot = kNoSlot, sampleMaskSlot = kNoSlot, alphaSlot = kNoSlot;
     DepthPlan depth;

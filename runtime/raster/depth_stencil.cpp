@@ -95,18 +95,18 @@ uint8_t applyStencilOp(VkStencilOp op, uint8_t stored, uint8_t reference) {
     }
 }
 
-std::byte* stencilByte(DepthStorage storage, std::byte* texel) {
+}  // namespace
+
+size_t stencilOffset(DepthStorage storage) {
     switch (storage) {
         case DepthStorage::d24:
-            return texel + 3;
+            return 3;
         case DepthStorage::d32fs8:
-            return texel + 4;
+            return 4;
         default:
-            return texel;
+            return 0;
     }
 }
-
-}  // namespace
 
 bool testSample(const DepthStencilState& state, std::byte* texel, float z, bool front) {
     const DepthPlan& plan = *state.plan;
@@ -121,7 +121,7 @@ bool testSample(const DepthStencilState& state, std::byte* texel, float z, bool 
         return true;
     }
     const DepthStencilState::Face& face = front ? state.front : state.back;
-    std::byte* byte = stencilByte(plan.storage, texel);
+    std::byte* byte = texel + stencilOffset(plan.storage);
     const auto stored = static_cast<uint8_t>(*byte);
     const auto reference = static_cast<uint8_t>(face.values.reference);
     const uint32_t mask = face.values.compareMask & 0xFF;

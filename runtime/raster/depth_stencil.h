@@ -32,6 +32,9 @@ struct DepthStencilState {
     Face front, back;
 };
 
+/// Bytes from the start of a texel to its stencil value.
+size_t stencilOffset(DepthStorage storage);
+
 /// Bounds test, stencil test, depth test, and the writes they lead to. Returns whether the sample lives.
 bool testSample(const DepthStencilState& state, std::byte* texel, float z, bool front);
 

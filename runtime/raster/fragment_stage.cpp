@@ -4,10 +4,11 @@
 #include <bit>
 #include <cstring>
 
+#include "runtime/geometry/shapes.h"
 #include "runtime/raster/bits.h"
 
-namespace vernier {
 
+namespace vernier {
 namespace {
 
 /// Lanes of a block that is run at once, at most.
@@ -286,6 +287,7 @@ void FragmentStage::run(FragmentBatch& batch) {
         for (uint32_t lane = 0; lane < count; ++lane) stored -= 1 - (batch.store[lane] & 1);
     statistics_.fragmentInvocations += stored;
     statistics_.helperInvocations += (batch.partial ? batch.running : count) - stored;
+    if (plan_->smoothLines) smoothAlpha(batch);
     if (!plan_->keepsCoverage) {
         const uint32_t* live = context_->liveMask();
         for (uint32_t lane = 0; lane < count; ++lane) batch.coverage[lane] &= live[lane];
@@ -314,6 +316,19 @@ void FragmentStage::run(FragmentBatch& batch) {
     }
 }
 
+/// "this coverage value is multiplied into the color location 0's alpha value after fragment shading" (specification,
+/// "Smooth Lines").
+void FragmentStage::smoothAlpha(const FragmentBatch& batch) {
+    const float* alpha = plan_->alphaSlot != kNoSlot ? context_->output(plan_->alphaSlot) : ones_.data();
+    for (uint32_t s = 0; s < batch.segmentCount; ++s) {
+        const FragmentSegment& part = batch.segments[s];
+        for (uint32_t n = part.first; n < part.first + part.count; ++n) {
+            const double area = coveredArea(*part.planes->shape, batch.x[n], batch.y[n], draw_->subPixelBits);
+            smoothAlpha_[n] = static_cast<float>(double{alpha[n]} * area);
+        }
+    }
+}
+
 /// Coverage after the program: its own sample mask, and alpha to coverage.
 void FragmentStage::reduceCoverage(FragmentBatch& batch) {
     if (plan_->sampleMaskSlot != kNoSlot) {
@@ -322,7 +337,7 @@ void FragmentStage::reduceCoverage(FragmentBatch& batch) {
             batch.coverage[lane] &= std::bit_cast<uint32_t>(plane[lane]);
     }
     if (plan_->alphaToCoverage && plan_->alphaSlot != kNoSlot) {
-        const float* alpha = context_->output(plan_->alphaSlot);
+        const float* alpha = plan_->smoothLines ? smoothAlpha_.data() : context_->output(plan_->alphaSlot);
         const auto samples = static_cast<float>(samples_);
         for (uint32_t lane = 0; lane < batch.count; ++lane) {
             const float a = alpha[lane] > 0 ? std::min(alpha[lane], 1.0f) : 0.0f;
@@ -376,6 +391,8 @@ void FragmentStage::bindColors(Isa isa) {
             color.general.source[c] = color.block.source[c] = outputPlane(plan.slots[c], c);
             color.general.second[c] = outputPlane(plan.dualSlots[c], c);
         }
+        if (plan_->smoothLines && plan.attachment == 0 && !plan_->alphaToOne)
+            color.general.source[3] = color.block.source[3] = smoothAlpha_.data();
         color.block.rowPitch = target.rowPitch;
         color.blockRoutine = blockColorFunction(plan, isa);
     }

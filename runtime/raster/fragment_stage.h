@@ -62,6 +62,7 @@ class FragmentStage {
     void reduceCoverage(FragmentBatch& batch);
     void testLate(FragmentBatch& batch);
     void bindColors(Isa isa);
+    void smoothAlpha(const FragmentBatch& batch);
     void writeColors(const FragmentBatch& batch, uint32_t sample, const uint32_t* mask);
     const float* outputPlane(uint32_t slot, uint32_t component) const;
     static void interpolateAt(void* self, uint32_t slot, uint32_t where, uint32_t lanes, const float* a, const float* b,
@@ -108,7 +109,8 @@ class FragmentStage {
     alignas(64) std::array<float, kLaneRoom> centroidX_, centroidY_;
     alignas(64) std::array<uint32_t, kLaneRoom> mask_;
     alignas(64) std::array<float, kLaneRoom> zeros_, ones_;
-    std::array<uint64_t, kBlocksPerTile> inBatch_{};  // pixels of the tile that wait in batch_
+    alignas(64) std::array<float, kLaneRoom> smoothAlpha_;  // of colour 0, times the area that a smooth line covers
+    std::array<uint64_t, kBlocksPerTile> inBatch_{};        // pixels of the tile that wait in batch_
     bool outOfBudget_ = false;
     PassStatistics statistics_;
     ContextCache contexts_;

@@ -104,7 +104,8 @@ VisibleStart lastReplacement(const PassTargets& targets, const TileInput& tile) 
                 known = &draw;
                 replaces = replacesEverything(targets, draw);
             }
-            if (!replaces || !draw.viewport(primitive.viewport).sampleAreas.empty()) continue;
+            if (!replaces || primitive.shape != kNoShape || !draw.viewport(primitive.viewport).sampleAreas.empty())
+                continue;
             if ((entry & kCoversTile) != 0) return {item, n, true};
             // Worth the while only for large parts of a tile with work before them.
             const int32_t width = std::min<int32_t>(primitive.bounds[2] + 1, tile.rect.x1) -

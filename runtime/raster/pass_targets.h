@@ -34,6 +34,8 @@ struct PassTargets {
     std::array<RenderTarget, kMaxColorAttachments> colors{};
     std::array<RenderTarget, kMaxColorAttachments> resolves{};  // average resolve into these at the end
     RenderTarget depthStencil{};
+    RenderTarget depthStencilResolve{};  // by the modes of its aspects
+    VkResolveModeFlagBits depthResolveMode = VK_RESOLVE_MODE_NONE, stencilResolveMode = VK_RESOLVE_MODE_NONE;
     VkRect2D renderArea{};  // inside every target
     uint32_t layers = 1;
     uint32_t viewMask = 0;  // not 0: multiview, every draw goes once to each of these layers; `layers` does not count

@@ -11,6 +11,7 @@
 
 #include "runtime/geometry/assemble.h"
 #include "runtime/raster/attachment_ops.h"
+#include "runtime/raster/depth_resolve.h"
 #include "runtime/raster/hidden_work.h"
 #include "runtime/raster/tile_renderer.h"
 
@@ -68,6 +69,7 @@ struct RenderPass::Impl {
     void renderRecorded();
     void cutIntoSteps(uint64_t& primitive, size_t& command);
     void runGeometry();
+    void continueStipple();
     void collectTileWork();
     void runTiles();
     void loadTile(const PixelRect& rect, uint32_t layer, bool colorsReplaced) const;
@@ -107,6 +109,8 @@ struct RenderPass::Impl {
     std::vector<uint32_t> activeTiles;
     bool loaded = false;  // load operations are done
     bool exactCounts = false;
+    bool stippled = false;  // some draw of the pass has stippled lines
+    double stipple = 0;     // the counter at the end of the last chunk
     std::atomic<bool> outOfBudget{false};
 };
 
@@ -165,6 +169,16 @@ void RenderPass::Impl::runGeometry() {
         if (!self.assembler.run(draws, nextToken, steps[index].ranges, grid, chunks[index]))
             outOfBudget.store(true, std::memory_order_relaxed);
     });
+}
+
+/// Stipple counters of strips that chunks cut: each chunk goes on from where the one before ended.
+void RenderPass::Impl::continueStipple() {
+    for (uint32_t n = 0; n < stepCount; ++n) {
+        Chunk& chunk = chunks[n];
+        const size_t count = chunk.restartsStipple ? chunk.continuingShapes : chunk.shapes.size();
+        for (size_t k = 0; k < count; ++k) chunk.shapes[k].stippleStart += stipple;
+        stipple = chunk.restartsStipple ? chunk.stippleEnd : stipple + chunk.stippleEnd;
+    }
 }
 
 void RenderPass::Impl::collectTileWork() {
@@ -232,6 +246,7 @@ void RenderPass::Impl::renderRecorded() {
     while (command < commands.size() || !loaded) {
         cutIntoSteps(primitive, command);
         runGeometry();
+        if (stippled) continueStipple();
         collectTileWork();
         runTiles();
     }
@@ -246,11 +261,15 @@ void RenderPass::Impl::renderRecorded() {
 void RenderPass::Impl::resolve() {
     const bool any = std::any_of(targets.resolves.begin(), targets.resolves.end(),
                                  [](const RenderTarget& target) { return target.data != nullptr; });
-    if (!any) return;
+    const bool depth = targets.depthStencilResolve.data != nullptr;
+    if (!any && !depth) return;
     pool.parallelFor(grid.count(), [&](uint32_t tile, uint32_t) {
         for (uint32_t c = 0; c < targets.colorCount; ++c)
             if (targets.resolves[c].data != nullptr && isDrawn(layerOf(tile)))
                 resolvePixels(targets.colors[c], targets.resolves[c], tileRect(tile), layerOf(tile), targets.isa);
+        if (depth && isDrawn(layerOf(tile)))
+            resolveDepthStencil(targets.depthStencil, targets.depthStencilResolve, targets.depthResolveMode,
+                                targets.stencilResolveMode, tileRect(tile), layerOf(tile));
     });
 }
 
@@ -288,6 +307,8 @@ void RenderPass::begin(const PassTargets& targets) {
     self.grid = tileGridOf(targets.renderArea);
     self.grid.layers = targets.viewMask != 0 ? static_cast<uint32_t>(std::bit_width(targets.viewMask)) : targets.layers;
     self.loaded = false;
+    self.stippled = false;
+    self.stipple = 0;
     self.outOfBudget = false;
     self.inputVertices = 0;
     self.statistics = {};
@@ -323,6 +344,7 @@ void RenderPass::Impl::add(PreparedDraw draw) {
                       sameBindings(self.draws.back().call.fragmentResources, call.fragmentResources);
     draw.fragmentState = same ? self.draws.back().fragmentState : index;
     self.recordedPrimitives += draw.primitives();
+    self.stippled |= draw.state->stippledLine;
     self.draws.push_back(std::move(draw));
     self.commands.emplace_back(index);
     if (self.recordedPrimitives >= kPrimitivesPerFlush || self.draws.size() >= kDrawsPerFlush) self.renderRecorded();

@@ -6,6 +6,7 @@
 #include "runtime/raster/attachment_ops.h"
 #include "runtime/raster/bits.h"
 #include "runtime/raster/depth_test.h"
+#include "runtime/raster/shape_coverage.h"
 
 namespace vernier {
 namespace {
@@ -58,11 +59,7 @@ uint32_t cutSamples(const std::vector<PixelRect>& areas, int32_t tileX, int32_t 
         for (uint32_t s = 0; s < samples; ++s) {
             const PixelRect& area = areas[s];
             const int32_t x = tileX + blocks[b].x, y = tileY + blocks[b].y;
-            uint64_t inside = 0;
-            for (int32_t row = std::max(area.y0 - y, 0); row < std::min(area.y1 - y, kBlockSize); ++row)
-                for (int32_t column = std::max(area.x0 - x, 0); column < std::min(area.x1 - x, kBlockSize); ++column)
-                    inside |= uint64_t{1} << (row * kBlockSize + column);
-            any |= blocks[b].masks[s] &= inside;
+            any |= blocks[b].masks[s] &= rectangleBits(area.x0 - x, area.y0 - y, area.x1 - x, area.y1 - y);
         }
         if (any != 0) moveBlock(blocks, b, kept++, samples);
     }
@@ -141,7 +138,10 @@ uint32_t TileRenderer::testEarly(const PreparedDraw& draw, const TrianglePlanes&
 void TileRenderer::draw(const Primitive& primitive, const Chunk& chunk, const PreparedDraw& draw, bool coversTile) {
     const Plan& plan = *draw.plan;
     uint32_t count = 0;
-    if (coversTile) {
+    const Shape* shape = primitive.shape == kNoShape ? nullptr : &chunk.shapes[primitive.shape];
+    if (shape != nullptr) {
+        count = coverShape(draw, primitive, *shape, tileX_, tileY_, blocks_.data());
+    } else if (coversTile) {
         count = coverWholeTile(plan.samples, blocks_.data());
     } else if (primitive.tiny && plan.samples == 1) {
         const TinyInput input{&primitive, tileX_, tileY_, draw.subPixelBits, draw.positions[0]};
@@ -154,12 +154,18 @@ void TileRenderer::draw(const Primitive& primitive, const Chunk& chunk, const Pr
     if ((plan.sampleMask & allSamples) != allSamples)
         count = maskSamples(plan.sampleMask, plan.samples, blocks_.data(), count);
     const ViewportSetup& viewport = draw.viewport(primitive.viewport);
-    if (!viewport.sampleAreas.empty()) count = cutSamples(viewport.sampleAreas, tileX_, tileY_, blocks_.data(), count);
+    if (!viewport.sampleAreas.empty() && shape == nullptr)
+        count = cutSamples(viewport.sampleAreas, tileX_, tileY_, blocks_.data(), count);
     if (count == 0) return;
 
     TrianglePlanes& planes = fragments_.startPrimitive();
-    makePlanes(primitive, chunk.attributes.data(), draw.subPixelBits, plan.preciseInterpolation, viewport.depthLow,
-               viewport.depthHigh, planes);
+    if (shape != nullptr) {
+        makeShapePlanes(primitive, *shape, chunk.attributes.data(), draw.subPixelBits, plan.preciseInterpolation,
+                        viewport.depthLow, viewport.depthHigh, planes);
+    } else {
+        makePlanes(primitive, chunk.attributes.data(), draw.subPixelBits, plan.preciseInterpolation, viewport.depthLow,
+                   viewport.depthHigh, planes);
+    }
     if (fragments_.testsDepth() && plan.depth.early) count = testEarly(draw, planes, count);
     if (plan.depth.write && !plan.depth.early) coarse_.forget();
     if (!plan.runsFragments) {

@@ -3,12 +3,51 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/geometry/primitive_setup.h"
+
 namespace vernier {
 namespace {
 
 /// Above this, |gradient of lambda| * extent, the terms of lambda cancel: float would keep fewer than 20
 /// bits.
 constexpr double kThin = 16;
+
+/// Everything that follows from the gradients of the lambdas. `extent`: pixels from the anchor to the farthest covered
+/// place, both axes added up.
+void finishPlanes(const Primitive& p, const float* attributes, uint32_t subPixelBits, bool precise, double extent,
+                  float zLow, float zHigh, TrianglePlanes& planes) {
+    auto& d = planes.d;
+    const double dz1 = double{p.z[1]} - double{p.z[0]}, dz2 = double{p.z[2]} - double{p.z[0]};
+    d.z0 = double{p.z[0]} + double{p.depthBias};
+    d.zx = dz1 * d.l1x + dz2 * d.l2x;
+    d.zy = dz1 * d.l1y + dz2 * d.l2y;
+
+    planes.anchorX = p.x[0] >> subPixelBits;
+    planes.anchorY = p.y[0] >> subPixelBits;
+    const int32_t fractionMask = (1 << subPixelBits) - 1;
+    const auto inverse = static_cast<float>(1 / static_cast<double>(1u << subPixelBits));
+    planes.fractionX = static_cast<float>(p.x[0] & fractionMask) * inverse;
+    planes.fractionY = static_cast<float>(p.y[0] & fractionMask) * inverse;
+    planes.l1x = static_cast<float>(d.l1x);
+    planes.l1y = static_cast<float>(d.l1y);
+    planes.l2x = static_cast<float>(d.l2x);
+    planes.l2y = static_cast<float>(d.l2y);
+    planes.z0 = static_cast<float>(d.z0);
+    planes.zx = static_cast<float>(d.zx);
+    planes.zy = static_cast<float>(d.zy);
+    planes.zLow = zLow;
+    planes.zHigh = zHigh;
+    planes.w0 = p.w[0];
+    planes.w1 = p.w[1];
+    planes.w2 = p.w[2];
+    planes.wScale = p.wExponent == 0 ? 1.0f : std::ldexp(1.0f, p.wExponent);
+    planes.affine = p.affine;
+    const double steepest = std::max({std::fabs(d.l1x), std::fabs(d.l1y), std::fabs(d.l2x), std::fabs(d.l2y)});
+    planes.precise = precise || steepest * extent > kThin;
+    for (int n = 0; n < 3; ++n) planes.attributes[n] = attributes + p.attributes[n];
+    planes.flat = attributes + p.flat;
+    planes.primitive = &p;
+}
 
 }  // namespace
 
@@ -49,40 +88,25 @@ void makePlanes(const Primitive& p, const float* attributes, uint32_t subPixelBi
     d.l1y = -x2 * perPixel;
     d.l2x = -y1 * perPixel;
     d.l2y = x1 * perPixel;
-    const double dz1 = double{p.z[1]} - double{p.z[0]}, dz2 = double{p.z[2]} - double{p.z[0]};
-    d.z0 = double{p.z[0]} + double{p.depthBias};
-    d.zx = dz1 * d.l1x + dz2 * d.l2x;
-    d.zy = dz1 * d.l1y + dz2 * d.l2y;
-
-    planes.anchorX = p.x[0] >> subPixelBits;
-    planes.anchorY = p.y[0] >> subPixelBits;
-    const int32_t fractionMask = (1 << subPixelBits) - 1;
-    const auto inverse = static_cast<float>(1 / subUnits);
-    planes.fractionX = static_cast<float>(p.x[0] & fractionMask) * inverse;
-    planes.fractionY = static_cast<float>(p.y[0] & fractionMask) * inverse;
-    planes.l1x = static_cast<float>(d.l1x);
-    planes.l1y = static_cast<float>(d.l1y);
-    planes.l2x = static_cast<float>(d.l2x);
-    planes.l2y = static_cast<float>(d.l2y);
-    planes.z0 = static_cast<float>(d.z0);
-    planes.zx = static_cast<float>(d.zx);
-    planes.zy = static_cast<float>(d.zy);
-    planes.zLow = zLow;
-    planes.zHigh = zHigh;
-    planes.w0 = p.w[0];
-    planes.w1 = p.w[1];
-    planes.w2 = p.w[2];
-    planes.wScale = p.wExponent == 0 ? 1.0f : std::ldexp(1.0f, p.wExponent);
-    planes.affine = p.affine;
-    // Steepness: gradients times the farthest a covered pixel can be from the anchor.
+    // The farthest a covered pixel can be from the anchor.
     const double extent = (std::max({std::fabs(x1), std::fabs(x2), std::fabs(x1 - x2)}) +
                            std::max({std::fabs(y1), std::fabs(y2), std::fabs(y1 - y2)})) /
                           subUnits;
-    const double steepest = std::max({std::fabs(d.l1x), std::fabs(d.l1y), std::fabs(d.l2x), std::fabs(d.l2y)});
-    planes.precise = precise || steepest * extent > kThin;
-    for (int n = 0; n < 3; ++n) planes.attributes[n] = attributes + p.attributes[n];
-    planes.flat = attributes + p.flat;
-    planes.primitive = &p;
+    planes.shape = nullptr;
+    finishPlanes(p, attributes, subPixelBits, precise, extent, zLow, zHigh, planes);
+}
+
+void makeShapePlanes(const Primitive& p, const Shape& shape, const float* attributes, uint32_t subPixelBits,
+                     bool precise, float zLow, float zHigh, TrianglePlanes& planes) {
+    const auto x = static_cast<double>(int64_t{p.x[1]} - p.x[0]), y = static_cast<double>(int64_t{p.y[1]} - p.y[0]);
+    const auto subUnits = static_cast<double>(1u << subPixelBits);
+    const double square = x * x + y * y, perPixel = square > 0 ? subUnits / square : 0;
+    planes.d.l1x = x * perPixel;
+    planes.d.l1y = y * perPixel;
+    planes.d.l2x = planes.d.l2y = 0;
+    planes.shape = &shape;
+    const double extent = (std::fabs(x) + std::fabs(y)) / subUnits + kMaxLineWidth;
+    finishPlanes(p, attributes, subPixelBits, precise, extent, zLow, zHigh, planes);
 }
 
 float depthAt(const TrianglePlanes& planes, int32_t x, int32_t y, float offsetX, float offsetY) {

@@ -52,7 +52,13 @@ struct TrianglePlanes {
     const float* attributes[3];
     const float* flat;
     const Primitive* primitive;
+    const Shape* shape;  // of a point or line; nullptr: a triangle
 };
+
+/// The same for a point or a line: along a segment, lambda1 is the parameter of the point projected onto it ("Basic
+/// Line Segment Rasterization"), and lambda2 is zero.
+void makeShapePlanes(const Primitive& primitive, const Shape& shape, const float* attributes, uint32_t subPixelBits,
+                     bool precise, float zLow, float zHigh, TrianglePlanes& planes);
 
 /// `precise` forces double. Triangles so thin that float planes would lose bits to cancellation get it
 /// anyway.

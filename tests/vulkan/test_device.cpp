@@ -172,10 +172,12 @@ TestImage VulkanTest::makeImage(VkFormat format, VkExtent2D extent, VkImageUsage
     view.image = result.image;
     view.viewType = layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
     view.format = format;
-    const bool depth = format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM;
-    const VkImageAspectFlagBits aspect = depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
-    view.subresourceRange = {static_cast<VkImageAspectFlags>(aspect), 0, VK_REMAINING_MIP_LEVELS, 0,
-                             VK_REMAINING_ARRAY_LAYERS};
+    const bool both = format == VK_FORMAT_D32_SFLOAT_S8_UINT;
+    const bool depth = both || format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM;
+    VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT;
+    if (depth) aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
+    if (both) aspect |= VK_IMAGE_ASPECT_STENCIL_BIT;
+    view.subresourceRange = {aspect, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
     EXPECT_EQ(vkCreateImageView(device, &view, nullptr, &result.view), VK_SUCCESS);
     defer([this, result] {
         vkDestroyImageView(device, result.view, nullptr);

@@ -302,7 +302,18 @@ typedef struct VnRasterStateDesc {
     float lineWidth;           /* pixels; 0: 1 */
     int provokingVertexLast;   /* nonzero: flat inputs come from the last vertex, as in GL */
     uint32_t sampleMaskOff;    /* bits of samples that are never written; 0: all samples are */
-    int alphaToCoverage;       /* nonzero: the alpha of colour 0 makes a sample mask */
+    int alphaToCoverage;       /* nonzero: the alpha of colour 0 makes a sample mask: of n samples the first
+                                  round(alpha * n) */
+    int alphaToOne;            /* nonzero: then the alpha of all colours becomes 1 */
+    float minSampleShading;    /* 0 .. 1; above 1 / samples: the fragment shader runs once per sample */
+    int depthNegativeOneToOne; /* nonzero: clip depths from -w to w, as in GL, instead of 0 to w */
+    VkLineRasterizationModeEXT lineMode; /* 0: rectangles; BRESENHAM, RECTANGULAR_SMOOTH (coverage goes into alpha) */
+    uint32_t lineStippleFactor;  /* 1 .. 256: lines are stippled, each bit this many pixels long; 0: they are not */
+    uint16_t lineStipplePattern; /* 16 bits, the lowest first; a strip goes on where its segments meet */
+    /* Nonzero: samples lie at sampleLocations, in sixteenths of a pixel from its upper left corner (0 .. 15), instead
+     * of Vulkan's standard positions. */
+    int programmableSamples;
+    uint8_t sampleLocations[16][2];
     uint32_t _end;
 } VnRasterStateDesc;
 
@@ -326,6 +337,8 @@ typedef struct VnDepthStencilStateDesc {
     VkCompareOp depthCompare; /* 0: less */
     int stencilTest;          /* nonzero: on */
     VnStencilFace front, back;
+    int depthBoundsTest; /* nonzero: only where the stored depth lies in minDepth .. maxDepth */
+    float minDepth, maxDepth;
     uint32_t _end;
 } VnDepthStencilStateDesc;
 
@@ -376,13 +389,15 @@ VN_API VnResult vnFinish(VnContext context);
 /* ---- Passes ---- */
 
 typedef struct VnAttachment {
-    VnView view;                        /* of one mip level; {0}: this slot is not used */
-    VnView resolve;                     /* single-sampled image that gets the averaged samples at the end; {0}: none */
-    VkAttachmentLoadOp loadOp;          /* 0: load */
-    VkAttachmentStoreOp storeOp;        /* 0: store */
-    VkAttachmentLoadOp stencilLoadOp;   /* 0: load */
-    VkAttachmentStoreOp stencilStoreOp; /* 0: store */
-    VkClearValue clear;                 /* used by VK_ATTACHMENT_LOAD_OP_CLEAR */
+    VnView view;                      /* of one mip level; {0}: this slot is not used */
+    VnView resolve;                   /* single-sampled image that gets the samples at the end: their average, or as the
+                                         modes say for depth and stencil; {0}: none */
+    VkAttachmentLoadOp loadOp;        /* 0: load */
+    VkAttachmentStoreOp storeOp;      /* 0: store */
+    VkAttachmentLoadOp stencilLoadOp; /* 0: load */
+    VkAttachmentStoreOp stencilStoreOp;                 /* 0: store */
+    VkClearValue clear;                                 /* used by VK_ATTACHMENT_LOAD_OP_CLEAR */
+    VkResolveModeFlagBits depthResolve, stencilResolve; /* 0: sample 0; also MIN, MAX and, of depth, AVERAGE */
 } VnAttachment;
 
 typedef struct VnPassDesc {
@@ -390,11 +405,13 @@ typedef struct VnPassDesc {
     VnAttachment colors[8];
     VnAttachment depthStencil;
     VkRect2D renderArea; /* extent 0: all of the attachments */
+    uint32_t viewMask;   /* not 0: multiview: every draw goes to each of these layers, with ViewIndex telling which */
     uint32_t _end;
 } VnPassDesc;
 
-/* Starts drawing to the attachments, which all have the same sample count. Sets viewport 0 and the scissor to the
- * render area. A program must not sample an attachment of the pass it runs in. */
+/* Starts drawing to the attachments, which all have the same sample count. Of views with several layers all that every
+ * view has are drawn to: the vertex shader chooses with Layer. Sets all viewports and scissors to the render area. A
+ * program must not sample an attachment of the pass it runs in. */
 VN_API VnResult vnBeginPass(VnContext context, const VnPassDesc* desc);
 VN_API VnResult vnEndPass(VnContext context);
 /* Clears a rectangle of an attachment inside a pass, in order with the draws. `rect` NULL: the render area. */
@@ -433,8 +450,12 @@ VN_API VnResult vnBindTexelBuffer(VnContext context, uint32_t set, uint32_t bind
 /* Bytes `offset` .. `offset + size` of the push-constant block; multiples of 4, at most 256 in all. */
 VN_API VnResult vnPushConstants(VnContext context, uint32_t offset, const void* data, uint32_t size);
 
+/* Viewport and scissor 0. */
 VN_API VnResult vnSetViewport(VnContext context, const VkViewport* viewport);
 VN_API VnResult vnSetScissor(VnContext context, const VkRect2D* scissor);
+/* Any of the 16 among which the vertex shader chooses with ViewportIndex. */
+VN_API VnResult vnSetViewports(VnContext context, uint32_t first, uint32_t count, const VkViewport* viewports);
+VN_API VnResult vnSetScissors(VnContext context, uint32_t first, uint32_t count, const VkRect2D* scissors);
 /* `primitiveRestart` nonzero: the largest index starts a new strip or fan. */
 VN_API VnResult vnSetTopology(VnContext context, VkPrimitiveTopology topology, int primitiveRestart);
 VN_API VnResult vnSetBlendConstants(VnContext context, const float rgba[4]);
