@@ -53,8 +53,7 @@ Status checkRasterization(const GraphicsState& state) {
                                " (patches) is not supported");
     }
     if (state.lineMode > VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT)
-        return unsupported("lineMode: VkLineRasterizationModeEXT " + number(state.lineMode) +
-                           " is not supported");
+        return unsupported("lineMode: VkLineRasterizationModeEXT " + number(state.lineMode) + " is not supported");
     if (state.polygonMode > VK_POLYGON_MODE_POINT)
         return unsupported("polygonMode: VkPolygonMode " + number(state.polygonMode) + " is not supported");
     if (!isSampleCount(state.samples))

@@ -7,7 +7,6 @@
 #include "runtime/geometry/shapes.h"
 #include "runtime/raster/bits.h"
 
-
 namespace vernier {
 namespace {
 

@@ -229,7 +229,8 @@ void RenderPass::Impl::runTiles() {
         const bool cleared = !loaded && targets.depthStencil.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR &&
                              loads(targets.depthStencil, layerOf(tile));
         const TileInput input{rect, grid.x0 + static_cast<int32_t>(inLayer % grid.columns) * kTileSize,
-                              grid.y0 + static_cast<int32_t>(inLayer / grid.columns) * kTileSize, draws, tileWork[tile]};
+                              grid.y0 + static_cast<int32_t>(inLayer / grid.columns) * kTileSize, draws,
+                              tileWork[tile]};
         const VisibleStart start = mayHide ? visibleStart(targets, input) : VisibleStart{};
         if (!loaded) loadTile(rect, layerOf(tile), start.replacesColors);
         if (tileWork[tile].empty()) return;

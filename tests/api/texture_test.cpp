@@ -113,8 +113,8 @@ TEST_F(TextureTest, compressedImages) {
     uint16_t data[6][4] = {};
     for (uint16_t i = 0; i < 6; ++i) data[i][0] = static_cast<uint16_t>((i + 1) << 11);
     update(blocks, nullptr, data, sizeof data);
-    const auto pixels =
-        draw("sampler2D", "color = texelFetch(tex, ivec2(uv * vec2(10, 6)), 0) * 31.0 / 255.0;", view(blocks), sampler({}), 60);
+    const auto pixels = draw("sampler2D", "color = texelFetch(tex, ivec2(uv * vec2(10, 6)), 0) * 31.0 / 255.0;",
+                             view(blocks), sampler({}), 60);
     EXPECT_EQ(pixels[0] & 255, 1u);
     EXPECT_EQ(pixels[59] & 255, 3u);
     EXPECT_EQ(pixels[59 * 60] & 255, 4u);

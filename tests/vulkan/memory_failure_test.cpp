@@ -99,7 +99,8 @@ namespace {
 /// Every command of the program, by name.
 #define VERNIER_COMMANDS(X)                                                                                            \
     X(EnumeratePhysicalDevices)                                                                                        \
-    X(CreateDevice) X(DestroyInstance) X(DestroyDevice) X(GetDeviceQueue) X(CreateBuffer) X(DestroyBuffer)             \
+    X(CreateDevice)                                                                                                    \
+    X(DestroyInstance) X(DestroyDevice) X(GetDeviceQueue) X(CreateBuffer) X(DestroyBuffer)                             \
         X(GetBufferMemoryRequirements) X(AllocateMemory) X(FreeMemory) X(BindBufferMemory) X(MapMemory) X(CreateImage) \
             X(DestroyImage) X(GetImageMemoryRequirements) X(BindImageMemory) X(CreateImageView) X(DestroyImageView)    \
                 X(CreateShaderModule) X(DestroyShaderModule) X(CreateRenderPass) X(DestroyRenderPass)                  \

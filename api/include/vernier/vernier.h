@@ -177,10 +177,10 @@ typedef struct VnImageDesc {
     uint32_t width;      /* texels; 1 .. VnDeviceInfo::maxImageSize, of 3D images 1 .. 2048 */
     uint32_t height;     /* of 1D images 0 or 1 */
     uint32_t depth;      /* slices of a 3D image; 0: 1 */
-    uint32_t mipLevels; /* 0: 1; VN_ALL_MIPS: down to 1x1 */
-    uint32_t layers;    /* of an array; 0: 1 */
-    uint32_t samples;   /* 1, 2, 4, 8 or 16; 0: 1. More than 1: one mip level, no initial contents */
-    int cube;           /* nonzero: layers come in sixes and a whole view is a cube (array) */
+    uint32_t mipLevels;  /* 0: 1; VN_ALL_MIPS: down to 1x1 */
+    uint32_t layers;     /* of an array; 0: 1 */
+    uint32_t samples;    /* 1, 2, 4, 8 or 16; 0: 1. More than 1: one mip level, no initial contents */
+    int cube;            /* nonzero: layers come in sixes and a whole view is a cube (array) */
     uint32_t _end;
 } VnImageDesc;
 
@@ -195,9 +195,9 @@ typedef struct VnViewDesc {
     uint32_t baseMip, mipCount;     /* mipCount 0: all that are left */
     uint32_t baseLayer, layerCount; /* layerCount 0: all that are left */
     int array;                      /* nonzero: an array view even of one layer; more layers always make one */
-    int slices;                     /* nonzero: the slices of a 3D image as layers of a 2D view, counted by baseLayer and
-                                       layerCount; needs mipCount 1. Without it a view of a 3D image is 3D */
-    VkComponentMapping swizzle;     /* 0: identity */
+    int slices;                 /* nonzero: the slices of a 3D image as layers of a 2D view, counted by baseLayer and
+                                   layerCount; needs mipCount 1. Without it a view of a 3D image is 3D */
+    VkComponentMapping swizzle; /* 0: identity */
     uint32_t _end;
 } VnViewDesc;
 
@@ -220,8 +220,8 @@ typedef struct VnSamplerDesc {
     VkClearColorValue customBorderColor; /* as the member that the format's texels are read by */
     float maxAnisotropy;                 /* samples per pixel along its longer side, up to 16; 0 or 1: off */
     VkSamplerReductionMode reduction;    /* 0: weighted average; minimum or maximum of the texels of a linear filter */
-    int unnormalized;                    /* nonzero: coordinates in texels; 1D and 2D views of one level, equal filters */
-    int seams;                           /* nonzero: the faces of cubes are filtered each for itself */
+    int unnormalized; /* nonzero: coordinates in texels; 1D and 2D views of one level, equal filters */
+    int seams;        /* nonzero: the faces of cubes are filtered each for itself */
     uint32_t _end;
 } VnSamplerDesc;
 
@@ -501,9 +501,9 @@ typedef struct VnRegion {
     VkImageAspectFlags aspect; /* 0: colour, or depth where there is depth */
 } VnRegion;
 
-/* Rows of `data` are tightly packed texels in the image's format (of compressed formats: rows of blocks), slice by slice,
- * `size` bytes in all (of a combined depth-stencil format: of one aspect, as in vkCmdCopyBufferToImage). `region` NULL:
- * level 0 of layer 0. */
+/* Rows of `data` are tightly packed texels in the image's format (of compressed formats: rows of blocks), slice by
+ * slice, `size` bytes in all (of a combined depth-stencil format: of one aspect, as in vkCmdCopyBufferToImage).
+ * `region` NULL: level 0 of layer 0. */
 VN_API VnResult vnUpdateImage(VnContext context, VnImage image, const VnRegion* region, const void* data,
                               uint64_t size);
 /* The reverse: waits for all work of the context, then fills `data`. */
@@ -517,7 +517,8 @@ VN_API VnResult vnCopyBuffer(VnContext context, VnBuffer source, uint64_t source
  * block) size. */
 VN_API VnResult vnCopyImage(VnContext context, VnImage source, const VnRegion* sourceRegion, VnImage destination,
                             const VnRegion* destinationRegion);
-/* Scales and converts between colour formats (to compressed ones never), or between equal depth formats with VK_FILTER_NEAREST. */
+/* Scales and converts between colour formats (to compressed ones never), or between equal depth formats with
+ * VK_FILTER_NEAREST. */
 VN_API VnResult vnBlitImage(VnContext context, VnImage source, const VnRegion* sourceRegion, VnImage destination,
                             const VnRegion* destinationRegion, VkFilter filter);
 VN_API VnResult vnResolveImage(VnContext context, VnImage source, VnImage destination);
