@@ -1,6 +1,7 @@
 #include "base/arena.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <new>
 
 namespace vernier {
@@ -24,6 +25,8 @@ void* Arena::allocate(size_t bytes, size_t alignment) {
             return blocks_[current_].memory.get() + begin;
         }
     }
+    // The aligned operator new of libstdc++ rounds up without a look at overflow.
+    if (bytes > PTRDIFF_MAX) throw std::bad_alloc();
     const size_t size = std::max(blockBytes_, bytes);
     auto* memory = static_cast<std::byte*>(::operator new(size, kBlockAlignment));
     blocks_.push_back({std::unique_ptr<std::byte, AlignedDelete>(memory), size});

@@ -74,10 +74,13 @@ VnResult checkSampler(VnDevice device, const VnSamplerDesc& desc) {
                  {"addressU", desc.addressU, VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE},
                  {"addressV", desc.addressV, VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE},
                  {"addressW", desc.addressW, VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE},
-                 {"compareOp", desc.compareOp, VK_COMPARE_OP_ALWAYS},
-                 {"borderColor", desc.borderColor, VK_BORDER_COLOR_INT_OPAQUE_WHITE}};
+                 {"compareOp", desc.compareOp, VK_COMPARE_OP_ALWAYS}};
     for (const auto& field : enums)
         if (VnResult r = checkEnum(device, kFunction, field.name, field.value, field.last)) return r;
+    if (desc.borderColor != VK_BORDER_COLOR_FLOAT_CUSTOM_EXT && desc.borderColor != VK_BORDER_COLOR_INT_CUSTOM_EXT)
+        if (VnResult r =
+                checkEnum(device, kFunction, "borderColor", desc.borderColor, VK_BORDER_COLOR_INT_OPAQUE_WHITE))
+            return r;
     if (!(desc.lodBias >= -kMaxSamplerLodBias && desc.lodBias <= kMaxSamplerLodBias))
         return invalid(device, kFunction, "lodBias is " + std::to_string(desc.lodBias) + ", but must be -15 to 15");
     if (std::isnan(desc.minLod)) return invalid(device, kFunction, "minLod is nan");

@@ -233,6 +233,7 @@ void planFragments(const GraphicsState& state, const ir::Program& fragment, Isa 
     plan.usesQuads = fragment.usesQuads;
     plan.keepsCoverage =
         !fragment.canDiscard && plan.sampleMaskSlot == kNoSlot && !plan.alphaToCoverage && !decidesTests;
+    plan.countsEarly = fragment.earlyFragmentTests;
     bool readsCoverage = false;
     for (const BuiltinSlot& builtin : plan.fragmentBuiltins) {
         plan.usesFragCoord |= builtin.builtin == ir::Builtin::fragCoord;

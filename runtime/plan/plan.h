@@ -114,6 +114,7 @@ struct Plan {
     bool ordered = false;               // a batch holds each pixel once: colours are read back
     bool preciseInterpolation = false;  // double
     bool keepsCoverage = true;          // nothing after the early tests drops a sample
+    bool countsEarly = false;           // samples are counted before the program may drop them (EarlyFragmentTests)
     bool coverageIsFull = false;        // every lane of a batch is one covered sample, and stays so
     bool usesFragCoord = false;
     uint32_t samples = 1;

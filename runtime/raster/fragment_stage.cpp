@@ -103,8 +103,8 @@ void FragmentStage::bind(const PreparedDraw& draw, uint64_t token) {
     capacity_ = std::min(program->lanes(), kMaxFragmentLanes);
     bindInputs();
     bindColors(isa);
-    readsPixels_ = !plan_->fragmentBuiltins.empty() || plan_->preciseInterpolation || plan_->needsCentroid ||
-                   !plan_->keepsCoverage;
+    readsPixels_ = plan_->smoothLines || !plan_->fragmentBuiltins.empty() || plan_->preciseInterpolation ||
+                   plan_->needsCentroid || !plan_->keepsCoverage;
 
     block_.count = std::min(capacity_, kBlockLanes);
     block_.order = plan_->usesQuads ? LaneOrder::quads : LaneOrder::rows;
@@ -287,6 +287,10 @@ void FragmentStage::run(FragmentBatch& batch) {
     statistics_.fragmentInvocations += stored;
     statistics_.helperInvocations += (batch.partial ? batch.running : count) - stored;
     if (plan_->smoothLines) smoothAlpha(batch);
+    const bool countsNow = plan_->countsEarly && !plan_->keepsCoverage;
+    if (countsNow)
+        for (uint32_t lane = 0; lane < count; ++lane)
+            statistics_.samplesPassed += static_cast<uint32_t>(std::popcount(batch.coverage[lane]));
     if (!plan_->keepsCoverage) {
         const uint32_t* live = context_->liveMask();
         for (uint32_t lane = 0; lane < count; ++lane) batch.coverage[lane] &= live[lane];
@@ -310,7 +314,7 @@ void FragmentStage::run(FragmentBatch& batch) {
             mask_[lane] = 0 - covered;
             passed += covered;
         }
-        statistics_.samplesPassed += passed;
+        if (!countsNow) statistics_.samplesPassed += passed;
         if (passed != 0) writeColors(batch, s, mask_.data());
     }
 }

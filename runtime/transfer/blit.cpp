@@ -29,17 +29,19 @@ class PlaneRow {
 };
 
 /// Where the texels of one axis of the destination come from: source texel = (d + 0.5 - dst0) * scale + src0 (Vulkan
-/// specification, "Image Copies With Scaling").
+/// specification, "Image Copies With Scaling"). The scale stays a fraction: rounded, it would miss whole texels.
 struct Axis {
-    double scale = 1, origin = 0;
+    double sourceSpan = 1, destinationSpan = 1, source0 = 0, destination0 = 0;
     uint32_t begin = 0, count = 0;  // destination texels, ascending and clipped
     uint32_t sourceSize = 1;
 
     Axis(int32_t src0, int32_t src1, uint32_t sourceLimit, int32_t dst0, int32_t dst1, uint32_t destinationLimit) {
         sourceSize = sourceLimit;
         if (dst0 == dst1 || src0 == src1) return;
-        scale = (static_cast<double>(src1) - src0) / (static_cast<double>(dst1) - dst0);
-        origin = src0 - dst0 * scale;
+        sourceSpan = static_cast<double>(src1) - src0;
+        destinationSpan = static_cast<double>(dst1) - dst0;
+        source0 = src0;
+        destination0 = dst0;
         const int64_t low = std::max<int64_t>(std::min(dst0, dst1), 0);
         const int64_t high = std::min<int64_t>(std::max(dst0, dst1), destinationLimit);
         begin = static_cast<uint32_t>(std::min<int64_t>(low, destinationLimit));
@@ -51,7 +53,7 @@ struct Axis {
         float weight = 0;  // of the second
     };
     Taps at(uint32_t destination, VkFilter filter) const {
-        const double u = (destination + 0.5) * scale + origin;
+        const double u = (destination + 0.5 - destination0) * sourceSpan / destinationSpan + source0;
         const auto clamp = [&](double texel) {
             return static_cast<uint32_t>(std::clamp(texel, 0.0, static_cast<double>(sourceSize - 1)));
         };

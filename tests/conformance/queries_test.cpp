@@ -147,7 +147,8 @@ Result<Scene> scissored() {
 }
 
 Result<Scene> strips() {
-    // Two strips of three and two triangles: seven and four vertices' worth, and an index that restarts.
+    // Two strips of three and two triangles: seven and four vertices' worth, and an index that restarts. Two squares of
+    // 64 pixels, and half a square without the 8 pixels on its diagonal, which is a right edge: 28.
     Counted scene;
     const uint32_t pipeline =
         scene.pipeline(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP).topology(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP, true);
@@ -229,7 +230,7 @@ const QueryCase kCases[] = {
     {"degenerate", degenerate, {0, 3, 1, 3, 1, 1, 0}},
     {"misses all centres", missesAllCentres, {0, 3, 1, 3, 1, 1, 0}},
     {"scissored", scissored, {21, 6, 2, 4, 2, {}, 21}},
-    {"strips with a restart", strips, {128, 9, 5, 9, 5, 5, 128}},
+    {"strips with a restart", strips, {156, 9, 5, 9, 5, 5, 156}},
     {"points and lines", pointsAndLines, {3 + 10, 4 + 2, 4 + 1, 6, 5, 4, 3 + 10}},
     {"instanced", instanced, {5 * 16, 30, 10, 20, 10, 10, 5 * 16}},
     {"discarded", discarded, {2048, 6, 2, 4, 2, 2, 4096}},

@@ -25,7 +25,7 @@ void callImage(const ImageBinding& binding, const ImageCall& call) {
     auto& image = *static_cast<TestImage*>(const_cast<void*>(binding.image));
     const bool implicit = op.kind == ir::ImageKind::sampleImplicit || op.kind == ir::ImageKind::queryLod;
     for (uint32_t lane = 0; lane < call.lanes; ++lane) {
-        if (call.mask[lane] == 0) continue;
+        if (call.mask != nullptr && call.mask[lane] == 0) continue;
         ImageAccess a;
         a.kind = op.kind;
         a.dim = op.dim;

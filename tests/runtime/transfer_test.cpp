@@ -85,11 +85,11 @@ TEST_F(Transfer, RegionsOutsideAreNamedAndTouchNothing) {
         {{0, 0, 0, kColor, {0, 0, 0}, {5, 4, 1}}, "outside the image"},
         {{0, 0, 0, kColor, {-1, 0, 0}, {4, 4, 1}}, "outside the image"},
         {{0, 0, 0, kColor, {0, 0, 0}, {4, 0, 1}}, "outside the image"},
-        {{4, 0, 0, kColor, {0, 0, 0}, {4, 4, 1}}, "64 bytes at offset 4 of a buffer of 64"},
+        {{4, 0, 0, kColor, {0, 0, 0}, {4, 4, 1}}, "more bytes from offset 4 on than the buffer's 64"},
         {{0, 0, 0, {VK_IMAGE_ASPECT_COLOR_BIT, 1, 0, 1}, {0, 0, 0}, {2, 2, 1}}, "mip level 1 of 1"},
         {{0, 0, 0, {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 1}, {0, 0, 0}, {4, 4, 1}}, "outside the image"},
         {{0, 0, 0, {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 0, 1}, {0, 0, 0}, {4, 4, 1}}, "aspect mask 2"},
-        {{0, 0xFFFFFFFF, 0xFFFFFFFF, kColor, {0, 0, 0}, {4, 4, 1}}, "of a buffer of 64"},
+        {{0, 0xFFFFFFFF, 0xFFFFFFFF, kColor, {0, 0, 0}, {4, 4, 1}}, "more bytes from offset 0 on than the buffer's 64"},
     };
     for (const auto& item : cases) {
         const Status status = checkBufferImageCopy(image.image, 64, item.region);

@@ -268,7 +268,8 @@ void sampleTest(const ImageBinding& binding, const ImageCall& call) {
             // Lanes that are not asked for get rubbish, which must not come through.
             const float value =
                 number * 1000 + std::bit_cast<float>(call.coord[0][lane]) + static_cast<float>(k) * 0.25f;
-            call.result[k][lane] = call.mask[lane] != 0 ? std::bit_cast<uint32_t>(value) : 0xDEADBEEFu;
+            call.result[k][lane] =
+                call.mask == nullptr || call.mask[lane] != 0 ? std::bit_cast<uint32_t>(value) : 0xDEADBEEFu;
         }
     }
 }

@@ -223,7 +223,7 @@ TEST_F(Lowering, ImageOperations) {
     EXPECT_EQ(one("o = texelFetch(ms, k, 3);"), "fetch d2 image 0 coords 2 multisampled sample");
     EXPECT_EQ(one("o = texelFetch(tb, k.x);"), "fetch buffer image 0 coords 1");
     EXPECT_EQ(one("o = imageLoad(im, k);"), "read d2 image 0 coords 2");
-    EXPECT_EQ(one("o = subpassLoad(sp);"), "read subpass image 0 coords 2");
+    EXPECT_EQ(one("o = subpassLoad(sp);"), "read subpass image 0 coords 3 arrayed");
     EXPECT_EQ(one("imageStore(im, k, c.xyzz); o = c.xxxx;"), "store d2 image 0 coords 2");
     EXPECT_EQ(one("o = vec4(imageAtomicCompSwap(ui, k.xyx, 7u, 8u));"), "atomic d3 image 0 coords 3 compareExchange");
     EXPECT_EQ(one("o = vec4(textureSize(tex, 1), 0, 0);"), "querySize d2 image 0 lod");
