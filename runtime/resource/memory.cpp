@@ -1,5 +1,6 @@
 #include "runtime/resource/memory.h"
 
+#include <cstdint>
 #include <cstring>
 #include <new>
 #include <string>
@@ -23,7 +24,8 @@ void HostAllocator::put(void* memory, size_t bytes) const {
 }
 
 Result<std::unique_ptr<Memory>> Memory::create(const HostAllocator& allocator, VkDeviceSize size) {
-    if (size > SIZE_MAX - kSlack)
+    // The aligned operator new of libstdc++ rounds up without a look at overflow.
+    if (size > PTRDIFF_MAX - kSlack)
         return Error{ErrorCode::outOfDeviceMemory, "memory of " + std::to_string(size) + " bytes does not fit"};
     std::unique_ptr<Memory> memory(new Memory(allocator, size));
     memory->data_ = static_cast<std::byte*>(allocator.get(size + kSlack, kAlignment));

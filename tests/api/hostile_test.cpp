@@ -180,6 +180,15 @@ TEST_F(Hostile, CopiesOntoThemselvesAndBetweenAspectsAreRefused) {
     EXPECT_EQ(vnFinish(context_), VN_SUCCESS);
 }
 
+TEST_F(Hostile, SizesThatNoMemoryHasAreRefused) {
+    for (const uint64_t less : {0, 1, 63, 64, 65, 127, 128, 4096}) {
+        VnBufferDesc desc{};
+        desc.size = std::numeric_limits<uint64_t>::max() - less;
+        VnBuffer made{};
+        expect(vnCreateBuffer(device_, &desc, &made), VN_ERROR_OUT_OF_MEMORY, std::to_string(desc.size) + " bytes");
+    }
+}
+
 TEST_F(Hostile, OldHandlesAreNeverValidAgain) {
     const VnSampler old = sampler();
     ASSERT_EQ(vnDestroySampler(device_, old), VN_SUCCESS);
