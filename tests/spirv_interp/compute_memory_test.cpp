@@ -212,6 +212,93 @@ OpFunctionEnd
     for (uint32_t i = 0; i < 8; ++i) EXPECT_EQ(o[i], 3 * (7 - i));
 }
 
+// A pointer from a select between two variables, and one from a phi; loads and stores through both.
+TEST(WorkgroupMemory, VariablePointers) {
+    ShaderSource source;
+    const Words words = assemble(R"(OpCapability Shader
+OpCapability VariablePointers
+OpMemoryModel Logical GLSL450
+OpEntryPoint GLCompute %main "main" %index
+OpExecutionMode %main LocalSize 8 1 1
+OpDecorate %index BuiltIn LocalInvocationIndex
+OpDecorate %block BufferBlock
+OpMemberDecorate %block 0 Offset 0
+OpDecorate %words ArrayStride 4
+OpDecorate %out DescriptorSet 0
+OpDecorate %out Binding 0
+%void = OpTypeVoid
+%fn = OpTypeFunction %void
+%bool = OpTypeBool
+%uint = OpTypeInt 32 0
+%c0 = OpConstant %uint 0
+%c1 = OpConstant %uint 1
+%c2 = OpConstant %uint 2
+%c4 = OpConstant %uint 4
+%c7 = OpConstant %uint 7
+%c8 = OpConstant %uint 8
+%c100 = OpConstant %uint 100
+%c1000 = OpConstant %uint 1000
+%semantics = OpConstant %uint 264
+%array = OpTypeArray %uint %c8
+%words = OpTypeRuntimeArray %uint
+%block = OpTypeStruct %words
+%pin = OpTypePointer Input %uint
+%pshared = OpTypePointer Workgroup %array
+%pelement = OpTypePointer Workgroup %uint
+%pblock = OpTypePointer Uniform %block
+%pword = OpTypePointer Uniform %uint
+%index = OpVariable %pin Input
+%first = OpVariable %pshared Workgroup
+%second = OpVariable %pshared Workgroup
+%out = OpVariable %pblock Uniform
+%main = OpFunction %void None %fn
+%ml = OpLabel
+%i = OpLoad %uint %index
+%ownfirst = OpAccessChain %pelement %first %i
+%ownsecond = OpAccessChain %pelement %second %i
+%twice = OpIMul %uint %i %c2
+%more = OpIAdd %uint %i %c100
+OpStore %ownfirst %twice
+OpStore %ownsecond %more
+OpControlBarrier %c2 %c2 %semantics
+%n = OpISub %uint %c7 %i
+%pn = OpAccessChain %pelement %first %n
+%low = OpBitwiseAnd %uint %i %c1
+%odd = OpINotEqual %bool %low %c0
+%p = OpSelect %pelement %odd %pn %ownsecond
+%v = OpLoad %uint %p
+%next = OpIAdd %uint %v %c1
+OpStore %p %next
+OpControlBarrier %c2 %c2 %semantics
+%small = OpULessThan %bool %i %c4
+OpSelectionMerge %mm None
+OpBranchConditional %small %mt %mf
+%mt = OpLabel
+OpBranch %mm
+%mf = OpLabel
+OpBranch %mm
+%mm = OpLabel
+%q = OpPhi %pelement %ownfirst %mt %ownsecond %mf
+%w = OpLoad %uint %q
+%thousands = OpIMul %uint %w %c1000
+%sum = OpIAdd %uint %thousands %v
+%po = OpAccessChain %pword %out %c0 %i
+OpStore %po %sum
+OpReturn
+OpFunctionEnd
+)");
+    source.words = words;
+    source.stage = ir::Stage::compute;
+    const Result<ir::Program> program = loadShader(source);
+    ASSERT_TRUE(program.ok()) << program.error().message;
+    const auto o = dispatchEverywhere(*program, {}, {{0, std::vector<uint32_t>(8)}})[0];
+    for (uint32_t i = 0; i < 8; ++i) {
+        // Every even element of both has been counted on by one.
+        const uint32_t element = (i < 4 ? 2 * i : 100 + i) + (i % 2 == 0 ? 1 : 0);
+        EXPECT_EQ(o[i], element * 1000 + (i % 2 != 0 ? 2 * (7 - i) : 100 + i)) << i;
+    }
+}
+
 // An index beyond a variable stays inside the work-group's memory.
 TEST(WorkgroupMemory, IndicesAreBounded) {
     const ir::Program program = loadCompute(R"(#version 450
