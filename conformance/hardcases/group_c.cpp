@@ -333,6 +333,26 @@ void c12(CaseInput& input) {
     }
 }
 
+// Points of one pixel and lines around the view volume: a point outside is gone, a line is cut.
+void c11(CaseInput& input) {
+    const std::vector<WindowPoint> outside{{-0.75, 20}, {64.5, 30}, {20, -0.25}, {33, 65}};
+    std::vector<ClipPosition> positions;
+    for (const WindowPoint& p : outside) positions.push_back(clipAt(p, viewportOf(kTarget)));
+    positions.push_back({0, 0, -0.01f, 1});
+    positions.push_back({0, 0, 1.01f, 1});
+    positions.push_back({0, 0, 0.5f, -1});
+    CountOptions points = plainCount();
+    points.topology = VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
+    judgeEmpty(input, input.scene(countScene("C11_points", positions, points)), points,
+               "a point is clipped by its vertex");
+    const std::vector<ClipPosition> behind{
+        {-0.5f, -0.5f, -0.5f, 1}, {0.5f, 0.5f, -0.1f, 1}, {-3, 0, 0.5f, 1}, {-1.5f, 0.5f, 0.5f, 1}};
+    CountOptions lines = plainCount();
+    lines.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
+    judgeEmpty(input, input.scene(countScene("C11_lines", behind, lines)), lines,
+               "the lines are outside the view volume");
+}
+
 constexpr std::string_view kClipping = "Vulkan, Primitive Clipping";
 
 const std::vector<HardCase> kCases{
@@ -359,6 +379,8 @@ const std::vector<HardCase> kCases{
      "The half-spaces' intersection; no more than a sub-unit off.", kClipping, c09},
     {"C10", "Smooth and noperspective attributes of clipped triangles",
      "What is left has the values that the unclipped triangle has there.", "Vulkan, Clipping Shader Outputs", c10},
+    {"C11", "Points and lines whose vertices are outside the view volume",
+     "A point is clipped by its vertex; a line by the view volume.", kClipping, c11},
     {"C12", "A clip distance in perspective, against the rational line", "The cut is within a sub-unit of c(P) = 0.",
      kClipping, c12},
 };

@@ -1,5 +1,5 @@
 // D: depth precision, bias, clamp.
-#include "conformance/hardcases/coverage_input.h"
+#include "conformance/hardcases/depth_input.h"
 #include "conformance/hardcases/groups.h"
 #include "conformance/hardcases/judges.h"
 #include "conformance/oracle/depth_exact.h"
@@ -16,7 +16,7 @@
 namespace vernier::conformance::hardcases {
 namespace {
 
-constexpr VkExtent2D kTarget{64, 64};
+constexpr VkExtent2D kTarget = kDepthExtent;
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
 std::string writes(const char* color) {
@@ -29,37 +29,6 @@ std::string number(double value) {
     return text;
 }
 
-// How triangles are drawn into a depth buffer alone.
-struct DepthDraw {
-    VkFormat format = VK_FORMAT_D32_SFLOAT;
-    float clear = 0.5f;
-    float biasConstant = 0, biasSlope = 0, biasClamp = 0;
-    bool bias = false, clamp = false;
-    float minDepth = 0, maxDepth = 1;
-};
-
-Result<Scene> depthScene(std::string_view name, const std::vector<ClipPosition>& positions, const DepthDraw& how) {
-    SceneRecorder record(name, "Depth alone.");
-    const uint32_t depth = record.depthTarget("depth", how.format, kTarget);
-    const uint32_t vertices = record.vertexBuffer("positions", positions);
-    auto pipeline = record.pipeline(record.vertex(kPositionVertexGlsl), kNone)
-                        .binding(sizeof(ClipPosition))
-                        .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, 0)
-                        .depth(VK_COMPARE_OP_ALWAYS);
-    if (how.bias) pipeline.depthBias(how.biasConstant, how.biasSlope, how.biasClamp);
-    if (how.clamp) pipeline.depthClamp();
-    record.pass(kTarget).depthStencil(depth, how.clear);
-    record.draw(pipeline, static_cast<uint32_t>(positions.size()))
-        .vertices(vertices)
-        .viewport(0, 0, 64, 64, how.minDepth, how.maxDepth);
-    record.output(depth);
-    return record.finish();
-}
-
-std::vector<ClipPosition> plane(float z0, float z1, float z2) {
-    return {{-1, -1, z0, 1}, {3, -1, z1, 1}, {-1, 3, z2, 1}};
-}
-
 constexpr VkFormat kDepthFormats[] = {VK_FORMAT_D32_SFLOAT, VK_FORMAT_D16_UNORM, VK_FORMAT_X8_D24_UNORM_PACK32,
                                       VK_FORMAT_D24_UNORM_S8_UINT};
 
@@ -68,7 +37,7 @@ void constantDepth(CaseInput& input, std::string_view name, float z) {
     for (const VkFormat format : kDepthFormats) {
         DepthDraw how;
         how.format = format;
-        const size_t scene = input.scene(depthScene(name, plane(z, z, z), how));
+        const size_t scene = input.scene(depthScene(name, depthPlane(z, z, z), how));
         const exact::CodeSet codes = exact::encodeDepth(format, exact::rational(z));
         judgePixels(input, scene, 0, kTarget, [codes](const PixelReader& pixels, const Declared&) -> Verdict {
             const uint64_t first = pixels.code(0, 0, 0);
@@ -177,30 +146,6 @@ void d04(CaseInput& input) {
     }
 }
 
-// Depth with a bias less depth without, per pixel, against an interval.
-void judgeBias(CaseInput& input, std::string_view name, const std::vector<ClipPosition>& positions, DepthDraw how,
-               double low, double high, double slack, const std::string& rule) {
-    how.bias = false;
-    const size_t without = input.scene(depthScene(name, positions, how));
-    how.bias = true;
-    const size_t with = input.scene(depthScene(name, positions, how));
-    const VkFormat format = how.format;
-    input.judge({without, with}, [=](std::span<const Drawn* const> images, const Declared&) -> Verdict {
-        const PixelReader before(images[0]->at(0)), after(images[1]->at(0));
-        if (!before.valid() || !after.valid()) return Verdict::wrong("an image has the wrong format, extent or size");
-        for (uint32_t y = 0; y < kTarget.height; ++y) {
-            for (uint32_t x = 0; x < kTarget.width; ++x) {
-                const double from = exact::decodeDepth(format, before.code(x, y, 0)).get_d();
-                const double to = exact::decodeDepth(format, after.code(x, y, 0)).get_d();
-                if (to - from >= low - slack && to - from <= high + slack) continue;
-                return Verdict::wrong(pixelText(x, y) + " is shifted by " + number(to - from) + ", exactly " +
-                                      number(low) + " to " + number(high) + "; " + rule);
-            }
-        }
-        return {};
-    });
-}
-
 void d05(CaseInput& input) {
     for (const VkFormat format : kDepthFormats) {
         for (const float constant : {1.0f, 100.0f, -37.0f}) {
@@ -211,7 +156,7 @@ void d05(CaseInput& input) {
             how.format = format;
             how.biasConstant = constant;
             // The stored codes are one rounding each away.
-            judgeBias(input, "D05", plane(0.5f, 0.5f, 0.5f), how, low, high, r.low.get_d(),
+            judgeBias(input, "D05", depthPlane(0.5f, 0.5f, 0.5f), how, low, high, r.low.get_d(),
                       "r is 2^-n to 2 * 2^-n for fixed point, 2^(e-23) for float");
         }
     }
@@ -235,7 +180,7 @@ void d07(CaseInput& input) {
         DepthDraw how;
         how.biasSlope = 8;
         // A plane whose depth changes by zx over the width and zy over the height of the target.
-        const std::vector<ClipPosition> positions = plane(0.4f, 0.4f + 2 * zx, 0.4f + 2 * zy);
+        const std::vector<ClipPosition> positions = depthPlane(0.4f, 0.4f + 2 * zx, 0.4f + 2 * zy);
         const double x = std::abs(zx) / 64.0, y = std::abs(zy) / 64.0;
         judgeBias(input, "D07", positions, how, 8 * std::max(x, y), 8 * std::hypot(x, y), 0x1p-18,
                   "m is max(|dz/dx|, |dz/dy|) to the root of the sum of squares");
@@ -257,7 +202,7 @@ void d08(CaseInput& input) {
         DepthDraw how;
         how.biasConstant = each.constant;
         how.biasClamp = each.clamp;
-        judgeBias(input, "D08", plane(0.6f, 0.6f, 0.6f), how, each.expected, each.expected, 1e-6,
+        judgeBias(input, "D08", depthPlane(0.6f, 0.6f, 0.6f), how, each.expected, each.expected, 1e-6,
                   "a positive clamp is an upper bound, a negative one a lower bound, 0 none");
     }
 }
@@ -271,7 +216,7 @@ void d09(CaseInput& input) {
             how.format = format;
             how.bias = true;
             how.biasConstant = up ? 1e7f : -1e7f;
-            const size_t scene = input.scene(depthScene("D09", plane(0.5f, 0.5f, 0.5f), how));
+            const size_t scene = input.scene(depthScene("D09", depthPlane(0.5f, 0.5f, 0.5f), how));
             judgeCodes(input, scene, 0, kTarget, {up ? most : 0}, "conversion to fixed point clamps to [0, 1]");
         }
     }
@@ -307,29 +252,9 @@ void d11(CaseInput& input) {
             how.format = format;
             how.minDepth = nearest;
             how.maxDepth = farthest;
-            addForOracle(input, depthScene("D11", plane(0.1f, 1.7f, 0.9f), how));
+            addForOracle(input, depthScene("D11", depthPlane(0.1f, 1.7f, 0.9f), how));
         }
     }
-}
-
-const char* const kDepthFragmentGlsl = R"(#version 450
-layout(push_constant) uniform Bits { uint bits; };
-void main() { gl_FragDepth = uintBitsToFloat(bits); }
-)";
-
-Result<Scene> fragDepthScene(std::string_view name, VkFormat format, uint32_t bits, float clear, VkCompareOp op,
-                             bool clamp) {
-    SceneRecorder record(name, "A depth written by the fragment shader.");
-    const uint32_t depth = record.depthTarget("depth", format, kTarget);
-    auto pipeline = record.pipeline(record.vertex(kCoverVertexGlsl), record.fragment(kDepthFragmentGlsl))
-                        .targets(0)
-                        .depth(op)
-                        .pushConstants(4);
-    if (clamp) pipeline.depthClamp();
-    record.pass(kTarget).depthStencil(depth, clear);
-    record.draw(pipeline, 3).push(bits);
-    record.output(depth);
-    return record.finish();
 }
 
 // With depth clamping every number ends in [0, 1]; NaN and, without clamping, numbers outside are the implementation's

@@ -2,9 +2,11 @@
 #include "conformance/hardcases/groups.h"
 #include "conformance/hardcases/homogeneous_input.h"
 #include "conformance/hardcases/judges.h"
+#include "conformance/scenes/recorder.h"
 
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <random>
 
 namespace vernier::conformance::hardcases {
@@ -138,16 +140,309 @@ void i02(CaseInput& input) {
     }
 }
 
+// The same triangles with their vertices rotated.
+void i03(CaseInput& input) {
+    const std::vector<ColorVertex> base{
+        {{-0.9f, -0.7f, 0.2f, 1}, {0, 1, 0.3f, 1}},       {{2.3f, -1.1f, 0.7f, 2.7f}, {1, 0.25f, 0.9f, 1}},
+        {{-0.3f, 1.7f, 0.4f, 1.9f}, {0.5f, 0, 7, 1}},     {{0.1f, 0.2f, 0.1f, 1}, {1e6f, 0, 0.1f, 1}},
+        {{0.95f, 0.3f, 0.1f, 1}, {1e6f + 1, 1, 0.2f, 1}}, {{0.6f, 0.9f, 0.1f, 1}, {1e6f, 1, 0.9f, 1}}};
+    std::array<size_t, 3> scenes{};
+    for (size_t turn = 0; turn < 3; ++turn) {
+        std::vector<ColorVertex> turned;
+        for (size_t first = 0; first < base.size(); first += 3) {
+            for (size_t i = 0; i < 3; ++i) turned.push_back(base[first + (i + turn) % 3]);
+        }
+        scenes[turn] = input.scene(colorScene("I03", turned, kTarget, VK_FORMAT_R32G32B32A32_SFLOAT));
+        if (turn == 0) continue;
+        input.judge({scenes[turn], scenes[0]}, [](std::span<const Drawn* const> images, const Declared&) -> Verdict {
+            const PixelReader a(images[0]->at(0)), b(images[1]->at(0));
+            if (!a.valid() || !b.valid()) return Verdict::wrong("an image has the wrong format, extent or size");
+            Verdict worst;
+            for (uint32_t y = 0; y < kTarget.height; ++y) {
+                for (uint32_t x = 0; x < kTarget.width; ++x) {
+                    for (uint8_t c = 0; c < 4; ++c) {
+                        const double v = a.number(x, y, c), w = b.number(x, y, c);
+                        if (v == w) continue;
+                        char text[120];
+                        std::snprintf(text, sizeof text, " is %.9g and, with the vertices rotated, %.9g", w, v);
+                        const bool legal = std::abs(v - w) <= 1e-4 * std::max(1.0, std::abs(w));
+                        worst = worst.worse(legal ? Verdict::allowed(pixelText(x, y) + text)
+                                                  : Verdict::wrong(pixelText(x, y) + text));
+                    }
+                }
+            }
+            return worst;
+        });
+    }
+}
+
+// A quad of two triangles in one plane: an attribute that is linear on it has no seam.
+void i04(CaseInput& input) {
+    const auto at = [](double x, double y) {
+        return ColorVertex{clipAt({x, y}, viewportOf(kTarget)),
+                           {static_cast<float>(x), static_cast<float>(y), static_cast<float>(3 * x - 2 * y), 1}};
+    };
+    const ColorVertex a = at(2, 3), b = at(61, 3), c = at(2, 59), d = at(61, 59);
+    const size_t scene = input.scene(colorScene("I04", {a, b, c, d, c, b}, kTarget, VK_FORMAT_R32G32B32A32_SFLOAT));
+    judgePixels(input, scene, 0, kTarget, [](const PixelReader& pixels, const Declared&) -> Verdict {
+        Verdict worst;
+        for (uint32_t y = 3; y < 59; ++y) {
+            for (uint32_t x = 2; x < 61; ++x) {
+                const std::array<double, 3> expected{x + 0.5, y + 0.5, 3 * (x + 0.5) - 2 * (y + 0.5)};
+                for (uint8_t k = 0; k < 3; ++k) {
+                    const double error = std::abs(pixels.number(x, y, k) - expected[k]);
+                    if (error <= 64 * 4 * 0x1p-23) continue;
+                    char text[80];
+                    std::snprintf(text, sizeof text, " is off the plane by %.3g", error);
+                    worst = worst.worse(error <= 64 * 1e-4 ? Verdict::allowed(pixelText(x, y) + text)
+                                                           : Verdict::wrong(pixelText(x, y) + text));
+                }
+            }
+        }
+        return worst;
+    });
+}
+
+// w from 1 to 10^6 over the target.
+void i05(CaseInput& input) {
+    const std::vector<ColorVertex> vertices{{{-1, -1, 0.5f, 1}, {0, 0, 1, 1}},
+                                            {{1e6f, -1e6f, 5e5f, 1e6f}, {1, 0, 0.5f, 1}},
+                                            {{-1e3f, 1e3f, 5e2f, 1e3f}, {0, 1, 0, 1}}};
+    addForOracle(input, interpolationScene("I05", vertices, kTarget));
+}
+
+void i06(CaseInput& input) {
+    const std::vector<ColorVertex> vertices{{{-0.9f, -0.8f, 0.1f, 1}, {1, 0, 0.25f, 1}},
+                                            {{2.7f, -2.1f, 1.3f, 3}, {0, 1, 0.5f, 0}},
+                                            {{-0.4f, 1.8f, 1.1f, 2}, {0.25f, 0.5f, 1, 0.5f}}};
+    addForOracle(input, interpolationScene("I06", vertices, kTarget));
+}
+
+// Slivers whose centres lie inside by snapping alone: values stay near those of the vertices.
+void i07(CaseInput& input) {
+    std::vector<ColorVertex> vertices;
+    for (int i = 0; i < 20; ++i) {
+        const double y = 3.5 + 3 * i, off = 0.4 / 256;
+        vertices.push_back({clipAt({2, y - off}, viewportOf(kTarget)), {0, 0, 0, 1}});
+        vertices.push_back({clipAt({62, y - off}, viewportOf(kTarget)), {1, 0, 0, 1}});
+        vertices.push_back({clipAt({30, y - 0.5}, viewportOf(kTarget)), {0.5f, 1, 0, 1}});
+    }
+    const size_t scene = input.scene(colorScene("I07", vertices, kTarget, VK_FORMAT_R32G32B32A32_SFLOAT));
+    judgePixels(input, scene, 0, kTarget, [](const PixelReader& pixels, const Declared& declared) -> Verdict {
+        // The second attribute changes by 2 per pixel across the sliver; extrapolation is no more than snapping.
+        const double reach = 3 * std::ldexp(1.0, -declared.subPixelBits) * 2;
+        for (uint32_t y = 0; y < kTarget.height; ++y) {
+            for (uint32_t x = 0; x < kTarget.width; ++x) {
+                for (uint8_t c = 0; c < 2; ++c) {
+                    const double v = pixels.number(x, y, c);
+                    if (v < -reach || v > 1 + reach)
+                        return Verdict::wrong(pixelText(x, y) + " is " + std::to_string(v) +
+                                              ", outside what the vertices have");
+                }
+            }
+        }
+        return {};
+    });
+}
+
+void i08(CaseInput& input) {
+    const std::vector<uint32_t> patterns{0x7fc00001u, 0x80000000u, 0x7f800001u, 0xffffffffu, 1u, 0x12345678u};
+    for (const uint32_t bits : patterns) {
+        SceneRecorder record("I08", "Flat integers.");
+        const uint32_t target = record.colorTarget("bits", VK_FORMAT_R32_UINT, {8, 8});
+        const std::vector<uint32_t> data{bits, bits ^ 1u, bits ^ 2u};
+        const uint32_t pipeline = record
+                                      .pipeline(record.vertex(R"(#version 450
+layout(location = 0) in uint value;
+layout(location = 0) flat out uint vValue;
+layout(location = 1) flat out float vFloat;
+void main() {
+    gl_Position = vec4(float((gl_VertexIndex & 1) * 4 - 1), float((gl_VertexIndex >> 1) * 4 - 1), 0.0, 1.0);
+    vValue = value;
+    vFloat = uintBitsToFloat(value);
+}
+)"),
+                                                record.fragment(R"(#version 450
+layout(location = 0) flat in uint vValue;
+layout(location = 0) out uint color;
+void main() { color = vValue; }
+)"))
+                                      .binding(4)
+                                      .attribute(VK_FORMAT_R32_UINT, 0);
+        record.pass({8, 8}).color(target, {0, 0, 0, 0});
+        record.draw(pipeline, 3).vertices(record.vertexBuffer("values", data));
+        record.output(target);
+        judgeCodes(input, input.scene(record.finish()), 0, {8, 8}, {bits},
+                   "a flat integer is the provoking vertex's, bit for bit");
+    }
+}
+
+void i09(CaseInput& input) {
+    SceneRecorder record("I09", "FragCoord.");
+    const uint32_t target = record.colorTarget("coord", VK_FORMAT_R32G32B32A32_SFLOAT, kTarget);
+    const std::vector<ClipPosition> data{{-2, -2, 0.25f, 2}, {12, -4, 3, 4}, {-1, 3, 0.5f, 1}};
+    const uint32_t pipeline = record
+                                  .pipeline(record.vertex(kPositionVertexGlsl), record.fragment(R"(#version 450
+layout(location = 0) out vec4 color;
+void main() { color = gl_FragCoord; }
+)"))
+                                  .binding(sizeof(ClipPosition))
+                                  .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, 0);
+    record.pass(kTarget).color(target, {0, 0, 0, 0});
+    record.draw(pipeline, 3).vertices(record.vertexBuffer("positions", data));
+    record.output(target);
+    const size_t scene = addForOracle(input, record.finish());
+    judgePixels(input, scene, 0, kTarget, [](const PixelReader& pixels, const Declared&) -> Verdict {
+        for (uint32_t y = 0; y < kTarget.height; ++y) {
+            for (uint32_t x = 0; x < kTarget.width; ++x) {
+                const float fx = pixels.number(x, y, 0), fy = pixels.number(x, y, 1);
+                if ((fx == 0 && fy == 0) || (fx == static_cast<float>(x) + 0.5f && fy == static_cast<float>(y) + 0.5f))
+                    continue;
+                return Verdict::wrong(pixelText(x, y) + ": FragCoord.xy is not the centre");
+            }
+        }
+        return {};
+    });
+}
+
+// An affine attribute at offsets of 1/16: exact where it is asked for.
+void i11(CaseInput& input) {
+    for (const auto& [dx, dy] : {std::pair{0.0f, 0.0f}, {-0.5f, -0.5f}, {0.4375f, 0.4375f}, {0.0625f, -0.25f}}) {
+        SceneRecorder record("I11", "interpolateAtOffset.");
+        const uint32_t target = record.colorTarget("value", VK_FORMAT_R32G32B32A32_SFLOAT, kTarget);
+        char glsl[400];
+        std::snprintf(glsl, sizeof glsl, R"(#version 450
+layout(location = 0) in vec4 vColor;
+layout(location = 0) out vec4 color;
+void main() { color = vec4(interpolateAtOffset(vColor.xy, vec2(%.4f, %.4f)), vColor.zw); }
+)",
+                      static_cast<double>(dx), static_cast<double>(dy));
+        const std::vector<ColorVertex> data{
+            {{-1, -1, 0.5f, 1}, {0, 0, 0, 1}}, {{3, -1, 0.5f, 1}, {128, 0, 0, 1}}, {{-1, 3, 0.5f, 1}, {0, 128, 0, 1}}};
+        const uint32_t pipeline = record
+                                      .pipeline(record.vertex(R"(#version 450
+layout(location = 0) in vec4 position;
+layout(location = 1) in vec4 color;
+layout(location = 0) out vec4 vColor;
+void main() {
+    gl_Position = position;
+    vColor = color;
+}
+)"),
+                                                record.fragment(glsl))
+                                      .binding(sizeof(ColorVertex))
+                                      .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, 0)
+                                      .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, sizeof(ClipPosition));
+        record.pass(kTarget).color(target, {0, 0, 0, 0});
+        record.draw(pipeline, 3).vertices(record.vertexBuffer("vertices", data));
+        record.output(target);
+        const size_t scene = input.scene(record.finish());
+        judgePixels(
+            input, scene, 0, kTarget, [dx = dx, dy = dy](const PixelReader& pixels, const Declared&) -> Verdict {
+                Verdict worst;
+                for (uint32_t y = 0; y < kTarget.height; ++y) {
+                    for (uint32_t x = 0; x < kTarget.width; ++x) {
+                        const double ex = pixels.number(x, y, 0) - (x + 0.5 + static_cast<double>(dx)),
+                                     ey = pixels.number(x, y, 1) - (y + 0.5 + static_cast<double>(dy));
+                        const double error = std::max(std::abs(ex), std::abs(ey));
+                        if (error <= 128 * 0x1p-22) continue;
+                        char text[80];
+                        std::snprintf(text, sizeof text, ": at an offset of (%.4f, %.4f) the ramp is off by %.3g",
+                                      static_cast<double>(dx), static_cast<double>(dy), error);
+                        // Offsets have at least four fraction bits, which these do.
+                        worst = worst.worse(error <= 128e-5 ? Verdict::allowed(pixelText(x, y) + text)
+                                                            : Verdict::wrong(pixelText(x, y) + text));
+                    }
+                }
+                return worst;
+            });
+    }
+}
+
+// One attribute holds infinities, NaN and the largest floats: the others are as they are without it.
+void i12(CaseInput& input) {
+    constexpr float kInf = std::numeric_limits<float>::infinity(), kMax = std::numeric_limits<float>::max();
+    const auto scene = [&](std::array<float, 3> wild) {
+        std::vector<ColorVertex> vertices{{{-0.9f, -0.8f, 0.1f, 1}, {wild[0], 0, 1, 1}},
+                                          {{2.7f, -2.1f, 1.3f, 3}, {wild[1], 1, 0.5f, 1}},
+                                          {{-0.4f, 1.8f, 1.1f, 2}, {wild[2], 0.5f, 0, 1}}};
+        return input.scene(colorScene("I12", vertices, kTarget, VK_FORMAT_R32G32B32A32_SFLOAT));
+    };
+    const size_t tame = scene({0, 0, 0});
+    for (const std::array<float, 3> wild : {std::array{kInf, 0.0f, 1.0f},
+                                            {kMax, -kMax, kMax},
+                                            {std::numeric_limits<float>::quiet_NaN(), 0.0f, 0.0f},
+                                            {kInf, -kInf, 0.0f}}) {
+        input.judge({scene(wild), tame}, [](std::span<const Drawn* const> images, const Declared&) -> Verdict {
+            const PixelReader a(images[0]->at(0)), b(images[1]->at(0));
+            if (!a.valid() || !b.valid()) return Verdict::wrong("an image has the wrong format, extent or size");
+            for (uint32_t y = 0; y < kTarget.height; ++y) {
+                for (uint32_t x = 0; x < kTarget.width; ++x) {
+                    for (uint8_t c = 1; c < 4; ++c) {
+                        if (a.code(x, y, c) != b.code(x, y, c))
+                            return Verdict::wrong(pixelText(x, y) + ": an attribute beside the wild one is disturbed");
+                    }
+                }
+            }
+            return {};
+        });
+    }
+}
+
+// 10^6 to 10^6 + 1: the error is that of the value, not of partial sums.
+void i13(CaseInput& input) {
+    const std::vector<ColorVertex> vertices{{{-1, -1, 0.5f, 1}, {1e6f, 1e6f, 0, 1}},
+                                            {{3, -1, 0.5f, 1}, {1e6f + 2, 1e6f, 0, 1}},
+                                            {{-1, 3, 0.5f, 1}, {1e6f, 1e6f + 2, 0, 1}}};
+    const size_t scene = input.scene(colorScene("I13", vertices, kTarget, VK_FORMAT_R32G32B32A32_SFLOAT));
+    judgePixels(input, scene, 0, kTarget, [](const PixelReader& pixels, const Declared&) -> Verdict {
+        Verdict worst;
+        for (uint32_t y = 0; y < kTarget.height; ++y) {
+            for (uint32_t x = 0; x < kTarget.width; ++x) {
+                const double error = std::max(std::abs(pixels.number(x, y, 0) - (1e6 + (x + 0.5) / 64)),
+                                              std::abs(pixels.number(x, y, 1) - (1e6 + (y + 0.5) / 64)));
+                if (error <= 0.0625) continue;  // one ULP of 10^6
+                worst =
+                    worst.worse(error <= 10 ? Verdict::allowed(pixelText(x, y) + " is off by " + std::to_string(error))
+                                            : Verdict::wrong(pixelText(x, y) + " is off by " + std::to_string(error)));
+            }
+        }
+        return worst;
+    });
+}
+
+constexpr std::string_view kPolygons = "Vulkan, Basic Polygon Rasterization";
+
 const std::vector<HardCase> kCases{
     {"I01", "Attributes equal at all vertices, in strong perspective", "The weights sum to 1: constant to the bit.",
-     "Vulkan, Basic Polygon Rasterization", i01},
+     kPolygons, i01},
     {"I02",
      "One-pixel triangles 4000 pixels from the origin",
      "The error does not grow with the distance.",
-     "Vulkan, Basic Polygon Rasterization",
+     kPolygons,
      i02,
      {},
      {{"lavapipe", "anchors plane equations at the framebuffer's origin: errors beyond half a code"}}},
+    {"I03", "Triangles with their vertices rotated", "The same values to the bit; a rounding apart is permitted.",
+     kPolygons, i03},
+    {"I04", "A quad of two triangles with an attribute linear on it", "No seam: the plane's values.", kPolygons, i04},
+    {"I05", "w from 1 to 10^6 across the target", "The ratio of sums of a_i f_i / w_i.", kPolygons, i05},
+    {"I06", "smooth and noperspective on the same primitive", "Each by its own formula.",
+     "Vulkan, Interpolation Decorations", i06},
+    {"I07", "Slivers that cover centres by snapping alone", "Values near those of the vertices.", kPolygons, i07},
+    {"I08", "Flat integers of all kinds of bit patterns", "The provoking vertex's bits.", "Vulkan, Flat Shading", i08},
+    {"I09", "FragCoord in perspective", "x.5 and y.5 exactly; the interpolated depth and 1/w.", "Vulkan, FragCoord",
+     i09},
+    {.id = "I10",
+     .title = "Barycentric coordinates as inputs",
+     .rule = "They sum to 1.",
+     .source = "VK_KHR_fragment_shader_barycentric",
+     .unreachable = "needs VK_KHR_fragment_shader_barycentric, which the driver does not offer"},
+    {"I11", "interpolateAtOffset at the ends of its range and between", "The attribute's value there.",
+     "Vulkan, Interpolation Decorations; SPIR-V InterpolateAtOffset", i11},
+    {"I12", "One attribute infinite, NaN or the largest float", "The other attributes are unaffected.",
+     "Vulkan, Floating-Point Computation", i12},
+    {"I13", "An attribute from 10^6 to 10^6 + 2", "An error of an ULP of the value.", kPolygons, i13},
 };
 
 }  // namespace

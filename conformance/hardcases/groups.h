@@ -9,6 +9,7 @@
     X('C', clippingCases, "Clipping")                           \
     X('W', homogeneousCases, "w near zero and guard band")      \
     X('I', interpolationCases, "Interpolation and perspective") \
+    X('L', levelCases, "Derivatives and level of detail")       \
     X('T', textureCases, "Texture filtering and addressing")    \
     X('D', depthCases, "Depth precision, bias, clamp")          \
     X('S', stencilCases, "Stencil")                             \

@@ -1,11 +1,16 @@
 // The judges are judged: pictures with one deliberate fault each must be called wrong, and the cause named.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
 #include <cstring>
 #include <functional>
 #include <map>
 
+#include "conformance/drivers/api_driver.h"
 #include "conformance/hardcases/run.h"
+#include "conformance/hardcases/texture_input.h"
+#include "conformance/oracle/filtering.h"
 #include "conformance/oracle/oracle.h"
 #include "tests/oracle/rendered.h"
 
@@ -38,13 +43,29 @@ const Ideal& ideal(std::string_view id) {
     return found->second;
 }
 
+// Vernier's rendering, for what the oracle judges but does not draw: lines, points, tables of values.
+const Ideal& vernier(std::string_view id) {
+    static std::map<std::string_view, Ideal> cache;
+    static const auto driver = ApiDriver::create({});
+    const auto [found, fresh] = cache.try_emplace(id);
+    if (!fresh) return found->second;
+    findCase(id)->build(found->second.input);
+    for (const Scene& scene : found->second.input.scenes()) {
+        found->second.drawn.push_back(drawScene(**driver, scene));
+    }
+    return found->second;
+}
+
 using Fault = std::function<void(std::vector<SceneOutcome>&)>;
 
-Verdict verdictOn(std::string_view id, const Fault& fault) {
-    const Ideal& made = ideal(id);
+Verdict verdictOn(const Ideal& made, const Fault& fault) {
     std::vector<SceneOutcome> drawn = made.drawn;
     fault(drawn);
     return judgeCase(made.input, drawn, {});
+}
+
+Verdict verdictOn(std::string_view id, const Fault& fault) {
+    return verdictOn(ideal(id), fault);
 }
 
 std::byte& byteAt(RenderedImage& image, uint32_t x, uint32_t y, uint32_t channel) {
@@ -80,6 +101,136 @@ void expectWrong(std::string_view id, const Fault& fault, const std::string& cau
     const Verdict verdict = verdictOn(id, fault);
     EXPECT_EQ(verdict.outcome, Outcome::wrong) << id;
     EXPECT_NE(verdict.witness.find(cause), std::string::npos) << id << ": " << verdict.witness;
+}
+
+/// On Vernier's rendering.
+void expectCaught(std::string_view id, const Fault& fault, const std::string& cause) {
+    EXPECT_LE(verdictOn(vernier(id), [](auto&) {}).outcome, Outcome::allowed) << id;
+    const Verdict verdict = verdictOn(vernier(id), fault);
+    EXPECT_EQ(verdict.outcome, Outcome::wrong) << id;
+    EXPECT_NE(verdict.witness.find(cause), std::string::npos) << id << ": " << verdict.witness;
+}
+
+void setCode(RenderedImage& image, uint32_t x, uint32_t y, uint32_t code) {
+    std::memcpy(image.texels.data() + (size_t{y} * image.extent.width + x) * 4, &code, 4);
+}
+
+uint32_t codeAt(const RenderedImage& image, uint32_t x, uint32_t y) {
+    uint32_t code;
+    std::memcpy(&code, image.texels.data() + (size_t{y} * image.extent.width + x) * 4, 4);
+    return code;
+}
+
+/// The first covered pixel of a count image, or the last one.
+std::pair<uint32_t, uint32_t> coveredPixel(const RenderedImage& image, bool last) {
+    std::pair<uint32_t, uint32_t> result;
+    for (uint32_t y = 0; y < image.extent.height; ++y) {
+        for (uint32_t x = 0; x < image.extent.width; ++x) {
+            if (image.texels[(size_t{y} * image.extent.width + x) * 4] == std::byte{0}) continue;
+            result = {x, y};
+            if (!last) return result;
+        }
+    }
+    return result;
+}
+
+TEST(Fault, ScissorOffByOne) {
+    // The second scissor begins at (1, 2): the first column inside it is lost.
+    expectCaught(
+        "E19",
+        [](auto& d) {
+            for (uint32_t y = 0; y < 64; ++y) byteAt(d[1].images[0], 1, y, 0) = std::byte{0};
+        },
+        "covered 0 times");
+}
+
+TEST(Fault, SwappedProvokingVertex) {
+    // Flat colours of the last vertex instead of the first: two further on in a list.
+    expectCaught(
+        "V08",
+        [](auto& d) {
+            RenderedImage& image = d[0].images[0];
+            for (uint32_t i = 0; i < 64 * 64; ++i) {
+                std::byte& green = byteAt(image, i % 64, i / 64, 1);
+                if (byteAt(image, i % 64, i / 64, 2) == std::byte{0}) continue;
+                green = static_cast<std::byte>(std::to_integer<uint32_t>(green) + 2);
+            }
+        },
+        "exactly");
+}
+
+TEST(Fault, MissingSampleOnATie) {
+    expectCaught(
+        "M01",
+        [](auto& d) {
+            const auto [x, y] = coveredPixel(d[0].images[0], false);
+            byteAt(d[0].images[0], x + 3, y + 3, 0) = std::byte{0};
+        },
+        "covered 0 times");
+}
+
+TEST(Fault, LineShiftedByAPixel) {
+    expectCaught(
+        "P05",
+        [](auto& d) {
+            Bytes& texels = d[0].images[0].texels;
+            std::rotate(texels.begin(), texels.end() - 4, texels.end());
+        },
+        "the rectangle of the line's width");
+}
+
+TEST(Fault, PointTooLarge) {
+    expectCaught(
+        "P09", [](auto& d) { byteAt(d[0].images[0], 10, 8, 0) = std::byte{16}; }, "the square of the point's size");
+}
+
+TEST(Fault, HalvedDepthBias) {
+    expectCaught(
+        "D06",
+        [](auto& d) {
+            for (uint32_t i = 0; i < 64 * 64; ++i) {
+                const float without = std::bit_cast<float>(codeAt(d[0].images[0], i % 64, i / 64));
+                const float with = std::bit_cast<float>(codeAt(d[1].images[0], i % 64, i / 64));
+                setCode(d[1].images[0], i % 64, i / 64, std::bit_cast<uint32_t>(without + (with - without) / 2));
+            }
+        },
+        "the largest exponent in the primitive");
+}
+
+TEST(Fault, StencilWrapsInsteadOfClamping) {
+    expectCaught(
+        "S01", [](auto& d) { byteAt(d[0].images[0], 255, VK_STENCIL_OP_INCREMENT_AND_CLAMP, 0) = std::byte{0}; },
+        "exactly 255");
+}
+
+TEST(Fault, ValuesBeyondTheirTolerance) {
+    expectCaught(
+        "X01", [](auto& d) { setCode(d[0].images[0], 126, 0, codeAt(d[0].images[0], 126, 0) + 10); },
+        "permitted within");
+    expectCaught(
+        "X08", [](auto& d) { setCode(d[0].images[0], 3, 0, 0x30000000u); }, "exactly 0x00000000");
+    expectCaught(
+        "G07", [](auto& d) { setCode(d[1].images[0], 5, 0, codeAt(d[1].images[0], 5, 0) + 1); }, "exactly");
+}
+
+TEST(Fault, SevenBitWeights) {
+    const Bytes texels = someTexels({8, 4}, 5);
+    const auto texel = [&texels](int64_t x, int64_t y) {
+        const auto wrapped = static_cast<size_t>(((y % 4 + 4) % 4) * 8 + (x % 8 + 8) % 8);
+        return exact::fraction(std::to_integer<int64_t>(texels[wrapped * 4]), 255);
+    };
+    const auto with = [&texel](int bits) {
+        return [&texel, bits](std::vector<SceneOutcome>& d) {
+            for (uint32_t i = 0; i < 300; ++i) {
+                const float u = static_cast<float>(i * 37 % 300) / 300.0f, v = static_cast<float>(i) / 300.0f;
+                const exact::Rational value =
+                    exact::bilinear(texel, exact::rational(u) * 8, exact::rational(v) * 4, bits);
+                setFloat(d[0].images[0], i, 0, 0, static_cast<float>(value.get_d()));
+            }
+        };
+    };
+    EXPECT_LE(verdictOn(vernier("T07"), with(8)).outcome, Outcome::allowed);
+    expectCaught("T07", with(7), "exactly");
 }
 
 TEST(Fault, HoleAndDoubleOnTheDiagonal) {
