@@ -103,7 +103,6 @@ Status ApiObjects::createSampler(const SceneSampler& scene) {
     if (scene.maxLod == 0 && scene.magFilter != scene.minFilter) {
         return unsupported("a sampler of maxLod 0 with two filters cannot be said in the API");
     }
-    if (scene.maxAnisotropy > 1) return unsupported("anisotropy cannot be said in the API");
     VnSamplerDesc desc{};
     desc.magFilter = scene.magFilter;
     desc.minFilter = scene.minFilter;
@@ -113,6 +112,7 @@ Status ApiObjects::createSampler(const SceneSampler& scene) {
     desc.lodBias = scene.mipLodBias;
     desc.minLod = scene.minLod;
     desc.maxLod = scene.maxLod == VK_LOD_CLAMP_NONE ? 0 : scene.maxLod;
+    desc.maxAnisotropy = scene.maxAnisotropy;
     desc.compareEnable = scene.compareEnable;
     desc.compareOp = scene.compareOp;
     desc.borderColor = scene.borderColor;

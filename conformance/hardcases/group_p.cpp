@@ -163,8 +163,8 @@ void p08(CaseInput& input) {
                     };
                     // The centre may lie beyond an end by half a pixel and more.
                     const double t = (px * dx + py * dy) / (length * length);
-                    const auto [low, high] = std::minmax(at(std::clamp(t - slack / length, -0.05, 1.05)),
-                                                         at(std::clamp(t + slack / length, -0.05, 1.05)));
+                    const auto [low, high] = std::minmax({at(std::clamp(t - slack / length, -0.05, 1.05)),
+                                                          at(std::clamp(t + slack / length, -0.05, 1.05))});
                     fits = fits || (observed >= low - 1e-5 && observed <= high + 1e-5);
                 }
                 if (fits) continue;

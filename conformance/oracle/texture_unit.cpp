@@ -82,7 +82,10 @@ SampleResult tap(const Sampler& s, uint32_t mip, int64_t x, int64_t y) {
         const StoredTexel& texel = level.at(static_cast<uint32_t>(*column), static_cast<uint32_t>(*row));
         result = {texel.channels, texel.flags};
     } else {
-        result.color = borderColor(s.state.borderColor);
+        // Vulkan, Texel Replacement and Conversion to RGBA: channels that the format lacks are 0, alpha is 1.
+        const Color border = borderColor(s.state.borderColor);
+        const PixelFormat& format = s.image.format();
+        for (uint8_t c = 0; c < 4; ++c) result.color[c] = format.channel(c) ? border[c] : Interval(c == 3 ? 1.0 : 0.0);
     }
     if (s.dref) {
         result.color[0] = compareRanges(s.state.compareOp, *s.dref, result.color[0]);
