@@ -100,8 +100,8 @@ void g07(CaseInput& input) {
 constexpr float kInf = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// A NaN, or, as the specification permits without SignedZeroInfNanPreserve, anything.
-std::function<Verdict(uint32_t)> bestNan() {
-    return [](uint32_t bits) -> Verdict {
+ValueJudge bestNan() {
+    return [](uint32_t bits, const Declared&) -> Verdict {
         return (bits & 0x7fffffffu) > 0x7f800000u
                    ? Verdict{}
                    : Verdict::allowed("not NaN; permitted without SignedZeroInfNanPreserve");

@@ -51,7 +51,11 @@ struct Verdict {
 /// What a driver declares about itself.
 struct Declared {
     int subPixelBits = 8;
+    /// By how much elementary functions may be off beyond Vulkan's bounds: the lower positions of Vernier's accuracy
+    /// dial declare 4096 ULP.
+    double functionUlps = 0;
 };
+inline constexpr double kFastFunctionUlps = 4096;
 
 /// The outputs of one scene.
 using Drawn = std::vector<RenderedImage>;

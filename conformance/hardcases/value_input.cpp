@@ -47,21 +47,22 @@ void addValues(CaseInput& input, std::string_view name, std::string_view express
                std::string_view declarations) {
     const size_t scene = input.scene(valueScene(name, expression, declarations, rows));
     const VkExtent2D extent{static_cast<uint32_t>(rows.size()), 1};
-    judgePixels(input, scene, 0, extent,
-                [rows = std::move(rows), text = std::string(expression)](const PixelReader& pixels, const Declared&) {
-                    Verdict worst;
-                    for (uint32_t x = 0; x < rows.size(); ++x) {
-                        const auto bits = static_cast<uint32_t>(pixels.code(x, 0, 0));
-                        Verdict verdict = rows[x].judge(bits);
-                        if (verdict.outcome != Outcome::exact) {
-                            std::string inputs;
-                            for (const uint32_t in : rows[x].in) inputs += (inputs.empty() ? "" : ", ") + hex(in);
-                            verdict.witness = text + " of " + inputs + " is " + hex(bits) + "; " + verdict.witness;
-                        }
-                        worst = worst.worse(verdict);
-                    }
-                    return worst;
-                });
+    judgePixels(
+        input, scene, 0, extent,
+        [rows = std::move(rows), text = std::string(expression)](const PixelReader& pixels, const Declared& declared) {
+            Verdict worst;
+            for (uint32_t x = 0; x < rows.size(); ++x) {
+                const auto bits = static_cast<uint32_t>(pixels.code(x, 0, 0));
+                Verdict verdict = rows[x].judge(bits, declared);
+                if (verdict.outcome != Outcome::exact) {
+                    std::string inputs;
+                    for (const uint32_t in : rows[x].in) inputs += (inputs.empty() ? "" : ", ") + hex(in);
+                    verdict.witness = text + " of " + inputs + " is " + hex(bits) + "; " + verdict.witness;
+                }
+                worst = worst.worse(verdict);
+            }
+            return worst;
+        });
 }
 
 double ulpOf(double value) {
@@ -69,27 +70,28 @@ double ulpOf(double value) {
     return std::ldexp(1.0, std::ilogb(size) - 23);
 }
 
-std::function<Verdict(uint32_t)> floatNear(double exactly, double tolerance) {
-    return [=](uint32_t bits) -> Verdict {
+ValueJudge floatNear(double exactly, double tolerance) {
+    return [=](uint32_t bits, const Declared& declared) -> Verdict {
         if (std::isnan(exactly)) return {};
+        const double permitted = tolerance + declared.functionUlps * ulpOf(exactly);
         const double got = std::bit_cast<float>(bits);
         char text[80];
-        std::snprintf(text, sizeof text, "exactly %.9g, permitted within %.3g", exactly, tolerance);
+        std::snprintf(text, sizeof text, "exactly %.9g, permitted within %.3g", exactly, permitted);
         if (got == static_cast<double>(static_cast<float>(exactly))) return {};
         const bool flushed = got == 0 && std::abs(exactly) < 0x1p-126;
         const bool overflown =
-            std::isinf(got) && std::abs(exactly) + tolerance > 0x1.fffffep127 && (got > 0) == (exactly > 0);
-        if (flushed || overflown || std::abs(got - exactly) <= tolerance) return Verdict::allowed(text);
+            std::isinf(got) && std::abs(exactly) + permitted > 0x1.fffffep127 && (got > 0) == (exactly > 0);
+        if (flushed || overflown || std::abs(got - exactly) <= permitted) return Verdict::allowed(text);
         return Verdict::wrong(text);
     };
 }
 
-std::function<Verdict(uint32_t)> floatWithin(double exactly, double ulps) {
+ValueJudge floatWithin(double exactly, double ulps) {
     return floatNear(exactly, ulps * ulpOf(exactly));
 }
 
-std::function<Verdict(uint32_t)> oneOf(std::vector<uint32_t> bits) {
-    return [bits = std::move(bits)](uint32_t got) -> Verdict {
+ValueJudge oneOf(std::vector<uint32_t> bits) {
+    return [bits = std::move(bits)](uint32_t got, const Declared&) -> Verdict {
         if (got == bits.front()) return {};
         const std::string text = "exactly " + hex(bits.front());
         return std::ranges::count(bits, got) != 0 ? Verdict::allowed(text + "; this is permitted too")
@@ -97,8 +99,8 @@ std::function<Verdict(uint32_t)> oneOf(std::vector<uint32_t> bits) {
     };
 }
 
-std::function<Verdict(uint32_t)> anything() {
-    return [](uint32_t) { return Verdict{}; };
+ValueJudge anything() {
+    return [](uint32_t, const Declared&) { return Verdict{}; };
 }
 
 }  // namespace vernier::conformance::hardcases

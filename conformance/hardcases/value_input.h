@@ -11,10 +11,13 @@
 
 namespace vernier::conformance::hardcases {
 
-/// Inputs by bits, which the compiler cannot see, and the judge of the 32 bits of the result.
+/// Judges the 32 bits of a result.
+using ValueJudge = std::function<Verdict(uint32_t result, const Declared& declared)>;
+
+/// Inputs by bits, which the compiler cannot see, and the judge of the result.
 struct ValueRow {
     std::array<uint32_t, 3> in{};
-    std::function<Verdict(uint32_t result)> judge;
+    ValueJudge judge;
 };
 
 /// Adds a scene that computes `expression`, a GLSL uint, for every row, with u(k) the k-th input as uint, i(k) as int
@@ -28,16 +31,16 @@ inline uint32_t bitsOf(float value) {
 
 /// Judges of a float result: exact when it is the float nearest to `exactly`, allowed within `tolerance` of it.
 /// Denormals may be flushed to 0. Infinities stand for themselves; where `exactly` is NaN nothing is asked.
-std::function<Verdict(uint32_t)> floatNear(double exactly, double tolerance);
+ValueJudge floatNear(double exactly, double tolerance);
 
 /// The same with the tolerance in units in the last place of a float of that size.
-std::function<Verdict(uint32_t)> floatWithin(double exactly, double ulps);
+ValueJudge floatWithin(double exactly, double ulps);
 
 /// Exact when the bits are the first of these, allowed when they are another one.
-std::function<Verdict(uint32_t)> oneOf(std::vector<uint32_t> bits);
+ValueJudge oneOf(std::vector<uint32_t> bits);
 
 /// Nothing is asked but that it runs.
-std::function<Verdict(uint32_t)> anything();
+ValueJudge anything();
 
 /// The distance between neighbouring floats around a number.
 double ulpOf(double value);

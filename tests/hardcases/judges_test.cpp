@@ -135,11 +135,11 @@ std::pair<uint32_t, uint32_t> coveredPixel(const RenderedImage& image, bool last
 }
 
 TEST(Fault, ScissorOffByOne) {
-    // The second scissor begins at (1, 2): the first column inside it is lost.
+    // The seventh scissor begins at (6, 12): the first column inside it is lost.
     expectCaught(
         "E19",
         [](auto& d) {
-            for (uint32_t y = 0; y < 64; ++y) byteAt(d[1].images[0], 1, y, 0) = std::byte{0};
+            for (uint32_t y = 0; y < 64; ++y) byteAt(d[6].images[0], 6, y, 0) = std::byte{0};
         },
         "covered 0 times");
 }
@@ -181,7 +181,7 @@ TEST(Fault, LineShiftedByAPixel) {
 
 TEST(Fault, PointTooLarge) {
     expectCaught(
-        "P09", [](auto& d) { byteAt(d[0].images[0], 10, 8, 0) = std::byte{16}; }, "the square of the point's size");
+        "P09", [](auto& d) { byteAt(d[0].images[0], 0, 40, 0) = std::byte{16}; }, "the square of the point's size");
 }
 
 TEST(Fault, HalvedDepthBias) {
@@ -219,12 +219,24 @@ TEST(Fault, SevenBitWeights) {
         const auto wrapped = static_cast<size_t>(((y % 4 + 4) % 4) * 8 + (x % 8 + 8) % 8);
         return exact::fraction(std::to_integer<int64_t>(texels[wrapped * 4]), 255);
     };
+    // Weights cut off, not rounded, to so many bits.
     const auto with = [&texel](int bits) {
         return [&texel, bits](std::vector<SceneOutcome>& d) {
             for (uint32_t i = 0; i < 300; ++i) {
-                const float u = static_cast<float>(i * 37 % 300) / 300.0f, v = static_cast<float>(i) / 300.0f;
-                const exact::Rational value =
-                    exact::bilinear(texel, exact::rational(u) * 8, exact::rational(v) * 4, bits);
+                const auto taps = [bits](float coordinate, int64_t size) {
+                    exact::AxisTaps t = exact::linearTaps(exact::rational(coordinate) * exact::fraction(size, 1));
+                    t.weight =
+                        exact::Rational(exact::floorOf(t.weight * exact::powerOfTwo(bits))) * exact::powerOfTwo(-bits);
+                    return t;
+                };
+                const exact::AxisTaps u = taps(static_cast<float>(i * 37 % 300) / 300.0f, 8);
+                const exact::AxisTaps v = taps(static_cast<float>(i) / 300.0f, 4);
+                const auto row = [&](int64_t y) {
+                    const exact::Rational a = texel(u.first, y), b = texel(u.first + 1, y);
+                    return exact::Rational(a + u.weight * (b - a));
+                };
+                const exact::Rational top = row(v.first), bottom = row(v.first + 1);
+                const exact::Rational value = top + v.weight * (bottom - top);
                 setFloat(d[0].images[0], i, 0, 0, static_cast<float>(value.get_d()));
             }
         };

@@ -26,12 +26,12 @@ TEST(Catalogue, EveryCaseHasItsPlaceAndItsRule) {
 TEST(Table, SaysWhatTheVerdictsSay) {
     Table table;
     table.rows = {findCase("E01"), findCase("E10")};
-    table.columns = {{"api", "api", "Vernier", true, {8}, {Verdict{}, Verdict::allowed("a tie")}},
+    table.columns = {{"api", "api", "Vernier", true, {8, 0}, {Verdict{}, Verdict::allowed("a tie")}},
                      {"swiftshader",
                       "swiftshader",
                       "SwiftShader",
                       false,
-                      {4},
+                      {4, 0},
                       {Verdict::wrong("pixel (1, 2)"), Verdict::wrong("a | hole")}}};
     const std::string markdown = tableMarkdown(table), text = tableText(table);
     EXPECT_NE(markdown.find("| swiftshader | 4 | 0 | 0 | 0 | 2 | 0 | SwiftShader |"), std::string::npos) << markdown;
