@@ -81,6 +81,22 @@ Status ApiObjects::createImage(const SceneImage& scene) {
     desc.format = scene.format;
     desc.width = scene.extent.width;
     desc.height = scene.extent.height;
+    desc.depth = scene.depth;
+    switch (scene.viewType) {
+        case VK_IMAGE_VIEW_TYPE_1D:
+        case VK_IMAGE_VIEW_TYPE_1D_ARRAY:
+            desc.dimensions = 1;
+            break;
+        case VK_IMAGE_VIEW_TYPE_3D:
+            desc.dimensions = 3;
+            break;
+        case VK_IMAGE_VIEW_TYPE_CUBE:
+        case VK_IMAGE_VIEW_TYPE_CUBE_ARRAY:
+            desc.cube = 1;
+            break;
+        default:
+            break;
+    }
     desc.mipLevels = scene.mipLevels;
     desc.layers = scene.arrayLayers;
     desc.samples = scene.samples;
@@ -109,6 +125,7 @@ Status ApiObjects::createSampler(const SceneSampler& scene) {
     desc.mipmapMode = scene.mipmapMode;
     desc.addressU = scene.addressModeU;
     desc.addressV = scene.addressModeV;
+    desc.addressW = scene.addressModeW;
     desc.lodBias = scene.mipLodBias;
     desc.minLod = scene.minLod;
     desc.maxLod = scene.maxLod == VK_LOD_CLAMP_NONE ? 0 : scene.maxLod;
@@ -116,6 +133,9 @@ Status ApiObjects::createSampler(const SceneSampler& scene) {
     desc.compareEnable = scene.compareEnable;
     desc.compareOp = scene.compareOp;
     desc.borderColor = scene.borderColor;
+    std::copy(scene.customBorderColor.begin(), scene.customBorderColor.end(), desc.customBorderColor.float32);
+    desc.reduction = scene.reduction;
+    desc.maxAnisotropy = scene.maxAnisotropy;
     VnSampler sampler{};
     VERNIER_TRY_API(vnCreateSampler(device_, &desc, &sampler));
     samplers_.push_back(sampler);
@@ -242,6 +262,9 @@ Result<VnView> ApiObjects::sampledView(const Scene& scene, const SceneBinding& b
     VnViewDesc desc{};
     desc.image = images_[binding.image];
     desc.mipCount = scene.samplers[binding.sampler].maxLod == 0 ? 1 : 0;
+    const VkImageViewType type = scene.images[binding.image].viewType;
+    desc.array = type == VK_IMAGE_VIEW_TYPE_1D_ARRAY || type == VK_IMAGE_VIEW_TYPE_2D_ARRAY ||
+                 type == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY;
     return view(desc);
 }
 
@@ -249,7 +272,8 @@ Result<VnView> ApiObjects::view(const VnViewDesc& desc) {
     const auto known = std::find_if(views_.begin(), views_.end(), [&](const auto& each) {
         return each.first.image.id == desc.image.id && each.first.aspect == desc.aspect &&
                each.first.baseMip == desc.baseMip && each.first.mipCount == desc.mipCount &&
-               each.first.baseLayer == desc.baseLayer && each.first.layerCount == desc.layerCount;
+               each.first.baseLayer == desc.baseLayer && each.first.layerCount == desc.layerCount &&
+               each.first.array == desc.array;
     });
     if (known != views_.end()) return known->second;
     VnView view{};

@@ -38,6 +38,11 @@ void checkImage(Checker& check, const SceneImage& image, size_t index) {
         check.fail(at("images", index, "format") + " is " + std::to_string(image.format) + ", not one scenes may use");
         return;
     }
+    const bool volume = image.viewType == VK_IMAGE_VIEW_TYPE_3D;
+    if (image.depth == 0 || (!volume && image.depth != 1) || (volume && image.arrayLayers != 1)) {
+        check.fail(at("images", index, "depth") + " is " + std::to_string(image.depth) +
+                   ": only 3D images, which have one layer, have slices");
+    }
     if (image.extent.width == 0 || image.extent.height == 0 || image.mipLevels == 0 || image.arrayLayers == 0) {
         check.fail(at("images", index, "extent") + ", mipLevels or arrayLayers is 0");
         return;
@@ -49,8 +54,9 @@ void checkImage(Checker& check, const SceneImage& image, size_t index) {
     }
     for (size_t i = 0; i < image.data.size(); ++i) {
         const uint32_t mip = static_cast<uint32_t>(i / image.arrayLayers);
-        const size_t bytes = size_t{std::max(1u, image.extent.width >> mip)} *
-                             std::max(1u, image.extent.height >> mip) * format->texelBytes;
+        const size_t bytes =
+            format->imageBytes(std::max(1u, image.extent.width >> mip), std::max(1u, image.extent.height >> mip)) *
+            std::max(1u, image.depth >> mip);
         if (!image.data[i].empty() && image.data[i].size() != bytes) {
             check.fail(at("images", index, "data") + " entry " + std::to_string(i) + " has " +
                        std::to_string(image.data[i].size()) + " bytes, not " + std::to_string(bytes));
@@ -125,6 +131,10 @@ Status validateScene(const Scene& scene) {
     if (scene.outputs.empty()) check.fail("no outputs");
     for (const uint32_t output : scene.outputs) {
         check.index("outputs", output, images);
+        if (output < images && sceneFormat(scene.images[output].format) != nullptr &&
+            sceneFormat(scene.images[output].format)->isCompressed()) {
+            check.fail("output image '" + scene.images[output].name + "' is compressed");
+        }
         if (output < images && scene.images[output].samples != VK_SAMPLE_COUNT_1_BIT) {
             check.fail("output image '" + scene.images[output].name + "' is multisampled");
         }

@@ -154,19 +154,24 @@ Status VulkanContext::createDevice(uint32_t deviceIndex) {
     compute_ = (family->queueFlags & VK_QUEUE_COMPUTE_BIT) != 0;
 
     negativeViewports_ = instanceVersion_ >= VK_API_VERSION_1_1 && properties_.apiVersion >= VK_API_VERSION_1_1;
-    const char* maintenance = VK_KHR_MAINTENANCE_1_EXTENSION_NAME;
-    bool useMaintenance = false;
-    if (!negativeViewports_) {
-        uint32_t extensionCount = 0;
-        VERNIER_TRY_VK(vkEnumerateDeviceExtensionProperties(physicalDevice_, nullptr, &extensionCount, nullptr));
-        std::vector<VkExtensionProperties> extensions(extensionCount);
-        VERNIER_TRY_VK(
-            vkEnumerateDeviceExtensionProperties(physicalDevice_, nullptr, &extensionCount, extensions.data()));
-        useMaintenance = std::any_of(extensions.begin(), extensions.end(), [&](const VkExtensionProperties& each) {
-            return std::strcmp(each.extensionName, maintenance) == 0;
+    uint32_t extensionCount = 0;
+    VERNIER_TRY_VK(vkEnumerateDeviceExtensionProperties(physicalDevice_, nullptr, &extensionCount, nullptr));
+    std::vector<VkExtensionProperties> extensions(extensionCount);
+    VERNIER_TRY_VK(vkEnumerateDeviceExtensionProperties(physicalDevice_, nullptr, &extensionCount, extensions.data()));
+    std::vector<const char*> names;
+    const auto enable = [&](const char* name) {
+        const bool found = std::any_of(extensions.begin(), extensions.end(), [&](const VkExtensionProperties& each) {
+            return std::strcmp(each.extensionName, name) == 0;
         });
-        negativeViewports_ = useMaintenance;
-    }
+        if (found) names.push_back(name);
+        return found;
+    };
+    if (!negativeViewports_) negativeViewports_ = enable(VK_KHR_MAINTENANCE_1_EXTENSION_NAME);
+    customBorders_ = enable(VK_EXT_CUSTOM_BORDER_COLOR_EXTENSION_NAME);
+    reductions_ = enable(VK_EXT_SAMPLER_FILTER_MINMAX_EXTENSION_NAME);
+    VkPhysicalDeviceCustomBorderColorFeaturesEXT borders{};
+    borders.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_CUSTOM_BORDER_COLOR_FEATURES_EXT;
+    borders.customBorderColors = VK_TRUE;
 
     // Robust access costs time that the other runs of a scene do not pay.
     features_.robustBufferAccess = VK_FALSE;
@@ -181,8 +186,9 @@ Status VulkanContext::createDevice(uint32_t deviceIndex) {
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queueInfo;
     info.pEnabledFeatures = &features_;
-    info.enabledExtensionCount = useMaintenance ? 1 : 0;
-    info.ppEnabledExtensionNames = &maintenance;
+    info.enabledExtensionCount = static_cast<uint32_t>(names.size());
+    info.ppEnabledExtensionNames = names.data();
+    if (customBorders_) info.pNext = &borders;
     VERNIER_TRY_VK(vkCreateDevice(physicalDevice_, &info, nullptr, &device_));
     cleanup_.add([this] { vkDestroyDevice(device_, nullptr); });
     vkGetDeviceQueue(device_, queueFamily_, 0, &queue_);

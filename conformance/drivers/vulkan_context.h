@@ -74,6 +74,9 @@ class VulkanContext {
     bool hasCompute() const { return compute_; }
     /// Whether viewports may have negative heights.
     bool hasNegativeViewports() const { return negativeViewports_; }
+    bool hasCustomBorders() const { return customBorders_; }
+    /// Whether samplers can take minima and maxima.
+    bool hasReductions() const { return reductions_; }
 
     /// A memory type allowed by `typeBits` with all of `flags`; `unsupported` when there is none.
     Result<uint32_t> memoryType(uint32_t typeBits, VkMemoryPropertyFlags flags) const;
@@ -96,7 +99,7 @@ class VulkanContext {
     VkPhysicalDeviceProperties properties_{};
     VkPhysicalDeviceFeatures features_{};
     VkPhysicalDeviceMemoryProperties memory_{};
-    bool compute_ = false, negativeViewports_ = false;
+    bool compute_ = false, negativeViewports_ = false, customBorders_ = false, reductions_ = false;
     VkDevice device_ = VK_NULL_HANDLE;
     uint32_t queueFamily_ = 0;
     VkQueue queue_ = VK_NULL_HANDLE;

@@ -42,6 +42,11 @@ UseState stateOf(ImageUse use, VkImageAspectFlags aspects) {
     return {};
 }
 
+VkImageType imageType(VkImageViewType view) {
+    if (view == VK_IMAGE_VIEW_TYPE_3D) return VK_IMAGE_TYPE_3D;
+    return view == VK_IMAGE_VIEW_TYPE_1D || view == VK_IMAGE_VIEW_TYPE_1D_ARRAY ? VK_IMAGE_TYPE_1D : VK_IMAGE_TYPE_2D;
+}
+
 VkFormatFeatureFlags neededFeatures(VkImageUsageFlags usage) {
     VkFormatFeatureFlags features = 0;
     if ((usage & VK_IMAGE_USAGE_SAMPLED_BIT) != 0) features |= VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT;
@@ -115,9 +120,12 @@ Status VulkanResources::createImage(const SceneImage& scene) {
     image.aspects = sceneFormat(scene.format)->aspects;
     VkImageCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
-    info.imageType = VK_IMAGE_TYPE_2D;
+    info.imageType = imageType(scene.viewType);
+    if (scene.viewType == VK_IMAGE_VIEW_TYPE_CUBE || scene.viewType == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY) {
+        info.flags = VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT;
+    }
     info.format = scene.format;
-    info.extent = {scene.extent.width, scene.extent.height, 1};
+    info.extent = {scene.extent.width, scene.extent.height, scene.depth};
     info.mipLevels = scene.mipLevels;
     info.arrayLayers = scene.arrayLayers;
     info.samples = scene.samples;
@@ -143,9 +151,10 @@ Status VulkanResources::createImage(const SceneImage& scene) {
     if ((scene.usage & VK_IMAGE_USAGE_SAMPLED_BIT) != 0) {
         // A view to sample through has one aspect.
         const VkImageAspectFlags aspect = image.aspects & ~VkImageAspectFlags{VK_IMAGE_ASPECT_STENCIL_BIT};
-        const Result<VkImageView> view =
-            createView(image, {aspect, 0, scene.mipLevels, 0, scene.arrayLayers},
-                       scene.arrayLayers == 1 ? VK_IMAGE_VIEW_TYPE_2D : VK_IMAGE_VIEW_TYPE_2D_ARRAY);
+        const Result<VkImageView> view = createView(image, {aspect, 0, scene.mipLevels, 0, scene.arrayLayers},
+                                                    scene.viewType != VK_IMAGE_VIEW_TYPE_MAX_ENUM ? scene.viewType
+                                                    : scene.arrayLayers == 1 ? VK_IMAGE_VIEW_TYPE_2D
+                                                                             : VK_IMAGE_VIEW_TYPE_2D_ARRAY);
         if (!view) return view.error();
         image.view = *view;
     }
@@ -188,10 +197,25 @@ Status VulkanResources::createSampler(const SceneSampler& scene) {
     info.mipmapMode = scene.mipmapMode;
     info.addressModeU = scene.addressModeU;
     info.addressModeV = scene.addressModeV;
-    info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    info.addressModeW = scene.addressModeW;
     info.mipLodBias = scene.mipLodBias;
     info.anisotropyEnable = scene.maxAnisotropy > 0 ? VK_TRUE : VK_FALSE;
     info.maxAnisotropy = std::max(scene.maxAnisotropy, 1.0f);
+    VkSamplerCustomBorderColorCreateInfoEXT border{};
+    border.sType = VK_STRUCTURE_TYPE_SAMPLER_CUSTOM_BORDER_COLOR_CREATE_INFO_EXT;
+    std::copy(scene.customBorderColor.begin(), scene.customBorderColor.end(), border.customBorderColor.float32);
+    if (scene.borderColor == VK_BORDER_COLOR_FLOAT_CUSTOM_EXT) {
+        if (!context_.hasCustomBorders()) return unsupported("the device lacks custom border colours");
+        info.pNext = &border;
+    }
+    VkSamplerReductionModeCreateInfo reduction{};
+    reduction.sType = VK_STRUCTURE_TYPE_SAMPLER_REDUCTION_MODE_CREATE_INFO;
+    reduction.reductionMode = scene.reduction;
+    if (scene.reduction != VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE) {
+        if (!context_.hasReductions()) return unsupported("the device lacks minimum and maximum filters");
+        reduction.pNext = info.pNext;
+        info.pNext = &reduction;
+    }
     info.compareEnable = scene.compareEnable ? VK_TRUE : VK_FALSE;
     info.compareOp = scene.compareOp;
     info.minLod = scene.minLod;
@@ -222,7 +246,8 @@ Status VulkanResources::uploadImages() {
             VkBufferImageCopy region{};
             region.imageSubresource = {images_[index].aspects & ~VkImageAspectFlags{VK_IMAGE_ASPECT_STENCIL_BIT}, mip,
                                        layer, 1};
-            region.imageExtent = {std::max(1u, scene.extent.width >> mip), std::max(1u, scene.extent.height >> mip), 1};
+            region.imageExtent = {std::max(1u, scene.extent.width >> mip), std::max(1u, scene.extent.height >> mip),
+                                  std::max(1u, scene.depth >> mip)};
             vkCmdCopyBufferToImage(*commands, staging->handle, images_[index].handle,
                                    VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
         }

@@ -25,6 +25,12 @@ Result<ImageStore> ImageStore::create(const SceneImage& image) {
         return unsupported("oracle: image '" + image.name + "' has format " + std::to_string(image.format) +
                            ", which is not in the oracle's table");
     }
+    const bool flat = image.viewType == VK_IMAGE_VIEW_TYPE_MAX_ENUM || image.viewType == VK_IMAGE_VIEW_TYPE_2D ||
+                      image.viewType == VK_IMAGE_VIEW_TYPE_2D_ARRAY;
+    if (!flat) {
+        return unsupported("oracle: image '" + image.name + "' has view type " + std::to_string(image.viewType) +
+                           "; only 2D images are judged");
+    }
     store.mipLevels_ = image.mipLevels;
     store.arrayLayers_ = image.arrayLayers;
     for (uint32_t mip = 0; mip < image.mipLevels; ++mip) {

@@ -191,6 +191,11 @@ OracleImage readBack(const ImageStore& image) {
 
 Result<std::vector<OracleImage>> renderOracle(const Scene& scene, const OracleRules& rules) {
     if (Status s = SceneCheck(scene).run(); !s) return s.error();
+    for (const SceneSampler& sampler : scene.samplers) {
+        if (sampler.reduction != VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE) {
+            return unsupported("oracle: minimum and maximum filters are not judged");
+        }
+    }
     std::vector<ImageStore> images;
     for (const SceneImage& image : scene.images) {
         auto store = ImageStore::create(image);

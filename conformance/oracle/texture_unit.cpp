@@ -30,8 +30,13 @@ struct Sampler {
     double weightSlack = kWeightSlack;
 };
 
-Color borderColor(VkBorderColor border) {
-    switch (border) {
+Color borderColor(const SceneSampler& sampler) {
+    switch (sampler.borderColor) {
+        case VK_BORDER_COLOR_FLOAT_CUSTOM_EXT: {
+            Color color;
+            for (size_t c = 0; c < 4; ++c) color[c] = Interval(sampler.customBorderColor[c]);
+            return color;
+        }
         case VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE:
         case VK_BORDER_COLOR_INT_OPAQUE_WHITE:
             return {1.0, 1.0, 1.0, 1.0};
@@ -83,7 +88,7 @@ SampleResult tap(const Sampler& s, uint32_t mip, int64_t x, int64_t y) {
         result = {texel.channels, texel.flags};
     } else {
         // Vulkan, Texel Replacement and Conversion to RGBA: channels that the format lacks are 0, alpha is 1.
-        const Color border = borderColor(s.state.borderColor);
+        const Color border = borderColor(s.state);
         const PixelFormat& format = s.image.format();
         for (uint8_t c = 0; c < 4; ++c) result.color[c] = format.channel(c) ? border[c] : Interval(c == 3 ? 1.0 : 0.0);
     }

@@ -31,12 +31,15 @@ struct SceneImage {
     std::string name;
     VkFormat format = VK_FORMAT_R8G8B8A8_UNORM;
     VkExtent2D extent{};
+    uint32_t depth = 1;  // slices of a 3D image
     uint32_t mipLevels = 1;
     uint32_t arrayLayers = 1;
+    // As which it is sampled, and with it its dimensions. MAX_ENUM: 2D, or a 2D array when there are several layers.
+    VkImageViewType viewType = VK_IMAGE_VIEW_TYPE_MAX_ENUM;
     VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
     VkImageUsageFlags usage = 0;  // transfer usage is added by the drivers
-    // Tightly packed initial contents, level-major: data[mip * arrayLayers + layer]; no entries, or an empty
-    // entry for a subresource: undefined contents.
+    // Tightly packed initial contents, level-major: data[mip * arrayLayers + layer], of a 3D image all slices; no
+    // entries, or an empty entry for a subresource: undefined contents.
     std::vector<Bytes> data;
 };
 
@@ -46,13 +49,16 @@ struct SceneSampler {
     VkSamplerMipmapMode mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST;
     VkSamplerAddressMode addressModeU = VK_SAMPLER_ADDRESS_MODE_REPEAT;
     VkSamplerAddressMode addressModeV = VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    VkSamplerAddressMode addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     float mipLodBias = 0;
     float minLod = 0;
     float maxLod = VK_LOD_CLAMP_NONE;
     float maxAnisotropy = 0;  // 0: off
     VkBorderColor borderColor = VK_BORDER_COLOR_FLOAT_TRANSPARENT_BLACK;
+    std::array<float, 4> customBorderColor{};  // of VK_BORDER_COLOR_FLOAT_CUSTOM_EXT
     bool compareEnable = false;
     VkCompareOp compareOp = VK_COMPARE_OP_ALWAYS;
+    VkSamplerReductionMode reduction = VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
 };
 
 struct SceneShader {
@@ -99,7 +105,7 @@ struct ScenePipeline {
 struct SceneBinding {
     uint32_t set = 0, binding = 0;
     // UNIFORM_BUFFER, STORAGE_BUFFER: buffer, offset, range. COMBINED_IMAGE_SAMPLER: image, sampler (all mips
-    // and layers; a 2D view when the image has one layer, a 2D array view otherwise).
+    // and layers, by SceneImage::viewType).
     VkDescriptorType type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     uint32_t buffer = kNone;
     VkDeviceSize offset = 0;

@@ -28,6 +28,14 @@ struct SceneFormat {
     uint8_t componentCount = 0;
     VkImageAspectFlags aspects = VK_IMAGE_ASPECT_COLOR_BIT;
     std::array<FormatComponent, 4> components{};  // in the order R, G, B, A (or D)
+    // Block-compressed formats: the footprint; texelBytes are those of a block, and there are no components.
+    uint8_t blockWidth = 1, blockHeight = 1;
+
+    bool isCompressed() const { return blockWidth > 1; }
+    /// Bytes of an image of so many texels.
+    size_t imageBytes(uint32_t width, uint32_t height) const {
+        return size_t{(width + blockWidth - 1) / blockWidth} * ((height + blockHeight - 1) / blockHeight) * texelBytes;
+    }
 };
 
 /// The description of `format`, or nullptr when scenes may not use it.

@@ -296,6 +296,11 @@ uint32_t SceneRecorder::texture(std::string_view name, VkFormat format, VkExtent
     return addImage(std::move(image));
 }
 
+uint32_t SceneRecorder::texture(SceneImage image) {
+    image.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+    return addImage(std::move(image));
+}
+
 uint32_t SceneRecorder::mipmappedTexture(std::string_view name, VkFormat format, VkExtent2D extent, Bytes level0) {
     SceneImage image;
     image.name = name;

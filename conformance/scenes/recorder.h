@@ -134,6 +134,8 @@ class SceneRecorder {
                          VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT, VkImageUsageFlags moreUsage = 0);
     /// A sampled image; levels[0] has `extent`, each next one half of it.
     uint32_t texture(std::string_view name, VkFormat format, VkExtent2D extent, std::vector<Bytes> levels);
+    /// A sampled image of any kind, as described; its usage is set here.
+    uint32_t texture(SceneImage image);
     /// A sampled image with room for all mip levels, whose levels above 0 are generated now.
     uint32_t mipmappedTexture(std::string_view name, VkFormat format, VkExtent2D extent, Bytes level0);
 

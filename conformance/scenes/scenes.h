@@ -35,6 +35,16 @@
     X(texture_trilinear)     \
     X(copy_and_blit)         \
     X(blit_mirrored)         \
+    /* texture_kinds.cpp */  \
+    X(texture_anisotropic)   \
+    X(cube_seams)            \
+    X(texture_volume)        \
+    X(texture_lines)         \
+    X(border_custom)         \
+    X(texture_extremes)      \
+    X(blocks_bc)             \
+    X(blocks_etc2)           \
+    X(blocks_astc)           \
     /* multi_pass.cpp */     \
     X(render_to_texture)     \
     X(shadow_map)            \

@@ -88,7 +88,15 @@ TEST(SceneFormat, PlacesEnd) {
 }
 
 TEST(SceneFormat, UnknownFormatsAreNone) {
-    EXPECT_EQ(sceneFormat(VK_FORMAT_BC7_UNORM_BLOCK), nullptr);
+    EXPECT_EQ(sceneFormat(VK_FORMAT_G8B8G8R8_422_UNORM), nullptr);
+}
+
+TEST(SceneFormat, CompressedImagesAreCountedInBlocks) {
+    const SceneFormat& format = *sceneFormat(VK_FORMAT_ASTC_10x6_UNORM_BLOCK);
+    EXPECT_TRUE(format.isCompressed());
+    EXPECT_EQ(format.imageBytes(11, 6), 32u);
+    EXPECT_EQ(format.imageBytes(1, 1), 16u);
+    EXPECT_EQ(sceneFormat(VK_FORMAT_R8G8_UNORM)->imageBytes(3, 5), 30u);
 }
 
 }  // namespace
