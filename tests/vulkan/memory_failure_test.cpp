@@ -97,22 +97,21 @@ namespace vernier::test {
 namespace {
 
 /// Every command of the program, by name.
-#define VERNIER_COMMANDS(X)                                                                                            \
-    X(EnumeratePhysicalDevices)                                                                                        \
-    X(CreateDevice)                                                                                                    \
-    X(DestroyInstance) X(DestroyDevice) X(GetDeviceQueue) X(CreateBuffer) X(DestroyBuffer)                             \
-        X(GetBufferMemoryRequirements) X(AllocateMemory) X(FreeMemory) X(BindBufferMemory) X(MapMemory) X(CreateImage) \
-            X(DestroyImage) X(GetImageMemoryRequirements) X(BindImageMemory) X(CreateImageView) X(DestroyImageView)    \
-                X(CreateShaderModule) X(DestroyShaderModule) X(CreateRenderPass) X(DestroyRenderPass)                  \
-                    X(CreateFramebuffer) X(DestroyFramebuffer) X(CreatePipelineLayout) X(DestroyPipelineLayout)        \
-                        X(CreateGraphicsPipelines) X(DestroyPipeline) X(CreateDescriptorSetLayout)                     \
-                            X(DestroyDescriptorSetLayout) X(CreateDescriptorPool) X(DestroyDescriptorPool)             \
-                                X(AllocateDescriptorSets) X(UpdateDescriptorSets) X(CreateCommandPool)                 \
-                                    X(DestroyCommandPool) X(AllocateCommandBuffers) X(BeginCommandBuffer)              \
-                                        X(EndCommandBuffer) X(CmdBeginRenderPass) X(CmdBindPipeline)                   \
-                                            X(CmdBindDescriptorSets) X(CmdDraw) X(CmdEndRenderPass)                    \
-                                                X(CmdCopyImageToBuffer) X(CmdFillBuffer) X(CreateFence)                \
-                                                    X(DestroyFence) X(QueueSubmit) X(WaitForFences) X(DeviceWaitIdle)
+// Formatting would move every line further in than the one before.
+// clang-format off
+#define VERNIER_COMMANDS(X) \
+    X(EnumeratePhysicalDevices) X(CreateDevice) X(DestroyInstance) X(DestroyDevice) X(GetDeviceQueue) \
+    X(CreateBuffer) X(DestroyBuffer) X(GetBufferMemoryRequirements) X(AllocateMemory) X(FreeMemory) \
+    X(BindBufferMemory) X(MapMemory) X(CreateImage) X(DestroyImage) X(GetImageMemoryRequirements) X(BindImageMemory) \
+    X(CreateImageView) X(DestroyImageView) X(CreateShaderModule) X(DestroyShaderModule) X(CreateRenderPass) \
+    X(DestroyRenderPass) X(CreateFramebuffer) X(DestroyFramebuffer) X(CreatePipelineLayout) X(DestroyPipelineLayout) \
+    X(CreateGraphicsPipelines) X(DestroyPipeline) X(CreateDescriptorSetLayout) X(DestroyDescriptorSetLayout) \
+    X(CreateDescriptorPool) X(DestroyDescriptorPool) X(AllocateDescriptorSets) X(UpdateDescriptorSets) \
+    X(CreateCommandPool) X(DestroyCommandPool) X(AllocateCommandBuffers) X(BeginCommandBuffer) X(EndCommandBuffer) \
+    X(CmdBeginRenderPass) X(CmdBindPipeline) X(CmdBindDescriptorSets) X(CmdDraw) X(CmdEndRenderPass) \
+    X(CmdCopyImageToBuffer) X(CmdFillBuffer) X(CreateFence) X(DestroyFence) X(QueueSubmit) X(WaitForFences) \
+    X(DeviceWaitIdle)
+// clang-format on
 
 PFN_vkGetInstanceProcAddr getProc = nullptr;
 
