@@ -316,8 +316,7 @@ void p13(CaseInput& input) {
 constexpr std::string_view kLines = "Vulkan, Basic Line Segment Rasterization (strict lines)";
 constexpr std::string_view kPoints = "Vulkan, Basic Point Rasterization";
 constexpr std::string_view kBresenham =
-    "needs VK_EXT_line_rasterization: the driver draws strict lines, which are rectangles (P05); the oracle knows the "
-    "rule";
+    "no case: scenes have no line modes; lines_test draws them at the renderer's boundary, the oracle knows the rule";
 
 const std::vector<HardCase> kCases{
     {.id = "P01",
@@ -347,7 +346,7 @@ const std::vector<HardCase> kCases{
      .title = "Smooth and stippled lines",
      .rule = "Coverage grows with area; the phase is an integer.",
      .source = "Vulkan, Line Stipple; Smooth Lines",
-     .unreachable = "needs VK_EXT_line_rasterization, which the driver does not offer"},
+     .unreachable = "no case: scenes have no line modes; lines_test draws them at the renderer's boundary"},
     {"P08", "Attributes along lines in perspective", "Interpolated by the projection on the segment, in perspective.",
      kLines, p08},
     {"P09", "Points of size 0 to 63.875 and NaN, at and off centres",

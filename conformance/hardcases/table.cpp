@@ -142,11 +142,11 @@ std::string tableMarkdown(const Table& table) {
         for (const size_t count : column.counts()) out << ' ' << count << " |";
         out << ' ' << escaped(column.device) << " |\n";
     }
-    out << "\n" << table.rows.size() << " cases run, " << table.unreachable.size() << " are out of reach.\n";
+    out << "\n" << table.rows.size() << " cases run, " << table.unreachable.size() << " are not.\n";
     for (const CaseGroup& group : caseGroups()) writeGroup(out, table, group);
     writeWitnesses(out, table);
     writeCandidates(out, table);
-    out << "\n## Out of reach\n\n| Case | Input | Why |\n| --- | --- | --- |\n";
+    out << "\n## Not run\n\n| Case | Input | Why |\n| --- | --- | --- |\n";
     for (const HardCase* hardCase : table.unreachable) {
         out << "| " << hardCase->id << " | " << escaped(hardCase->title) << " | " << escaped(hardCase->unreachable)
             << " |\n";

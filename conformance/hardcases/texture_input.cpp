@@ -13,7 +13,7 @@ Result<Scene> textureScene(std::string_view name, const TextureTable& table) {
     const uint32_t picture = record.texture("picture", table.format, table.extent, table.levels);
     const uint32_t coordinates =
         record.texture("coordinates", VK_FORMAT_R32G32B32A32_SFLOAT, extent, {bytesOf(table.coordinates)});
-    const uint32_t target = record.colorTarget("color", VK_FORMAT_R32G32B32A32_SFLOAT, extent);
+    const uint32_t target = record.colorTarget("color", table.target, extent);
     const std::string glsl = "#version 450\nlayout(binding = 0) uniform " + table.type +
                              " picture;\nlayout(binding = 1) uniform sampler2D coordinates;\n"
                              "layout(location = 0) out vec4 color;\nvoid main() {\n"

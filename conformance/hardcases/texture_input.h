@@ -17,9 +17,10 @@ struct TextureTable {
     std::vector<std::array<float, 4>> coordinates;              // one pixel each
     std::string expression = "textureLod(picture, c.xy, c.z)";  // a vec4 of `picture` and the coordinates `c`
     std::string type = "sampler2D";
+    VkFormat target = VK_FORMAT_R32G32B32A32_SFLOAT;
 };
 
-/// Draws one row of pixels of four floats.
+/// Draws one row of pixels.
 Result<Scene> textureScene(std::string_view name, const TextureTable& table);
 
 inline VkExtent2D extentOf(const TextureTable& table) {
