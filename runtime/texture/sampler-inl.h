@@ -45,6 +45,13 @@ class Sampler {
     }
 
     void sample() const {
+        if constexpr (kExtended) {
+            const bool derivatives = request_.lodMode == LodMode::implicitLod || request_.lodMode == LodMode::gradients;
+            if (sampler_.maxAnisotropy > 1.0f && derivatives) {
+                forEachVector([&](uint32_t first, uint32_t count) HWY_ATTR { anisotropicVector(first, count); });
+                return;
+            }
+        }
         const bool usesLambda = view_.levelCount > 1 || sampler_.magFilter != sampler_.minFilter;
         if (!usesLambda || request_.lodMode != LodMode::implicitLod || sampler_.unnormalizedCoordinates) {
             forEachVector([&](uint32_t first, uint32_t count) HWY_ATTR {
@@ -507,17 +514,9 @@ class Sampler {
         }
     }
 
-    /// `lambdaPrime`: read where there are levels or filters to choose from, and the filter is isotropic.
+    /// Isotropic. `lambdaPrime`: read where there are levels or filters to choose from.
     HWY_INLINE void sampleVector(uint32_t first, uint32_t count, VF lambdaPrime) const {
         Texel texel;
-        if constexpr (kExtended) {
-            const bool derivatives = request_.lodMode == LodMode::implicitLod || request_.lodMode == LodMode::gradients;
-            if (sampler_.maxAnisotropy > 1.0f && derivatives) {
-                anisotropic(first, count, texel);
-                write(texel, first, count);
-                return;
-            }
-        }
         const Coordinates at = coordinates(first, count);
         if (view_.levelCount == 1 && sampler_.magFilter == sampler_.minFilter) {
             sampleLevel(view_.levels[0], at, hn::MaskFromVec(hn::Zero(F32())), texel);
@@ -540,7 +539,7 @@ class Sampler {
 
     /// "Texel Anisotropic Filtering": the mean of N samples along the longer axis of the footprint. N = ceil(eta), but
     /// no more than the footprint is texels of the base level long: between its texels there is nothing to miss.
-    HWY_NOINLINE void anisotropic(uint32_t first, uint32_t count, Texel& result) const {
+    HWY_NOINLINE void anisotropicVector(uint32_t first, uint32_t count) const {
         const Footprint print = footprint(first, count);
         const Scale scale = scaleOf(print);
         const VF zero = hn::Zero(F32()), one = splatFloat(1.0f), half = splatFloat(0.5f);
@@ -578,8 +577,9 @@ class Sampler {
             });
         }
         unrolled<Source::kPlanes>([&](auto p) VERNIER_INLINE_LAMBDA {
-            result[p] = bitsOf(hn::Add(floatOf(reference[p]), hn::Div(floatOf(sum[p]), samples)));
+            sum[p] = bitsOf(hn::Add(floatOf(reference[p]), hn::Div(floatOf(sum[p]), samples)));
         });
+        write(sum, first, count);
     }
 
     HWY_INLINE void write(const Texel& texel, uint32_t first, uint32_t count) const {
