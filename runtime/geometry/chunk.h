@@ -82,10 +82,16 @@ static_assert((int64_t{2} * kTileSize << kSmallEdgeBits) <= (int64_t{1} << 30));
 inline constexpr int kTinyEdgeBits = 12, kTinySubPixelBits = 8;
 static_assert(int64_t{4} * (kTileSize + 17) << (kTinySubPixelBits + kTinyEdgeBits) < int64_t{1} << 31);
 
-/// A run of Chunk::entries that lie in one tile.
+/// A run of Chunk::entries that lie in one tile. `large`: some of them may cover a large part of it.
 struct TileRange {
     uint32_t tile = 0, first = 0, count = 0;
+    bool large = false;
 };
+
+/// Whether the bounds inside a tile, in pixels, are a large part of it.
+constexpr bool isLargePart(int32_t width, int32_t height) {
+    return width * height >= kTileSize * kTileSize / 8;
+}
 
 /// An entry is the index of a primitive; this bit says that it covers the tile completely.
 inline constexpr uint32_t kCoversTile = 1u << 31;

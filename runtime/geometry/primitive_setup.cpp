@@ -55,7 +55,7 @@ void PrimitiveSetup::begin(Chunk& chunk, const TileGrid& grid, uint32_t primitiv
     entries_.clear();
     touched_.clear();
     stipple_ = 0;
-    if (perTile_.size() < grid.count()) perTile_.resize(grid.count(), 0);
+    if (perTile_.size() < grid.count()) perTile_.resize(grid.count());
     // Most draws add a primitive for each of the chunk's; growing step by step would copy them several times.
     if (primitives > chunk.primitives.capacity()) chunk.primitives.reserve(primitives);
 }
@@ -229,7 +229,8 @@ void PrimitiveSetup::bin(const Primitive& p, uint32_t index, const PreparedDraw&
     const uint32_t ty0 = row(p.bounds[1]), ty1 = row(p.bounds[3]);
     const bool spansTile = p.bounds[2] - p.bounds[0] == kTileSize - 1 && p.bounds[3] - p.bounds[1] == kTileSize - 1;
     if (tx0 == tx1 && ty0 == ty1 && !spansTile) {
-        addEntry(firstTile + ty0 * grid_.columns + tx0, index);
+        const bool large = isLargePart(p.bounds[2] - p.bounds[0] + 1, p.bounds[3] - p.bounds[1] + 1);
+        addEntry(firstTile + ty0 * grid_.columns + tx0, index, large);
         return;
     }
     // Edge functions at the corner of the first tile, and how far they change over one tile.
@@ -258,7 +259,10 @@ void PrimitiveSetup::bin(const Primitive& p, uint32_t index, const PreparedDraw&
             const int32_t y = grid_.y0 + static_cast<int32_t>(ty) * kTileSize;
             inside &= p.bounds[0] <= x && p.bounds[1] <= y && p.bounds[2] >= x + kTileSize - 1 &&
                       p.bounds[3] >= y + kTileSize - 1;
-            addEntry(firstTile + ty * grid_.columns + tx, index | (inside && mayCoverTiles ? kCoversTile : 0));
+            const int32_t width = std::min(p.bounds[2] - x, kTileSize - 1) - std::max(p.bounds[0] - x, 0) + 1;
+            const int32_t height = std::min(p.bounds[3] - y, kTileSize - 1) - std::max(p.bounds[1] - y, 0) + 1;
+            addEntry(firstTile + ty * grid_.columns + tx, index | (inside && mayCoverTiles ? kCoversTile : 0),
+                     isLargePart(width, height));
         }
     }
 }
@@ -279,13 +283,15 @@ void PrimitiveSetup::binShape(const Primitive& p, const Shape& shape, uint32_t i
             const double cx = (grid_.x0 + static_cast<double>(tx) * kTileSize) * unit + half;
             const double cy = (grid_.y0 + static_cast<double>(ty) * kTileSize) * unit + half;
             const bool near = std::abs((cx - shape.ax) * dy - (cy - shape.ay) * dx) <= band;
-            if (shape.kind == Shape::Kind::square || near) addEntry(firstTile + ty * grid_.columns + tx, index);
+            if (shape.kind == Shape::Kind::square || near) addEntry(firstTile + ty * grid_.columns + tx, index, false);
         }
     }
 }
 
-void PrimitiveSetup::addEntry(uint32_t tile, uint32_t entry) {
-    if (perTile_[tile]++ == 0) touched_.push_back(tile);
+void PrimitiveSetup::addEntry(uint32_t tile, uint32_t entry, bool large) {
+    TileCount& count = perTile_[tile];
+    if (count.entries++ == 0) touched_.push_back(tile);
+    count.large |= large;
     entries_.push_back({tile, entry});
 }
 
@@ -293,14 +299,15 @@ void PrimitiveSetup::finish() {
     chunk_->stippleEnd = stipple_;
     uint32_t first = 0;
     for (const uint32_t tile : touched_) {
-        chunk_->ranges.push_back({tile, first, perTile_[tile]});
-        const uint32_t count = perTile_[tile];
-        perTile_[tile] = first;  // from here on: where the tile's next entry goes
+        TileCount& tileCount = perTile_[tile];
+        chunk_->ranges.push_back({tile, first, tileCount.entries, tileCount.large});
+        const uint32_t count = tileCount.entries;
+        tileCount.entries = first;  // from here on: where the tile's next entry goes
         first += count;
     }
     chunk_->entries.resize(entries_.size());
-    for (const Entry& entry : entries_) chunk_->entries[perTile_[entry.tile]++] = entry.primitive;
-    for (const uint32_t tile : touched_) perTile_[tile] = 0;
+    for (const Entry& entry : entries_) chunk_->entries[perTile_[entry.tile].entries++] = entry.primitive;
+    for (const uint32_t tile : touched_) perTile_[tile] = {};
 }
 
 }  // namespace vernier

@@ -83,12 +83,16 @@ class PrimitiveSetup {
                   const WindowVertex& a, const WindowVertex& b, const std::array<float, 3>* point);
     void bin(const Primitive& primitive, uint32_t index, const PreparedDraw& draw);
     void binShape(const Primitive& primitive, const Shape& shape, uint32_t index, uint32_t subPixelBits);
-    void addEntry(uint32_t tile, uint32_t entry);
+    void addEntry(uint32_t tile, uint32_t entry, bool large);
 
     Chunk* chunk_ = nullptr;
     TileGrid grid_;
     std::vector<Entry> entries_;
-    std::vector<uint32_t> perTile_;  // zero between chunks
+    struct TileCount {
+        uint32_t entries = 0;
+        bool large = false;
+    };
+    std::vector<TileCount> perTile_;  // zero between chunks
     std::vector<uint32_t> touched_;
     double stipple_ = 0;  // the counter of line stipple, in pixels
 };

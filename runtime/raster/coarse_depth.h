@@ -17,9 +17,10 @@ class CoarseDepth {
     /// The whole tile was cleared to this.
     void setCleared(DepthStorage storage, float depth);
 
-    /// Removes the blocks in which no sample of the primitive can pass; returns how many are left, in order.
+    /// Removes the blocks in which no sample of the primitive can pass; returns how many are left, in order. Bit
+    /// blockIndex() of `certain`: every sample of the block passes.
     uint32_t reject(const DepthPlan& plan, const TrianglePlanes& planes, int32_t tileX, int32_t tileY, uint32_t samples,
-                    BlockCoverage* blocks, uint32_t count) const;
+                    BlockCoverage* blocks, uint32_t count, uint64_t& certain) const;
     /// After a depth test that wrote where `blocks` have bits.
     void update(const DepthPlan& plan, const TrianglePlanes& planes, int32_t tileX, int32_t tileY, uint32_t samples,
                 const BlockCoverage* blocks, uint32_t count);

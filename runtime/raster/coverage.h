@@ -17,6 +17,11 @@ struct BlockCoverage {
     std::array<uint64_t, kMaxSamples> masks;  // of the samples that the draw has; the others are not set
 };
 
+/// The number of a block in its tile, row by row.
+inline uint32_t blockIndex(const BlockCoverage& block) {
+    return static_cast<uint32_t>(block.y / kBlockSize * (kTileSize / kBlockSize) + block.x / kBlockSize);
+}
+
 /// Moves a block forward in its array.
 inline void moveBlock(BlockCoverage* blocks, uint32_t from, uint32_t to, uint32_t samples) {
     if (from == to) return;

@@ -184,53 +184,139 @@ HWY_INLINE VU applyStencilOp(VkStencilOp op, VU stored, VU reference) {
 
 alignas(64) constexpr float kColumns[8] = {0, 1, 2, 3, 4, 5, 6, 7};
 
+/// The depths of a block's pixels at one sample, as the format keeps them: the operations of depthOf(), those that all
+/// rows have in common done once.
 template <class Format>
-uint32_t testBlocks(const DepthTestInput& in, BlockCoverage* blocks, uint32_t count) {
-    const F8 f;
-    using Value = typename Format::Value;
-    const hn::DFromV<Value> dv;
-    constexpr uint32_t kLanes = hn::MaxLanes(F8());
-    const TrianglePlanes& planes = *in.planes;
-    const Comparison<decltype(dv)> compare(in.plan->compare);
-    const bool write = in.plan->write;
+class BlockDepths {
+  public:
+    static constexpr uint32_t kLanes = hn::MaxLanes(F8()), kParts = 8 / kLanes;
+
+    HWY_INLINE BlockDepths(const DepthTestInput& in, const BlockCoverage& block, uint32_t sample)
+        : planes_(*in.planes), y_(in.tileY + block.y - planes_.anchorY) {
+        const F8 f;
+        offsetX_ = in.positions[sample].x() - planes_.fractionX;
+        offsetY_ = in.positions[sample].y() - planes_.fractionY;
+        const auto x = static_cast<float>(in.tileX + block.x - planes_.anchorX);
+        for (uint32_t part = 0; part < kParts; ++part) {
+            // Whole numbers below 2^16: the sum is exact.
+            columns_[part] = hn::Add(hn::Load(f, kColumns + part * kLanes), hn::Set(f, x));
+            slopes_[part] = hn::Mul(hn::Set(f, planes_.zx), hn::Add(columns_[part], hn::Set(f, offsetX_)));
+        }
+    }
+
+    HWY_INLINE typename Format::Value at(int32_t row, uint32_t part) const {
+        const F8 f;
+        const auto y = static_cast<float>(y_ + row);
+        if (HWY_UNLIKELY(planes_.precise))
+            return Format::encode(
+                depthOf(f, planes_, columns_[part], hn::Set(f, y), hn::Set(f, offsetX_), hn::Set(f, offsetY_)));
+        const VF rise = hn::Set(f, planes_.zy * (y + offsetY_));
+        return Format::encode(clampDepth(f, planes_, hn::Add(hn::Set(f, planes_.z0), hn::Add(slopes_[part], rise))));
+    }
+
+  private:
+    const TrianglePlanes& planes_;
+    int32_t y_;
+    float offsetX_, offsetY_;
+    VF columns_[kParts], slopes_[kParts];
+};
+
+/// Writes the depths of a block of which every sample passes.
+template <class Format>
+void writeBlock(const DepthTestInput& in, const BlockCoverage& block) {
+    using Depths = BlockDepths<Format>;
+    const hn::DFromV<typename Format::Value> dv;
+    for (uint32_t s = 0; s < in.samples; ++s) {
+        const Depths depths(in, block, s);
+        for (int32_t row = 0; row < kBlockSize; ++row) {
+            const auto covered = static_cast<uint8_t>(block.masks[s] >> (8 * row) & 0xFF);
+            if (covered == 0) continue;
+            std::byte* texels = in.target.texel(in.tileX + block.x, in.tileY + block.y + row, s);
+            for (uint32_t part = 0; part < Depths::kParts; ++part) {
+                std::byte* place = texels + part * Depths::kLanes * Format::kTexelBytes;
+                auto z = depths.at(row, part);
+                if (covered != 0xFF) {
+                    const uint8_t maskBytes[8] = {static_cast<uint8_t>(covered >> part * Depths::kLanes)};
+                    z = hn::IfThenElse(hn::LoadMaskBits(dv, maskBytes), z, Format::load(place));
+                }
+                Format::store(z, place);
+            }
+        }
+    }
+}
+
+/// Returns the pixels of a sample that pass.
+template <class Format, class Compare>
+HWY_INLINE uint64_t testBlock(const DepthTestInput& in, const BlockCoverage& block, uint32_t sample,
+                              const Compare& compare) {
+    using Depths = BlockDepths<Format>;
+    const hn::DFromV<typename Format::Value> dv;
+    const uint64_t covered = block.masks[sample];
+    if (covered == 0) return 0;
+    const Depths depths(in, block, sample);
+    const int32_t firstRow = static_cast<int32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(covered)) >> 3;
+    const int32_t lastRow = static_cast<int32_t>(63 - hwy::Num0BitsAboveMS1Bit_Nonzero64(covered)) >> 3;
+    uint64_t passed = 0;
+    for (int32_t row = firstRow; row <= lastRow; ++row) {
+        std::byte* texels = in.target.texel(in.tileX + block.x, in.tileY + block.y + row, sample);
+        for (uint32_t part = 0; part < Depths::kParts; ++part) {
+            const uint32_t x = part * Depths::kLanes;
+            const uint8_t maskBytes[8] = {static_cast<uint8_t>((covered >> (8 * row) & 0xFF) >> x)};
+            const auto z = depths.at(row, part);
+            std::byte* place = texels + x * Format::kTexelBytes;
+            const auto stored = Format::load(place);
+            const auto pass = hn::And(compare(z, stored), hn::LoadMaskBits(dv, maskBytes));
+            uint8_t passBits[8] = {};
+            hn::StoreMaskBits(dv, pass, passBits);
+            passed |= static_cast<uint64_t>(passBits[0]) << (8 * row + static_cast<int32_t>(x));
+            if (in.plan->write && passBits[0] != 0) Format::store(hn::IfThenElse(pass, z, stored), place);
+        }
+    }
+    return passed;
+}
+
+template <class Format, class Compare>
+uint32_t testBlocksBy(const Compare& compare, const DepthTestInput& in, BlockCoverage* blocks, uint32_t count) {
     uint32_t kept = 0;
     for (uint32_t b = 0; b < count; ++b) {
         BlockCoverage& block = blocks[b];
         uint64_t any = 0;
-        const int32_t blockX = in.tileX + block.x, blockY = in.tileY + block.y;
-        for (uint32_t s = 0; s < in.samples; ++s) {
-            const uint64_t covered = block.masks[s];
-            uint64_t passed = 0;
-            if (covered == 0) continue;
-            const VF ox = hn::Set(f, in.positions[s].x() - planes.fractionX);
-            const VF oy = hn::Set(f, in.positions[s].y() - planes.fractionY);
-            const int32_t firstRow = static_cast<int32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero64(covered)) >> 3;
-            const int32_t lastRow = static_cast<int32_t>(63 - hwy::Num0BitsAboveMS1Bit_Nonzero64(covered)) >> 3;
-            for (int32_t row = firstRow; row <= lastRow; ++row) {
-                std::byte* texels = in.target.texel(blockX, blockY + row, s);
-                const VF y = hn::Set(f, static_cast<float>(blockY + row - planes.anchorY));
-                for (uint32_t x = 0; x < 8; x += kLanes) {
-                    const uint8_t bits = static_cast<uint8_t>((covered >> (8 * row) & 0xFF) >> x);
-                    const uint8_t maskBytes[8] = {bits};
-                    // Whole numbers below 2^16: the sum is exact.
-                    const VF column =
-                        hn::Add(hn::Load(f, kColumns + x), hn::Set(f, static_cast<float>(blockX - planes.anchorX)));
-                    const Value z = Format::encode(depthOf(f, planes, column, y, ox, oy));
-                    std::byte* place = texels + x * Format::kTexelBytes;
-                    const Value stored = Format::load(place);
-                    const auto pass = hn::And(compare(z, stored), hn::LoadMaskBits(dv, maskBytes));
-                    uint8_t passBits[8] = {};
-                    hn::StoreMaskBits(dv, pass, passBits);
-                    passed |= static_cast<uint64_t>(passBits[0]) << (8 * row + static_cast<int32_t>(x));
-                    if (write && passBits[0] != 0) Format::store(hn::IfThenElse(pass, z, stored), place);
-                }
-            }
-            block.masks[s] = passed;
-            any |= passed;
+        if ((in.certain >> blockIndex(block) & 1) != 0) {
+            if (in.plan->write) writeBlock<Format>(in, block);
+            any = ~uint64_t{0};
+        } else {
+            for (uint32_t s = 0; s < in.samples; ++s) any |= block.masks[s] = testBlock<Format>(in, block, s, compare);
         }
         if (any != 0) moveBlock(blocks, b, kept++, in.samples);
     }
     return kept;
+}
+
+/// a <= b; false for NaN.
+template <class V>
+HWY_INLINE hn::MFromD<hn::DFromV<V>> atMost(V a, V b) {
+    if constexpr (hwy::IsFloat<hn::TFromV<V>>())
+        return hn::Le(a, b);
+    else
+        return hn::Not(hn::Gt(a, b));
+}
+
+template <class Format>
+uint32_t testBlocks(const DepthTestInput& in, BlockCoverage* blocks, uint32_t count) {
+    using V = typename Format::Value;
+    // The usual comparisons are one instruction.
+    switch (in.plan->compare) {
+        case VK_COMPARE_OP_LESS:
+            return testBlocksBy<Format>([](V a, V b) HWY_ATTR { return hn::Lt(a, b); }, in, blocks, count);
+        case VK_COMPARE_OP_LESS_OR_EQUAL:
+            return testBlocksBy<Format>([](V a, V b) HWY_ATTR { return atMost(a, b); }, in, blocks, count);
+        case VK_COMPARE_OP_GREATER:
+            return testBlocksBy<Format>([](V a, V b) HWY_ATTR { return hn::Gt(a, b); }, in, blocks, count);
+        case VK_COMPARE_OP_GREATER_OR_EQUAL:
+            return testBlocksBy<Format>([](V a, V b) HWY_ATTR { return atMost(b, a); }, in, blocks, count);
+        default:
+            return testBlocksBy<Format>(Comparison<hn::DFromV<V>>(in.plan->compare), in, blocks, count);
+    }
 }
 
 /// Depth and stencil of a row (specification, "Stencil Test"): the same as testSample() for 8 (or 4) pixels.

@@ -17,6 +17,7 @@ struct DepthTestInput {
     uint32_t samples;
     const SamplePosition* positions;
     const DepthStencilState::Face* face;  // of the stencil test; nullptr: there is none
+    uint64_t certain;                     // without a stencil test, bit blockIndex(): all samples of the block pass
 };
 
 /// Tests the samples of the blocks and writes the depth of those that pass, and the stencil of all. Clears the bits of

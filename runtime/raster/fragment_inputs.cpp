@@ -29,41 +29,50 @@ void FragmentStage::bindInputs() {
     }
 }
 
-void FragmentStage::fillInputs(const FragmentBatch& batch) {
-    const auto evaluate = [&](InterpolationInput& input, const VaryingTargets& targets) {
-        const auto setTargets = [&] {
-            input.smooth = targets.smooth;
-            input.linear = targets.linear;
-        };
-        // In double, the weights in float serve gl_FragCoord alone.
-        if (!plan_->preciseInterpolation) setTargets();
-        const uint32_t divided = interpolate_(input);
-        statistics_.perspectiveDivides += batch.partial ? std::min(divided, batch.running) : divided;
-        if (!plan_->preciseInterpolation) return;
-        setTargets();
-        interpolatePrecise(input);
+/// What interpolation needs besides the batch. Filled once per draw: clearing it costs more than a block's colours.
+void FragmentStage::bindInterpolation() {
+    const auto targetsOf = [](const VaryingTargets& targets, InterpolationInput& input) {
+        input.smooth = targets.smooth;
+        input.linear = targets.linear;
     };
-    InterpolationInput input{};
-    input.batch = &batch;
-    input.capacity = capacity_;
-    input.perspective = plan_->smoothCount > 0;
-    input.flat = flatTargets_;
+    centreInput_ = {};
+    centreInput_.capacity = capacity_;
+    centreInput_.perspective = plan_->smoothCount > 0;
+    targetsOf(centreTargets_, centreInput_);
+    centroidInput_ = centreInput_;
+    targetsOf(centroidTargets_, centroidInput_);
+    centroidInput_.offsetX = centroidX_.data();
+    centroidInput_.offsetY = centroidY_.data();
+    centreInput_.flat = flatTargets_;
     if (plan_->perSample) {
-        input.offsetX = batch.offsetX.data();
-        input.offsetY = batch.offsetY.data();
+        centreInput_.offsetX = batch_.offsetX.data();
+        centreInput_.offsetY = batch_.offsetY.data();
     }
     if (plan_->usesFragCoord) {
-        input.fragZ = fragZ_.data();
-        input.fragInverseW = fragInverseW_.data();
+        centreInput_.fragZ = fragZ_.data();
+        centreInput_.fragInverseW = fragInverseW_.data();
     }
-    evaluate(input, centreTargets_);
+}
+
+void FragmentStage::interpolate(const FragmentBatch& batch, InterpolationInput& input) {
+    input.batch = &batch;
+    const bool precise = plan_->preciseInterpolation;
+    InterpolationInput others;
+    if (precise) {
+        // The weights in float serve gl_FragCoord alone.
+        others = input;
+        others.smooth = others.linear = {};
+    }
+    const uint32_t divided = interpolate_(precise ? others : input);
+    statistics_.perspectiveDivides += batch.partial ? std::min(divided, batch.running) : divided;
+    if (precise) interpolatePrecise(input);
+}
+
+void FragmentStage::fillInputs(const FragmentBatch& batch) {
+    interpolate(batch, centreInput_);
     if (!centroidTargets_.smooth.empty() || !centroidTargets_.linear.empty()) {
         centroidOffsets(batch);
-        input.offsetX = centroidX_.data();
-        input.offsetY = centroidY_.data();
-        input.fragZ = input.fragInverseW = nullptr;
-        input.flat = {};
-        evaluate(input, centroidTargets_);
+        interpolate(batch, centroidInput_);
     }
     fillBuiltins(batch);
 }

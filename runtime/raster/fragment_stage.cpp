@@ -102,6 +102,7 @@ void FragmentStage::bind(const PreparedDraw& draw, uint64_t token) {
     context_ = &entry.context;
     capacity_ = std::min(program->lanes(), kMaxFragmentLanes);
     bindInputs();
+    bindInterpolation();
     bindColors(isa);
     readsPixels_ = plan_->smoothLines || !plan_->fragmentBuiltins.empty() || plan_->preciseInterpolation ||
                    plan_->needsCentroid || !plan_->keepsCoverage;
@@ -147,7 +148,7 @@ void FragmentStage::add(const BlockCoverage& block) {
         any |= block.masks[s];
         all &= block.masks[s];
     }
-    const auto index = static_cast<size_t>(block.y / kBlockSize * (kTileSize / kBlockSize) + block.x / kBlockSize);
+    const uint32_t index = blockIndex(block);
     // With several samples, a lane's coverage is more than a bit.
     const bool atOnce =
         !plan_->perSample && (all == ~uint64_t{0} || (samples_ == 1 && countBits(any) >= kMostOfABlock));
@@ -168,6 +169,7 @@ void FragmentStage::add(const BlockCoverage& block) {
         addPixels(block, any);
     }
     inBatch_[index] |= any;
+    blocksInBatch_ |= uint64_t{1} << index;
 }
 
 void FragmentStage::placeBlock() {
@@ -265,7 +267,8 @@ void FragmentStage::flush() {
         batch_.count = 0;
         batch_.segmentCount = 0;
         batch_.spanCount = 0;
-        inBatch_.fill(0);
+        for (; blocksInBatch_ != 0; blocksInBatch_ &= blocksInBatch_ - 1)
+            inBatch_[static_cast<uint32_t>(std::countr_zero(blocksInBatch_))] = 0;
         // The primitive being added goes on in the next batch.
         if (planesCount_ > 1) planes_[0] = planes_[planesCount_ - 1];
     }

@@ -51,11 +51,13 @@ class FragmentStage {
     void addQuads(const BlockCoverage& block, uint64_t any, uint32_t samples, uint32_t sample);
     void addSamples(const BlockCoverage& block, uint32_t sample);
     void bindInputs();
+    void bindInterpolation();
     void placeBlock();
     void runBlock(const BlockCoverage& block, uint64_t pixels);
 
     void run(FragmentBatch& batch);
     void fillInputs(const FragmentBatch& batch);
+    void interpolate(const FragmentBatch& batch, InterpolationInput& input);
     void fillBuiltins(const FragmentBatch& batch);
     void fillBuiltin(const FragmentBatch& batch, const BuiltinSlot& builtin, float* plane);
     void centroidOffsets(const FragmentBatch& batch);
@@ -83,6 +85,7 @@ class FragmentStage {
     };
     VaryingTargets centreTargets_, centroidTargets_;
     std::vector<VaryingTarget> flatTargets_;
+    InterpolationInput centreInput_{}, centroidInput_{};
     InterpolateFn interpolate_ = nullptr;
     PlaceLanesFn placeLanes_ = nullptr;
     SpreadPixelsFn spreadPixels_ = nullptr;
@@ -111,6 +114,7 @@ class FragmentStage {
     alignas(64) std::array<float, kLaneRoom> zeros_, ones_;
     alignas(64) std::array<float, kLaneRoom> smoothAlpha_;  // of colour 0, times the area that a smooth line covers
     std::array<uint64_t, kBlocksPerTile> inBatch_{};        // pixels of the tile that wait in batch_
+    uint64_t blocksInBatch_ = 0;                            // blocks that have some
     bool outOfBudget_ = false;
     PassStatistics statistics_;
     ContextCache contexts_;

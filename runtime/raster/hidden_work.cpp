@@ -2,27 +2,36 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 
 #include "runtime/raster/coverage.h"
+#include "runtime/raster/depth_range.h"
 
 namespace vernier {
 namespace {
 
-/// Its primitives leave no trace but colours.
-bool touchesColorsOnly(const PreparedDraw& draw) {
-    const ir::Program* fragment = draw.call.pipeline->fragmentIr();
-    const DepthPlan& depth = draw.plan->depth;
-    return !depth.any() && !depth.write && (fragment == nullptr || !fragment->hasSideEffects);
+/// What the primitives of a draw do to a tile's attachments.
+struct DrawEffect {
+    bool tracesOnly = false;  // nothing is left of them but colours, and depths if writesDepth
+    bool writesDepth = false;
+    bool depthKnown = false;  // the depths written are those of the primitive
+    bool replaces = false;    // they replace every colour wherever they cover and pass the depth test
+    bool tests = false;       // of what replaces: it must be nearer than what is there
+    bool nearIsGreater = false;
+};
+
+bool hasDepth(const PassTargets& targets) {
+    return targets.depthStencil.data != nullptr;
 }
 
-/// Its primitives replace every colour attachment wherever they cover.
-bool replacesEverything(const PassTargets& targets, const PreparedDraw& draw) {
+/// Its primitives replace every colour attachment wherever they cover and pass the tests.
+bool replacesColors(const PassTargets& targets, const PreparedDraw& draw) {
     const Plan& plan = *draw.plan;
     const ir::Program* fragment = draw.call.pipeline->fragmentIr();
     const uint32_t allSamples = (1u << plan.samples) - 1;
     if (!plan.runsFragments || fragment == nullptr || fragment->canDiscard || fragment->writesSampleMask ||
-        plan.alphaToCoverage || (plan.sampleMask & allSamples) != allSamples || !touchesColorsOnly(draw))
+        plan.alphaToCoverage || (plan.sampleMask & allSamples) != allSamples)
         return false;
     for (uint32_t attachment = 0; attachment < targets.colorCount; ++attachment) {
         if (targets.colors[attachment].data == nullptr) continue;
@@ -35,8 +44,24 @@ bool replacesEverything(const PassTargets& targets, const PreparedDraw& draw) {
     return true;
 }
 
-const PreparedDraw& drawOf(const TileWork& item, uint32_t entry, std::span<const PreparedDraw> draws) {
-    return draws[item.chunk->primitives[item.chunk->entries[entry] & ~kCoversTile].draw];
+DrawEffect effectOf(const PassTargets& targets, const PreparedDraw& draw) {
+    constexpr uint8_t kLess = 1, kGreater = 4, kAlways = 7;  // bits of DepthPlan::compare
+    const Plan& plan = *draw.plan;
+    const ir::Program* fragment = draw.call.pipeline->fragmentIr();
+    const DepthPlan& depth = plan.depth;
+    DrawEffect effect;
+    effect.tracesOnly = (fragment == nullptr || !fragment->hasSideEffects) && !(hasDepth(targets) && depth.stencil);
+    effect.writesDepth = hasDepth(targets) && depth.write;
+    effect.depthKnown = plan.fragDepthSlot == kNoSlot;
+    if (!effect.tracesOnly || !replacesColors(targets, draw)) return effect;
+    effect.replaces = true;
+    if (!hasDepth(targets) || !depth.any()) return effect;
+    const bool ordered =
+        (depth.compare & (kLess | kGreater)) == kLess || (depth.compare & (kLess | kGreater)) == kGreater;
+    effect.replaces = effect.depthKnown && !depth.bounds && (depth.compare == kAlways || ordered);
+    effect.tests = depth.test && depth.compare != kAlways;
+    effect.nearIsGreater = (depth.compare & kGreater) != 0;
+    return effect;
 }
 
 /// Primitives that cover part of a tile are looked at so often per tile, at most: coverage costs time, too.
@@ -60,18 +85,25 @@ class ReplacedPixels {
         }
     }
 
-    void add(const PreparedDraw& draw, const Primitive& primitive) {
+    /// Returns whether the primitive covers nothing that was replaced before.
+    bool add(const PreparedDraw& draw, const Primitive& primitive) {
         const uint32_t samples = draw.plan->samples;
         const TileEdges edges =
             tileEdges(primitive, tile_.tileX, tile_.tileY, draw.subPixelBits, samples, draw.positions);
         std::array<BlockCoverage, kBlocksPerTile> blocks;
         const uint32_t count = coverTileFunction(draw.call.pipeline->isa())(edges, blocks.data());
+        bool apart = true;
         for (uint32_t b = 0; b < count; ++b) {
-            uint64_t all = ~uint64_t{0};
-            for (uint32_t s = 0; s < samples; ++s) all &= blocks[b].masks[s];
-            missing_[static_cast<uint32_t>(blocks[b].y / kBlockSize) * kBlocksAcross +
-                     static_cast<uint32_t>(blocks[b].x / kBlockSize)] &= ~all;
+            uint64_t all = ~uint64_t{0}, any = 0;
+            for (uint32_t s = 0; s < samples; ++s) {
+                all &= blocks[b].masks[s];
+                any |= blocks[b].masks[s];
+            }
+            uint64_t& missing = missing_[blockIndex(blocks[b])];
+            apart &= (any & ~missing) == 0;
+            missing &= ~all;
         }
+        return apart;
     }
 
     bool complete() const {
@@ -84,66 +116,130 @@ class ReplacedPixels {
     std::array<uint64_t, kBlocksPerTile> missing_{};
 };
 
-/// The last primitive from which on the whole tile is replaced.
-VisibleStart lastReplacement(const PassTargets& targets, const TileInput& tile) {
-    uint64_t before = 0;  // entries not yet looked at
-    for (const TileWork& item : tile.work) before += item.count;
-    std::optional<ReplacedPixels> replaced;
-    const PreparedDraw* known = nullptr;  // of which it is known whether it replaces everything
-    bool replaces = false;
-    uint32_t partial = 0;
-    for (size_t item = tile.work.size(); item-- > 0;) {
-        const TileWork& work = tile.work[item];
-        if (work.clear != nullptr) continue;
-        for (uint32_t n = work.first + work.count; n-- > work.first;) {
-            const uint32_t entry = work.chunk->entries[n];
-            const Primitive& primitive = work.chunk->primitives[entry & ~kCoversTile];
-            const PreparedDraw& draw = tile.draws[primitive.draw];
-            --before;
-            if (&draw != known) {
-                known = &draw;
-                replaces = replacesEverything(targets, draw);
+/// Looks at a tile's work from the end: first for primitives that together replace it, then at what they hide.
+class HiddenWork {
+  public:
+    HiddenWork(const PassTargets& targets, const TileInput& tile) : targets_(targets), tile_(tile) {}
+
+    VisibleStart find() {
+        for (const TileWork& item : tile_.work) before_ += item.count;
+        for (size_t item = tile_.work.size(); item-- > 0;) {
+            const TileWork& work = tile_.work[item];
+            if (work.clear != nullptr) {
+                if ((tests_ || start_.replacesColors) && work.clear->aspects != VK_IMAGE_ASPECT_COLOR_BIT) return {};
+                continue;
             }
-            if (!replaces || primitive.shape != kNoShape || !draw.viewport(primitive.viewport).sampleAreas.empty())
-                continue;
-            if ((entry & kCoversTile) != 0) return {item, n, true};
-            // Worth the while only for large parts of a tile with work before them.
-            const int32_t width = std::min<int32_t>(primitive.bounds[2] + 1, tile.rect.x1) -
-                                  std::max<int32_t>(primitive.bounds[0], tile.rect.x0);
-            const int32_t height = std::min<int32_t>(primitive.bounds[3] + 1, tile.rect.y1) -
-                                   std::max<int32_t>(primitive.bounds[1], tile.rect.y0);
-            if (partial == kMaxPartialCovers || before + partial == 0 || width * height < kTileSize * kTileSize / 8)
-                continue;
-            if (!replaced) replaced.emplace(tile);
-            replaced->add(draw, primitive);
-            ++partial;
-            if (replaced->complete()) return {item, n, true};
+            for (uint32_t n = work.first + work.count; n-- > work.first;)
+                if (!visit(item, n)) return {};
         }
+        if (!start_.replacesColors || (tests_ && !beatsCleared())) return {};
+        return start_;
     }
-    return {};
-}
+
+  private:
+    /// Returns false when the primitive's traces may outlive what replaces the tile.
+    bool visit(size_t item, uint32_t n) {
+        const TileWork& work = tile_.work[item];
+        const uint32_t entry = work.chunk->entries[n];
+        const Primitive& primitive = work.chunk->primitives[entry & ~kCoversTile];
+        const PreparedDraw& draw = tile_.draws[primitive.draw];
+        --before_;
+        if (&draw != draw_) {
+            draw_ = &draw;
+            effect_ = effectOf(targets_, draw);
+        }
+        if (!start_.replacesColors && joins(primitive)) {
+            const bool whole = (entry & kCoversTile) != 0;
+            if (whole || isWorthCovering(primitive)) {
+                const bool first = !replaced_;
+                if (!replaced_) replaced_.emplace(tile_);
+                const bool apart = whole ? first : replaced_->add(draw, primitive);
+                if (tests_ && !apart && !staysBehind(primitive)) return false;
+                include(primitive);
+                ++partial_;
+                if (whole || replaced_->complete()) start_ = {item, n, true};
+                return true;
+            }
+        }
+        if (!tests_ && !start_.replacesColors) {
+            // What it does besides may depend on the depths that it finds.
+            if (replaced_) mayHideDepths_ &= effect_.tracesOnly;
+            return true;
+        }
+        return effect_.tracesOnly && (!start_.replacesColors || !effect_.writesDepth || mayHideDepths_) &&
+               (!tests_ || staysBehind(primitive));
+    }
+
+    /// It may be one of the primitives that replace the tile together.
+    bool joins(const Primitive& primitive) const {
+        return effect_.replaces && primitive.shape == kNoShape &&
+               draw_->viewport(primitive.viewport).sampleAreas.empty() &&
+               (!effect_.tests || (tile_.cleared && (!tests_ || nearIsGreater_ == effect_.nearIsGreater)));
+    }
+
+    /// Only large parts of a tile with work before them.
+    bool isWorthCovering(const Primitive& primitive) const {
+        const int32_t width = std::min<int32_t>(primitive.bounds[2] + 1, tile_.rect.x1) -
+                              std::max<int32_t>(primitive.bounds[0], tile_.rect.x0);
+        const int32_t height = std::min<int32_t>(primitive.bounds[3] + 1, tile_.rect.y1) -
+                               std::max<int32_t>(primitive.bounds[1], tile_.rect.y0);
+        return partial_ < kMaxPartialCovers && before_ + partial_ != 0 && isLargePart(width, height);
+    }
+
+    /// Depths of the primitive, the near ones least.
+    DepthRange depthsOf(const Primitive& primitive) const {
+        const ViewportSetup& viewport = draw_->viewport(primitive.viewport);
+        return oriented(primitiveDepths(draw_->plan->depth.storage, primitive, viewport.depthLow, viewport.depthHigh));
+    }
+    DepthRange oriented(const DepthRange& range) const {
+        return nearIsGreater_ ? DepthRange{-range.high, -range.low} : range;
+    }
+
+    void include(const Primitive& primitive) {
+        mayHideDepths_ &= effect_.writesDepth;
+        if (!effect_.tests) return;
+        tests_ = true;
+        nearIsGreater_ = effect_.nearIsGreater;
+        const double farthest = depthsOf(primitive).high;
+        // NaN stays: nothing compares with it.
+        if (farthest_ == farthest_ && !(farthest <= farthest_)) farthest_ = farthest;
+    }
+
+    /// Whatever it writes, all that replaces the tile passes the depth test.
+    bool staysBehind(const Primitive& primitive) const {
+        return !effect_.writesDepth || (effect_.depthKnown && depthsOf(primitive).low > farthest_);
+    }
+
+    bool beatsCleared() const {
+        const RenderTarget& depth = targets_.depthStencil;
+        const double value = double{depth.clear.depthStencil.depth}, step = depthQuantum(depthStorage(depth.format));
+        return oriented({value - step, value + step}).low > farthest_;
+    }
+
+    const PassTargets& targets_;
+    const TileInput& tile_;
+    uint64_t before_ = 0;  // entries not yet looked at
+    const PreparedDraw* draw_ = nullptr;
+    DrawEffect effect_;  // of draw_
+    // Of the primitives that replace the tile.
+    VisibleStart start_;
+    std::optional<ReplacedPixels> replaced_;
+    uint32_t partial_ = 0;
+    bool mayHideDepths_ = true;                   // they replace depths, too
+    bool tests_ = false, nearIsGreater_ = false;  // some have to be nearer than what is there
+    double farthest_ = -std::numeric_limits<double>::infinity();
+};
 
 }  // namespace
 
 bool mayHideWork(const PassTargets& targets, std::span<const PreparedDraw> draws) {
     return std::any_of(draws.begin(), draws.end(),
-                       [&](const PreparedDraw& draw) { return replacesEverything(targets, draw); });
+                       [&](const PreparedDraw& draw) { return effectOf(targets, draw).replaces; });
 }
 
 VisibleStart visibleStart(const PassTargets& targets, const TileInput& tile) {
-    const std::span<const TileWork> work = tile.work;
-    const VisibleStart start = lastReplacement(targets, tile);
-    if (!start.replacesColors) return {};
-    for (size_t item = 0; item <= start.item; ++item) {
-        if (const ClearCommand* clear = work[item].clear; clear != nullptr) {
-            if (clear->aspects != VK_IMAGE_ASPECT_COLOR_BIT) return {};
-            continue;
-        }
-        const uint32_t end = item == start.item ? start.entry : work[item].first + work[item].count;
-        for (uint32_t entry = work[item].first; entry < end; ++entry)
-            if (!touchesColorsOnly(drawOf(work[item], entry, tile.draws))) return {};
-    }
-    return start;
+    const bool large = std::any_of(tile.work.begin(), tile.work.end(), [](const TileWork& work) { return work.large; });
+    return large ? HiddenWork(targets, tile).find() : VisibleStart{};
 }
 
 }  // namespace vernier

@@ -1,5 +1,5 @@
-// What later opaque primitives hide is not rendered: if primitives together replace every colour of a tile, the tile's
-// work before the first of them has no effect.
+// What later opaque primitives hide is not rendered: if primitives together replace every colour of a tile, and pass
+// the depth test whatever was drawn before them, the tile's work before the first of them has no effect.
 #pragma once
 
 #include <cstddef>
@@ -25,6 +25,7 @@ struct TileInput {
     int32_t tileX, tileY;  // first pixel of the tile
     std::span<const PreparedDraw> draws;
     std::span<const TileWork> work;
+    bool cleared;  // all depth in it was just cleared by the load operation
 };
 
 /// Whether some primitive of the draws may hide others: false saves looking at every tile.

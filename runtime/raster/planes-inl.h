@@ -34,6 +34,11 @@ HWY_INLINE V planeInDouble(DF f, V x, V y, V ox, V oy, double constant, double g
     return hn::Combine(f, high, low);
 }
 
+template <class DF, class V>
+HWY_INLINE V clampDepth(DF f, const TrianglePlanes& p, V z) {
+    return hn::Max(hn::Min(z, hn::Set(f, p.zHigh)), hn::Set(f, p.zLow));
+}
+
 /// Depth at pixels (x, y) from the anchor, at the place (ox, oy) = offset - fraction inside them.
 template <class DF, class V>
 HWY_INLINE V depthOf(DF f, const TrianglePlanes& p, V x, V y, V ox, V oy) {
@@ -44,7 +49,7 @@ HWY_INLINE V depthOf(DF f, const TrianglePlanes& p, V x, V y, V ox, V oy) {
         const V dx = hn::Add(x, ox), dy = hn::Add(y, oy);
         z = hn::Add(hn::Set(f, p.z0), hn::Add(hn::Mul(hn::Set(f, p.zx), dx), hn::Mul(hn::Set(f, p.zy), dy)));
     }
-    return hn::Max(hn::Min(z, hn::Set(f, p.zHigh)), hn::Set(f, p.zLow));
+    return clampDepth(f, p, z);
 }
 
 }  // namespace HWY_NAMESPACE

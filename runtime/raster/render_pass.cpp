@@ -192,11 +192,11 @@ void RenderPass::Impl::collectTileWork() {
     for (uint32_t n = 0; n < stepCount; ++n) {
         if (const ClearCommand* clear = steps[n].clear; clear != nullptr) {
             for (uint32_t tile = 0; tile < grid.count(); ++tile)
-                if (isDrawn(layerOf(tile)) && clear->clears(layerOf(tile))) add(tile, {nullptr, clear, 0, 0});
+                if (isDrawn(layerOf(tile)) && clear->clears(layerOf(tile))) add(tile, {nullptr, clear, 0, 0, false});
             continue;
         }
         for (const TileRange& range : chunks[n].ranges)
-            add(range.tile, {&chunks[n], nullptr, range.first, range.count});
+            add(range.tile, {&chunks[n], nullptr, range.first, range.count, range.large});
     }
     if (loaded) return;
     // The first wave touches every tile: load operations clear where nothing is drawn, too.
@@ -228,9 +228,12 @@ void RenderPass::Impl::runTiles() {
         const uint32_t inLayer = tile % grid.perLayer();
         const bool cleared = !loaded && targets.depthStencil.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR &&
                              loads(targets.depthStencil, layerOf(tile));
-        const TileInput input{rect, grid.x0 + static_cast<int32_t>(inLayer % grid.columns) * kTileSize,
-                              grid.y0 + static_cast<int32_t>(inLayer / grid.columns) * kTileSize, draws,
-                              tileWork[tile]};
+        const TileInput input{rect,
+                              grid.x0 + static_cast<int32_t>(inLayer % grid.columns) * kTileSize,
+                              grid.y0 + static_cast<int32_t>(inLayer / grid.columns) * kTileSize,
+                              draws,
+                              tileWork[tile],
+                              cleared};
         const VisibleStart start = mayHide ? visibleStart(targets, input) : VisibleStart{};
         if (!loaded) loadTile(rect, layerOf(tile), start.replacesColors);
         if (tileWork[tile].empty()) return;

@@ -115,12 +115,17 @@ uint32_t TileRenderer::testEarly(const PreparedDraw& draw, const TrianglePlanes&
     PassStatistics& statistics = fragments_.statistics();
     // Stencil operations happen for hidden samples, too.
     const bool coarse = plan.depth.test && !plan.depth.stencil;
+    uint64_t certain = 0;
     if (coarse) {
-        const uint32_t left = coarse_.reject(plan.depth, planes, tileX_, tileY_, plan.samples, blocks_.data(), count);
+        const uint32_t left =
+            coarse_.reject(plan.depth, planes, tileX_, tileY_, plan.samples, blocks_.data(), count, certain);
         statistics.coarseDepthRejects += count - left;
         count = left;
     }
-    statistics.depthReads += countSamples(blocks_.data(), count, plan.samples);
+    if (plan.depth.bounds) certain = 0;
+    for (uint32_t b = 0; b < count; ++b)
+        if ((certain >> blockIndex(blocks_[b]) & 1) == 0)
+            statistics.depthReads += countSamples(&blocks_[b], 1, plan.samples);
     if (plan.depth.bounds) {
         count = testSamples(state, planes, tileX_, tileY_, plan.samples, draw.positions, blocks_.data(), count);
     } else {
@@ -128,7 +133,8 @@ uint32_t TileRenderer::testEarly(const PreparedDraw& draw, const TrianglePlanes&
             &plan.depth,    state.target,
             &planes,        tileX_,
             tileY_,         plan.samples,
-            draw.positions, !plan.depth.stencil ? nullptr : planes.primitive->front ? &state.front : &state.back};
+            draw.positions, !plan.depth.stencil ? nullptr : planes.primitive->front ? &state.front : &state.back,
+            certain};
         count = depthTestFunction(draw.call.pipeline->isa())(input, blocks_.data(), count);
     }
     if (plan.depth.write) coarse_.update(plan.depth, planes, tileX_, tileY_, plan.samples, blocks_.data(), count);

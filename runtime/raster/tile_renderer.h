@@ -27,6 +27,7 @@ struct TileWork {
     const Chunk* chunk = nullptr;
     const ClearCommand* clear = nullptr;
     uint32_t first = 0, count = 0;
+    bool large = false;  // as in TileRange
 };
 
 class TileRenderer {

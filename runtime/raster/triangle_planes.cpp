@@ -8,10 +8,6 @@
 namespace vernier {
 namespace {
 
-/// Above this, |gradient of lambda| * extent, the terms of lambda cancel: float would keep fewer than 20
-/// bits.
-constexpr double kThin = 16;
-
 /// Everything that follows from the gradients of the lambdas. `extent`: pixels from the anchor to the farthest covered
 /// place, both axes added up.
 void finishPlanes(const Primitive& p, const float* attributes, uint32_t subPixelBits, bool precise, double extent,
@@ -43,7 +39,7 @@ void finishPlanes(const Primitive& p, const float* attributes, uint32_t subPixel
     planes.wScale = p.wExponent == 0 ? 1.0f : std::ldexp(1.0f, p.wExponent);
     planes.affine = p.affine;
     const double steepest = std::max({std::fabs(d.l1x), std::fabs(d.l1y), std::fabs(d.l2x), std::fabs(d.l2y)});
-    planes.precise = precise || steepest * extent > kThin;
+    planes.precise = precise || steepest * extent > kThinTriangle;
     for (int n = 0; n < 3; ++n) planes.attributes[n] = attributes + p.attributes[n];
     planes.flat = attributes + p.flat;
     planes.primitive = &p;

@@ -31,6 +31,10 @@ constexpr bool isTopLeft(int64_t dx, int64_t dy) {
     return dy < 0 || (dy == 0 && dx > 0);
 }
 
+/// Above this, |gradient of lambda| * extent, the terms of lambda cancel: float would keep fewer than 20
+/// bits.
+inline constexpr double kThinTriangle = 16;
+
 /// Barycentric coordinates and depth as functions of the position. All of them are taken relative to the
 /// primitive's own first vertex (its anchor), so that the error does not grow with the distance from the
 /// framebuffer's origin. With d = pixel - anchor + (offset - fraction), where offset is the place inside the

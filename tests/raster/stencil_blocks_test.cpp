@@ -95,8 +95,8 @@ TEST_P(StencilBlocksTest, SameAsOneSampleAtATime) {
             block.masks[s] = random() % 3 == 0 ? ~uint64_t{0} : uint64_t{random()} << 32 | random();
         const BlockCoverage before = block;
         const SamplePosition* positions = samplePositions(kSamples);
-        const DepthTestInput input{&plan, blocks.target, &planes,   0,
-                                   0,     kSamples,      positions, primitive.front ? &state.front : &state.back};
+        const DepthTestInput input{
+            &plan, blocks.target, &planes, 0, 0, kSamples, positions, primitive.front ? &state.front : &state.back, 0};
         const uint32_t kept = depthTestFunction(GetParam())(input, &block, 1);
         uint64_t any = 0;
         for (uint32_t s = 0; s < kSamples; ++s) {
