@@ -16,13 +16,16 @@ struct DepthTestInput {
     int32_t tileX, tileY;
     uint32_t samples;
     const SamplePosition* positions;
-    const DepthStencilState::Face* face;  // of the stencil test; nullptr: there is none
-    uint64_t certain;                     // without a stencil test, bit blockIndex(): all samples of the block pass
+    const DepthStencilState::Face* face;  // of the stencil test
+    uint64_t certain;                     // without one, bit blockIndex(): all samples of the block pass
 };
 
 /// Tests the samples of the blocks and writes the depth of those that pass, and the stencil of all. Clears the bits of
 /// those that fail; returns how many blocks have bits left, moved to the front in order.
 using DepthTestFn = uint32_t (*)(const DepthTestInput& input, BlockCoverage* blocks, uint32_t count);
+/// Without a stencil test.
 DepthTestFn depthTestFunction(Isa isa);
+/// With one, and a depth test perhaps.
+DepthTestFn stencilTestFunction(Isa isa);
 
 }  // namespace vernier

@@ -130,12 +130,12 @@ uint32_t TileRenderer::testEarly(const PreparedDraw& draw, const TrianglePlanes&
         count = testSamples(state, planes, tileX_, tileY_, plan.samples, draw.positions, blocks_.data(), count);
     } else {
         const DepthTestInput input{
-            &plan.depth,    state.target,
-            &planes,        tileX_,
-            tileY_,         plan.samples,
-            draw.positions, !plan.depth.stencil ? nullptr : planes.primitive->front ? &state.front : &state.back,
+            &plan.depth, state.target, &planes,        tileX_,
+            tileY_,      plan.samples, draw.positions, planes.primitive->front ? &state.front : &state.back,
             certain};
-        count = depthTestFunction(draw.call.pipeline->isa())(input, blocks_.data(), count);
+        const Isa isa = draw.call.pipeline->isa();
+        const DepthTestFn test = plan.depth.stencil ? stencilTestFunction(isa) : depthTestFunction(isa);
+        count = test(input, blocks_.data(), count);
     }
     if (plan.depth.write) coarse_.update(plan.depth, planes, tileX_, tileY_, plan.samples, blocks_.data(), count);
     return count;

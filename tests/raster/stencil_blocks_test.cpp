@@ -97,7 +97,7 @@ TEST_P(StencilBlocksTest, SameAsOneSampleAtATime) {
         const SamplePosition* positions = samplePositions(kSamples);
         const DepthTestInput input{
             &plan, blocks.target, &planes, 0, 0, kSamples, positions, primitive.front ? &state.front : &state.back, 0};
-        const uint32_t kept = depthTestFunction(GetParam())(input, &block, 1);
+        const uint32_t kept = stencilTestFunction(GetParam())(input, &block, 1);
         uint64_t any = 0;
         for (uint32_t s = 0; s < kSamples; ++s) {
             uint64_t passed = 0;

@@ -1,0 +1,154 @@
+// Depths as attachments keep them, a row of a block at a time, for the depth and the stencil test.
+#if defined(VERNIER_RUNTIME_RASTER_DEPTH_ROWS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef VERNIER_RUNTIME_RASTER_DEPTH_ROWS_INL_H
+#undef VERNIER_RUNTIME_RASTER_DEPTH_ROWS_INL_H
+#else
+#define VERNIER_RUNTIME_RASTER_DEPTH_ROWS_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+#include "runtime/raster/depth_test.h"
+#include "runtime/raster/planes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace vernier {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using F8 = hn::CappedTag<float, 8>;
+using U8 = hn::RebindToUnsigned<F8>;
+using I8 = hn::RebindToSigned<F8>;
+using VF = hn::Vec<F8>;
+using VU = hn::Vec<U8>;
+
+/// round(z * scale), exactly: the product of two 24-bit numbers is exact in double.
+HWY_INLINE VU quantize(VF z, double scale) {
+    const hn::Half<F8> half;
+    const hn::RepartitionToWide<F8> d;
+    const hn::Half<I8> halfInt;
+    const auto round = [&](auto part) HWY_ATTR {
+        return hn::DemoteTo(halfInt, hn::Round(hn::Mul(hn::PromoteTo(d, part), hn::Set(d, scale))));
+    };
+    const auto codes = hn::Combine(I8(), round(hn::UpperHalf(half, z)), round(hn::LowerHalf(half, z)));
+    return hn::BitCast(U8(), codes);
+}
+
+// How each format keeps 8 (or 4, on SSE4) depths of a row: `Value` is what is compared.
+
+struct Unorm16 {
+    using Value = VU;
+    static constexpr uint32_t kTexelBytes = 2;
+    static VU encode(VF z) { return quantize(z, 65535.0); }
+    static VU load(const std::byte* p) {
+        const hn::Rebind<uint16_t, U8> u16;
+        return hn::PromoteTo(U8(), hn::LoadU(u16, reinterpret_cast<const uint16_t*>(p)));
+    }
+    static void store(VU value, std::byte* p) {
+        const hn::Rebind<uint16_t, U8> u16;
+        hn::StoreU(hn::DemoteTo(u16, hn::BitCast(I8(), value)), u16, reinterpret_cast<uint16_t*>(p));
+    }
+};
+
+struct Unorm24 {
+    using Value = VU;
+    static constexpr uint32_t kTexelBytes = 4;
+    static VU encode(VF z) { return quantize(z, 16777215.0); }
+    static VU load(const std::byte* p) {
+        return hn::And(hn::LoadU(U8(), reinterpret_cast<const uint32_t*>(p)), hn::Set(U8(), 0xFFFFFFu));
+    }
+    static void store(VU value, std::byte* p) {
+        auto* texels = reinterpret_cast<uint32_t*>(p);
+        const VU other = hn::AndNot(hn::Set(U8(), 0xFFFFFFu), hn::LoadU(U8(), texels));
+        hn::StoreU(hn::Or(other, value), U8(), texels);
+    }
+};
+
+struct Float32 {
+    using Value = VF;
+    static constexpr uint32_t kTexelBytes = 4;
+    static VF encode(VF z) { return z; }
+    static VF load(const std::byte* p) { return hn::LoadU(F8(), reinterpret_cast<const float*>(p)); }
+    static void store(VF value, std::byte* p) { hn::StoreU(value, F8(), reinterpret_cast<float*>(p)); }
+};
+
+struct Float32Stencil8 {
+    using Value = VF;
+    static constexpr uint32_t kTexelBytes = 8;
+    static VF encode(VF z) { return z; }
+    static VF load(const std::byte* p) {
+        VF depth, stencil;
+        hn::LoadInterleaved2(F8(), reinterpret_cast<const float*>(p), depth, stencil);
+        return depth;
+    }
+    static void store(VF value, std::byte* p) {
+        VF depth, stencil;
+        hn::LoadInterleaved2(F8(), reinterpret_cast<const float*>(p), depth, stencil);
+        hn::StoreInterleaved2(value, stencil, F8(), reinterpret_cast<float*>(p));
+    }
+};
+
+/// VkCompareOp as three masks: what it lets through when less, equal, greater.
+template <class D>
+struct Comparison {
+    using M = hn::Mask<D>;
+    M ifLess, ifEqual, ifGreater;
+
+    explicit Comparison(uint32_t op) {
+        const auto zero = hn::Zero(D());
+        const auto enable = [&](uint32_t bit)
+                                HWY_ATTR { return (op & bit) != 0 ? hn::Eq(zero, zero) : hn::Ne(zero, zero); };
+        ifLess = enable(1);
+        ifEqual = enable(2);
+        ifGreater = enable(4);
+    }
+    HWY_INLINE M operator()(hn::Vec<D> a, hn::Vec<D> b) const {
+        return hn::Or(hn::Or(hn::And(hn::Lt(a, b), ifLess), hn::And(hn::Eq(a, b), ifEqual)),
+                      hn::And(hn::Gt(a, b), ifGreater));
+    }
+};
+
+alignas(64) constexpr float kColumns[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+
+/// The depths of a block's pixels at one sample, as the format keeps them: the operations of depthOf(), those that all
+/// rows have in common done once.
+template <class Format>
+class BlockDepths {
+  public:
+    static constexpr uint32_t kLanes = hn::MaxLanes(F8()), kParts = 8 / kLanes;
+
+    HWY_INLINE BlockDepths(const DepthTestInput& in, const BlockCoverage& block, uint32_t sample)
+        : planes_(*in.planes), y_(in.tileY + block.y - planes_.anchorY) {
+        const F8 f;
+        offsetX_ = in.positions[sample].x() - planes_.fractionX;
+        offsetY_ = in.positions[sample].y() - planes_.fractionY;
+        const auto x = static_cast<float>(in.tileX + block.x - planes_.anchorX);
+        for (uint32_t part = 0; part < kParts; ++part) {
+            // Whole numbers below 2^16: the sum is exact.
+            columns_[part] = hn::Add(hn::Load(f, kColumns + part * kLanes), hn::Set(f, x));
+            slopes_[part] = hn::Mul(hn::Set(f, planes_.zx), hn::Add(columns_[part], hn::Set(f, offsetX_)));
+        }
+    }
+
+    HWY_INLINE typename Format::Value at(int32_t row, uint32_t part) const {
+        const F8 f;
+        const auto y = static_cast<float>(y_ + row);
+        if (HWY_UNLIKELY(planes_.precise))
+            return Format::encode(
+                depthOf(f, planes_, columns_[part], hn::Set(f, y), hn::Set(f, offsetX_), hn::Set(f, offsetY_)));
+        const VF rise = hn::Set(f, planes_.zy * (y + offsetY_));
+        return Format::encode(clampDepth(f, planes_, hn::Add(hn::Set(f, planes_.z0), hn::Add(slopes_[part], rise))));
+    }
+
+  private:
+    const TrianglePlanes& planes_;
+    int32_t y_;
+    float offsetX_, offsetY_;
+    VF columns_[kParts], slopes_[kParts];
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace vernier
+HWY_AFTER_NAMESPACE();
+
+#endif  // include guard
