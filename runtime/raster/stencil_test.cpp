@@ -215,9 +215,8 @@ uint32_t pixelBits(uint32_t lanes) {
 }
 
 /// Returns which of the pixels of a row that `bits` names pass.
-template <class Texels>
-HWY_INLINE uint32_t testStencilRow(const StencilFace<typename Texels::D>& face, bool always, uint32_t bits,
-                                   std::byte* row) {
+template <class Texels, bool kAlways>
+HWY_INLINE uint32_t testStencilRow(const StencilFace<typename Texels::D>& face, uint32_t bits, std::byte* row) {
     using D = typename Texels::D;
     static constexpr auto kStencilLanes = stencilLanes<Texels::kLanesPerTexel>();
     constexpr size_t kLanes = hn::MaxLanes(D());
@@ -229,7 +228,7 @@ HWY_INLINE uint32_t testStencilRow(const StencilFace<typename Texels::D>& face, 
         const auto texels = Texels::load(place);
         const auto stored = Texels::stencilOf(texels);
         auto value = face.pass(stored);
-        if (!always) {
+        if constexpr (!kAlways) {
             const auto pass = face.passes(stored);
             value = hn::IfThenElse(pass, value, face.fail(stored));
             uint8_t passBits[8] = {};
@@ -239,21 +238,25 @@ HWY_INLINE uint32_t testStencilRow(const StencilFace<typename Texels::D>& face, 
         const auto written = Texels::withStencil(texels, face.merged(stored, value));
         Texels::store(hn::IfThenElse(covered, written, texels), place);
     }
-    return always ? bits : pixelBits<Texels::kLanesPerTexel>(passed);
+    return kAlways ? bits : pixelBits<Texels::kLanesPerTexel>(passed);
 }
 
-template <class Texels>
+template <class Texels, bool kAlways>
 uint64_t testStencil(const DepthTestInput& in, const StencilFace<typename Texels::D>& face, const BlockCoverage& block,
                      uint32_t sample) {
-    const bool always = in.face->ops.compareOp == VK_COMPARE_OP_ALWAYS;
+    // A copy that no store can change: it stays in registers.
+    const StencilFace<typename Texels::D> local = face;
+    std::byte* row = in.target.texel(in.tileX + block.x, in.tileY + block.y, sample);
+    const size_t pitch = in.target.rowPitch;
+    const uint64_t covered = block.masks[sample];
     uint64_t passed = 0;
-    for (int32_t row = 0; row < kBlockSize; ++row) {
-        const auto covered = static_cast<uint32_t>(block.masks[sample] >> (8 * row) & 0xFF);
-        if (covered == 0) continue;
-        std::byte* texels = in.target.texel(in.tileX + block.x, in.tileY + block.y + row, sample);
-        passed |= static_cast<uint64_t>(testStencilRow<Texels>(face, always, covered, texels)) << (8 * row);
+    for (uint32_t shift = 0; shift < 64; shift += kBlockSize, row += pitch) {
+        const auto bits = static_cast<uint32_t>(covered >> shift & 0xFF);
+        if (bits == 0) continue;
+        const uint32_t pass = testStencilRow<Texels, kAlways>(local, bits, row);
+        if constexpr (!kAlways) passed |= uint64_t{pass} << shift;
     }
-    return passed;
+    return kAlways ? covered : passed;
 }
 
 // --- Blocks
@@ -281,8 +284,10 @@ uint32_t depthStencilBlocks(const DepthTestInput& in, BlockCoverage* blocks, uin
 template <class Texels>
 uint32_t stencilBlocks(const DepthTestInput& in, BlockCoverage* blocks, uint32_t count) {
     const StencilFace<typename Texels::D> face(*in.face);
+    const bool always = in.face->ops.compareOp == VK_COMPARE_OP_ALWAYS;
     return testEach(in, blocks, count, [&](const BlockCoverage& block, uint32_t sample) HWY_ATTR {
-        return testStencil<Texels>(in, face, block, sample);
+        return always ? testStencil<Texels, true>(in, face, block, sample)
+                      : testStencil<Texels, false>(in, face, block, sample);
     });
 }
 
