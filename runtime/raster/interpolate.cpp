@@ -78,6 +78,21 @@ struct SegmentPlanes {
     VF centreX, centreY;
 };
 
+struct Perspective {
+    VF weight1, weight2, inverseW;
+};
+
+/// lambda_i / w_i, normalised by their sum, which is 1/w at this place: none is negative inside.
+HWY_INLINE Perspective perspectiveAt(const TrianglePlanes& p, VF linear1, VF linear2) {
+    const F f;
+    const VF one = hn::Set(f, 1.0f);
+    const VF q1 = hn::Mul(linear1, hn::Set(f, p.w1)), q2 = hn::Mul(linear2, hn::Set(f, p.w2));
+    const VF q0 = hn::Mul(hn::Sub(hn::Sub(one, linear1), linear2), hn::Set(f, p.w0));
+    const VF inverseW = hn::Add(hn::Add(q0, q1), q2);
+    const VF reciprocal = hn::Div(one, inverseW);
+    return {hn::Mul(q1, reciprocal), hn::Mul(q2, reciprocal), inverseW};
+}
+
 HWY_INLINE Weights weightsAt(const InterpolationInput& in, const SegmentPlanes& segment, uint32_t n) {
     const F f;
     const I i;
@@ -103,14 +118,10 @@ HWY_INLINE Weights weightsAt(const InterpolationInput& in, const SegmentPlanes& 
     w.perspective1 = w.linear1;
     w.perspective2 = w.linear2;
     if (segment.divide) {
-        // lambda_i / w_i, normalised by their sum, which is 1/w at this place: none is negative inside.
-        const VF one = hn::Set(f, 1.0f);
-        const VF q1 = hn::Mul(w.linear1, hn::Set(f, p.w1)), q2 = hn::Mul(w.linear2, hn::Set(f, p.w2));
-        const VF q0 = hn::Mul(hn::Sub(hn::Sub(one, w.linear1), w.linear2), inverseW);
-        inverseW = hn::Add(hn::Add(q0, q1), q2);
-        const VF reciprocal = hn::Div(one, inverseW);
-        w.perspective1 = hn::Mul(q1, reciprocal);
-        w.perspective2 = hn::Mul(q2, reciprocal);
+        const Perspective at = perspectiveAt(p, w.linear1, w.linear2);
+        inverseW = at.inverseW;
+        w.perspective1 = at.weight1;
+        w.perspective2 = at.weight2;
     }
     if (in.fragInverseW != nullptr) hn::StoreU(hn::Mul(inverseW, hn::Set(f, p.wScale)), f, in.fragInverseW + n);
     return w;
@@ -151,27 +162,65 @@ HWY_INLINE void evaluate(const InterpolationInput& in, const SegmentPlanes& plan
                    in.capacity);
 }
 
-/// Four vectors, side by side: the weights stay in registers, and none waits for another.
-HWY_INLINE void evaluateFour(const InterpolationInput& in, const SegmentPlanes& planes, uint32_t n) {
+/// Vectors side by side: their weights stay in registers, and none waits for another.
+constexpr uint32_t kSide = 4, kSideLanes = kSide * kLanes;
+
+/// Stores the targets for kSide vectors with the weights w1, w2.
+HWY_INLINE void storeSide(const TrianglePlanes& planes, std::span<const VaryingTarget> targets, const VF* w1,
+                          const VF* w2, uint32_t n) {
+    for (const VaryingTarget& target : targets) {
+        const AttributePlane plane(planes, target.varying);
+        float* lanes = target.plane + n;
+        for (uint32_t v = 0; v < kSide; ++v) hn::StoreU(plane.at(w1[v], w2[v]), F(), lanes + v * kLanes);
+    }
+}
+
+/// A rectangle at pixel centres, in float: the operations of weightsAt(), those that all rows have in common done once.
+/// In either order, columns repeat every 16 lanes.
+HWY_INLINE void evaluateRectangle(const InterpolationInput& in, const SegmentPlanes& segment) {
+    constexpr uint32_t kColumns = 16 / kLanes;
     const F f;
-    const Weights w0 = weightsAt(in, planes, n), w1 = weightsAt(in, planes, n + kLanes);
-    const Weights w2 = weightsAt(in, planes, n + 2 * kLanes), w3 = weightsAt(in, planes, n + 3 * kLanes);
-    for (const VaryingTarget& target : in.smooth) {
-        const AttributePlane plane(planes.planes, target.varying);
-        float* lanes = target.plane + n;
-        hn::StoreU(plane.at(w0.perspective1, w0.perspective2), f, lanes);
-        hn::StoreU(plane.at(w1.perspective1, w1.perspective2), f, lanes + kLanes);
-        hn::StoreU(plane.at(w2.perspective1, w2.perspective2), f, lanes + 2 * kLanes);
-        hn::StoreU(plane.at(w3.perspective1, w3.perspective2), f, lanes + 3 * kLanes);
+    const I i;
+    const TrianglePlanes& p = segment.planes;
+    VF column1[kColumns], column2[kColumns];
+    for (uint32_t part = 0; part < kColumns; ++part) {
+        const auto x = hn::Sub(hn::LoadU(i, segment.pixels.x + part * kLanes), segment.anchorX);
+        const VF dx = hn::Add(hn::ConvertTo(f, x), segment.centreX);
+        column1[part] = hn::Mul(hn::Set(f, p.l1x), dx);
+        column2[part] = hn::Mul(hn::Set(f, p.l2x), dx);
     }
-    for (const VaryingTarget& target : in.linear) {
-        const AttributePlane plane(planes.planes, target.varying);
-        float* lanes = target.plane + n;
-        hn::StoreU(plane.at(w0.linear1, w0.linear2), f, lanes);
-        hn::StoreU(plane.at(w1.linear1, w1.linear2), f, lanes + kLanes);
-        hn::StoreU(plane.at(w2.linear1, w2.linear2), f, lanes + 2 * kLanes);
-        hn::StoreU(plane.at(w3.linear1, w3.linear2), f, lanes + 3 * kLanes);
+    const VF slope1 = hn::Set(f, p.l1y), slope2 = hn::Set(f, p.l2y);
+    for (uint32_t n = 0; n < in.batch->count; n += kSideLanes) {
+        VF w1[kSide], w2[kSide];
+        for (uint32_t v = 0; v < kSide; ++v) {
+            const auto y = hn::Sub(hn::LoadU(i, segment.pixels.y + n + v * kLanes), segment.anchorY);
+            const VF dy = hn::Add(hn::ConvertTo(f, y), segment.centreY);
+            w1[v] = hn::Add(column1[v % kColumns], hn::Mul(slope1, dy));
+            w2[v] = hn::Add(column2[v % kColumns], hn::Mul(slope2, dy));
+        }
+        storeSide(p, in.linear, w1, w2, n);
+        if (segment.divide)
+            for (uint32_t v = 0; v < kSide; ++v) {
+                const Perspective at = perspectiveAt(p, w1[v], w2[v]);
+                w1[v] = at.weight1;
+                w2[v] = at.weight2;
+            }
+        storeSide(p, in.smooth, w1, w2, n);
     }
+}
+
+/// kSide vectors.
+HWY_INLINE void evaluateSide(const InterpolationInput& in, const SegmentPlanes& segment, uint32_t n) {
+    VF linear1[kSide], linear2[kSide], perspective1[kSide], perspective2[kSide];
+    for (uint32_t v = 0; v < kSide; ++v) {
+        const Weights w = weightsAt(in, segment, n + v * kLanes);
+        linear1[v] = w.linear1;
+        linear2[v] = w.linear2;
+        perspective1[v] = w.perspective1;
+        perspective2[v] = w.perspective2;
+    }
+    storeSide(segment.planes, in.smooth, perspective1, perspective2, n);
+    storeSide(segment.planes, in.linear, linear1, linear2, n);
 }
 
 /// The bits of the provoking vertex: an integer, perhaps, which no float operation may touch.
@@ -188,6 +237,8 @@ HWY_INLINE void copyFlat(const InterpolationInput& in, const FragmentSegment& se
 uint32_t interpolate(const InterpolationInput& in) {
     uint32_t divides = 0;
     const PixelSource pixels(*in.batch);
+    const bool plain = in.batch->order != LaneOrder::spans && in.batch->count % kSideLanes == 0 &&
+                       in.offsetX == nullptr && in.fragZ == nullptr && in.fragInverseW == nullptr;
     const bool weighted = !in.smooth.empty() || !in.linear.empty() || in.fragZ != nullptr;
     for (uint32_t s = 0; s < in.batch->segmentCount; ++s) {
         const FragmentSegment& segment = in.batch->segments[s];
@@ -196,9 +247,13 @@ uint32_t interpolate(const InterpolationInput& in) {
         const SegmentPlanes planes(in, pixels, *segment.planes);
         if (planes.divide && in.perspective) divides += segment.count;
         if (!weighted) continue;
+        if (plain && !segment.planes->precise) {
+            evaluateRectangle(in, planes);
+            continue;
+        }
         const uint32_t end = segment.first + segment.count;
         uint32_t n = segment.first;
-        for (; n + 4 * kLanes <= end; n += 4 * kLanes) evaluateFour(in, planes, n);
+        for (; n + kSideLanes <= end; n += kSideLanes) evaluateSide(in, planes, n);
         for (; n < end; n += kLanes) evaluate(in, planes, n);
     }
     return divides;
