@@ -58,6 +58,8 @@ TEST_F(Explain, NoBlendingReadsNoDestination) {
 TEST_F(Explain, NoDepthTestReadsNoDepth) {
     VnDepthStencilStateDesc desc{};
     desc.depthTest = 1;
+    // Not decided by what is known of the cleared depths.
+    desc.depthCompare = VK_COMPARE_OP_NOT_EQUAL;
     VnDepthStencilState depth{};
     ASSERT_EQ(vnCreateDepthStencilState(device_, &desc, &depth), VN_SUCCESS);
     const VnProgram white = program(kFullScreenVertex, kWhiteFragment);
