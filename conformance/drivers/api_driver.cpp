@@ -61,11 +61,12 @@ Status SceneRun::runFrame() {
 
 Result<VnAttachment> SceneRun::attachment(const SceneAttachment& scene) {
     VnAttachment attachment{};
-    const Result<VnView> view = objects_.attachmentView(scene_, scene.image, scene.mipLevel, scene.layer);
+    const Result<VnView> view =
+        objects_.attachmentView(scene_, scene.image, scene.mipLevel, scene.layer, scene.layerCount);
     if (!view) return view.error();
     attachment.view = view.value();
     if (scene.resolveImage != kNone) {
-        const Result<VnView> resolve = objects_.attachmentView(scene_, scene.resolveImage, 0, 0);
+        const Result<VnView> resolve = objects_.attachmentView(scene_, scene.resolveImage, 0, 0, scene.layerCount);
         if (!resolve) return resolve.error();
         attachment.resolve = resolve.value();
     }
@@ -87,6 +88,7 @@ Status SceneRun::runPass(const ScenePass& pass) {
         desc.depthStencil = depth.value();
     }
     desc.renderArea.extent = pass.extent;
+    desc.viewMask = pass.viewMask;
     VERNIER_TRY_API(vnBeginPass(context_, &desc));
     for (const SceneDraw& draw : pass.draws) VERNIER_TRY(runDraw(draw));
     VERNIER_TRY_API(vnEndPass(context_));
@@ -98,15 +100,25 @@ Status SceneRun::bindResources(const SceneDraw& draw) {
         VERNIER_TRY_API(vnBindVertexBuffer(context_, each.binding, objects_.buffer(each.buffer), each.offset));
     }
     for (const SceneBinding& each : draw.bindings) {
-        if (each.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER) {
-            const Result<VnView> view = objects_.sampledView(scene_, each);
-            if (!view) return view.error();
-            VERNIER_TRY_API(
-                vnBindTexture(context_, each.set, each.binding, 0, view.value(), objects_.sampler(each.sampler)));
-        } else {
-            const uint64_t size = each.range == VK_WHOLE_SIZE ? 0 : each.range;
-            VERNIER_TRY_API(
-                vnBindBuffer(context_, each.set, each.binding, 0, objects_.buffer(each.buffer), each.offset, size));
+        const uint64_t size = each.range == VK_WHOLE_SIZE ? 0 : each.range;
+        switch (each.type) {
+            case VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER:
+            case VK_DESCRIPTOR_TYPE_STORAGE_IMAGE: {
+                const Result<VnView> view = objects_.sampledView(scene_, each);
+                if (!view) return view.error();
+                const VnSampler sampler = each.sampler == kNone ? VnSampler{} : objects_.sampler(each.sampler);
+                VERNIER_TRY_API(vnBindTexture(context_, each.set, each.binding, 0, view.value(), sampler));
+                break;
+            }
+            case VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER:
+            case VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER:
+                VERNIER_TRY_API(vnBindTexelBuffer(context_, each.set, each.binding, 0, objects_.buffer(each.buffer),
+                                                  each.texelFormat, each.offset, size));
+                break;
+            default:
+                VERNIER_TRY_API(
+                    vnBindBuffer(context_, each.set, each.binding, 0, objects_.buffer(each.buffer), each.offset, size));
+                break;
         }
     }
     if (!draw.pushConstants.empty()) {
@@ -129,6 +141,10 @@ Status SceneRun::runDraw(const SceneDraw& draw) {
     VERNIER_TRY_API(vnSetStencilReference(context_, scene.front.reference, scene.back.reference));
     VERNIER_TRY_API(vnSetViewport(context_, &draw.viewport));
     VERNIER_TRY_API(vnSetScissor(context_, &draw.scissor));
+    for (uint32_t i = 0; i < draw.moreViews.size(); ++i) {
+        VERNIER_TRY_API(vnSetViewports(context_, i + 1, 1, &draw.moreViews[i].viewport));
+        VERNIER_TRY_API(vnSetScissors(context_, i + 1, 1, &draw.moreViews[i].scissor));
+    }
     VERNIER_TRY(bindResources(draw));
     if (draw.indexBuffer == kNone) {
         VERNIER_TRY_API(vnDraw(context_, draw.count, draw.instances, draw.first, draw.firstInstance));

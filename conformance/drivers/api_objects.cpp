@@ -178,13 +178,6 @@ Status ApiObjects::createShader(const SceneShader& scene) {
 }
 
 Result<ApiPipeline> ApiObjects::createPipeline(const ScenePipeline& scene) {
-    const auto cannotSay = [](bool wanted, const char* what) -> Status {
-        if (wanted) return unsupported(std::string(what) + " cannot be said in the API");
-        return {};
-    };
-    VERNIER_TRY(cannotSay(scene.depthBoundsTest, "a depth bounds test"));
-    VERNIER_TRY(cannotSay(scene.alphaToOne, "alpha to one"));
-    VERNIER_TRY(cannotSay(scene.sampleShading, "a least share of samples shaded"));
     ApiPipeline pipeline;
     VnProgramDesc program{};
     program.vertex = shaders_[scene.vertexShader];
@@ -219,12 +212,26 @@ Result<ApiPipeline> ApiObjects::createPipeline(const ScenePipeline& scene) {
     raster.depthBiasClamp = scene.depthBiasClamp;
     raster.sampleMaskOff = ~scene.sampleMask;
     raster.alphaToCoverage = scene.alphaToCoverage;
+    raster.alphaToOne = scene.alphaToOne;
+    raster.minSampleShading = scene.sampleShading ? scene.minSampleShading : 0;
+    raster.provokingVertexLast = scene.provokingVertexLast;
+    raster.depthNegativeOneToOne = scene.depthNegativeOneToOne;
+    raster.lineMode = scene.lineMode;
+    raster.lineStippleFactor = scene.stippleFactor;
+    raster.lineStipplePattern = scene.stipplePattern;
+    raster.programmableSamples = !scene.sampleLocations.empty();
+    for (size_t i = 0; i < scene.sampleLocations.size(); ++i) {
+        std::copy_n(scene.sampleLocations[i].begin(), 2, std::begin(raster.sampleLocations[i]));
+    }
     VERNIER_TRY_API(vnCreateRasterState(device_, &raster, &pipeline.raster));
 
     VnDepthStencilStateDesc depth{};
     depth.depthTest = scene.depthTest;
     depth.depthWrite = scene.depthTest && scene.depthWrite;  // Vulkan ignores the second without the first
     depth.depthCompare = explicitCompare(scene.depthCompare);
+    depth.depthBoundsTest = scene.depthBoundsTest;
+    depth.minDepth = scene.minDepthBounds;
+    depth.maxDepth = scene.maxDepthBounds;
     depth.stencilTest = scene.stencilTest;
     depth.front = stencilFace(scene.front);
     depth.back = stencilFace(scene.back);
@@ -247,21 +254,22 @@ Result<ApiPipeline> ApiObjects::createPipeline(const ScenePipeline& scene) {
     return pipeline;
 }
 
-Result<VnView> ApiObjects::attachmentView(const Scene& scene, uint32_t image, uint32_t mipLevel, uint32_t layer) {
+Result<VnView> ApiObjects::attachmentView(const Scene& scene, uint32_t image, uint32_t mipLevel, uint32_t layer,
+                                          uint32_t layerCount) {
     VnViewDesc desc{};
     desc.image = images_[image];
     desc.aspect = sceneFormat(scene.images[image].format)->aspects;
     desc.baseMip = mipLevel;
     desc.mipCount = 1;
     desc.baseLayer = layer;
-    desc.layerCount = 1;
+    desc.layerCount = layerCount;
     return view(desc);
 }
 
 Result<VnView> ApiObjects::sampledView(const Scene& scene, const SceneBinding& binding) {
     VnViewDesc desc{};
     desc.image = images_[binding.image];
-    desc.mipCount = scene.samplers[binding.sampler].maxLod == 0 ? 1 : 0;
+    desc.mipCount = binding.sampler == kNone || scene.samplers[binding.sampler].maxLod == 0 ? 1 : 0;
     const VkImageViewType type = scene.images[binding.image].viewType;
     desc.array = type == VK_IMAGE_VIEW_TYPE_1D_ARRAY || type == VK_IMAGE_VIEW_TYPE_2D_ARRAY ||
                  type == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY;

@@ -44,9 +44,10 @@ class ApiObjects {
     VnImage image(uint32_t index) const { return images_[index]; }
     const ApiPipeline& pipeline(uint32_t index) const { return pipelines_[index]; }
 
-    /// A view of one level and layer, all aspects. Made once per (image, level, layer).
-    Result<VnView> attachmentView(const Scene& scene, uint32_t image, uint32_t mipLevel, uint32_t layer);
-    /// The view and sampler of a binding.
+    /// A view of one level of some layers, all aspects. Made once for each.
+    Result<VnView> attachmentView(const Scene& scene, uint32_t image, uint32_t mipLevel, uint32_t layer,
+                                  uint32_t layerCount);
+    /// The view of a binding of a texture or storage image.
     Result<VnView> sampledView(const Scene& scene, const SceneBinding& binding);
     VnSampler sampler(uint32_t index) const { return samplers_[index]; }
 

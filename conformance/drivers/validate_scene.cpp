@@ -72,6 +72,7 @@ void checkDraw(Checker& check, const Scene& scene, const ScenePass& pass, const 
         check.fail("pipeline " + std::to_string(draw.pipeline) + " blends " + std::to_string(pipeline.blend.size()) +
                    " targets in a pass of " + std::to_string(pass.colors.size()));
     }
+    if (draw.moreViews.size() > 15) check.fail("SceneDraw::moreViews has more than 15 entries");
     if (draw.pushConstants.size() > pipeline.pushConstantBytes) {
         check.fail("SceneDraw::pushConstants has " + std::to_string(draw.pushConstants.size()) +
                    " bytes, its pipeline takes " + std::to_string(pipeline.pushConstantBytes));
@@ -87,6 +88,18 @@ void checkDraw(Checker& check, const Scene& scene, const ScenePass& pass, const 
         } else if (binding.type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER ||
                    binding.type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER) {
             check.index("SceneBinding::buffer", binding.buffer, scene.buffers.size());
+        } else if (binding.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE) {
+            check.index("SceneBinding::image", binding.image, scene.images.size());
+            if (binding.image < scene.images.size() && scene.images[binding.image].mipLevels != 1) {
+                check.fail("storage image '" + scene.images[binding.image].name + "' has several levels");
+            }
+        } else if (binding.type == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER ||
+                   binding.type == VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER) {
+            check.index("SceneBinding::buffer", binding.buffer, scene.buffers.size());
+            if (sceneFormat(binding.texelFormat) == nullptr) {
+                check.fail("SceneBinding::texelFormat is " + std::to_string(binding.texelFormat) +
+                           ", not one scenes may use");
+            }
         } else {
             check.fail("SceneBinding::type is " + std::to_string(binding.type) + ", not one scenes may use");
         }
@@ -106,13 +119,29 @@ Status validateScene(const Scene& scene) {
         if (scene.shaders[i].spirv.empty()) check.fail(at("shaders", i, "spirv") + " is empty");
     }
     for (size_t i = 0; i < scene.pipelines.size(); ++i) {
+        const std::vector<std::array<uint8_t, 2>>& locations = scene.pipelines[i].sampleLocations;
+        if (!locations.empty() && locations.size() != static_cast<size_t>(scene.pipelines[i].samples)) {
+            check.fail(at("pipelines", i, "sampleLocations") + " has " + std::to_string(locations.size()) +
+                       " entries for " + std::to_string(scene.pipelines[i].samples) + " samples");
+        }
         check.index(at("pipelines", i, "vertexShader"), scene.pipelines[i].vertexShader, scene.shaders.size());
         check.index(at("pipelines", i, "fragmentShader"), scene.pipelines[i].fragmentShader, scene.shaders.size(),
                     true);
     }
     for (const SceneStep& step : scene.steps) {
         if (const auto* pass = std::get_if<ScenePass>(&step)) {
+            const auto layers = [&](const SceneAttachment& attachment) {
+                if (attachment.image < images &&
+                    (attachment.layerCount == 0 ||
+                     attachment.layer + attachment.layerCount > scene.images[attachment.image].arrayLayers)) {
+                    check.fail("SceneAttachment::layerCount is " + std::to_string(attachment.layerCount) +
+                               " from layer " + std::to_string(attachment.layer) + " of image '" +
+                               scene.images[attachment.image].name + "'");
+                }
+            };
+            layers(pass->depthStencil);
             for (const SceneAttachment& color : pass->colors) {
+                layers(color);
                 check.index("ScenePass::colors image", color.image, images);
                 check.index("SceneAttachment::resolveImage", color.resolveImage, images, true);
             }

@@ -95,7 +95,7 @@ Status VulkanContext::createInstance(bool validate) {
     messenger.pfnUserCallback = &VulkanContext::onMessage;
     messenger.pUserData = this;
     const char* layer = "VK_LAYER_KHRONOS_validation";
-    const char* extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+    std::vector<const char*> extensions{VK_KHR_GET_PHYSICAL_DEVICE_PROPERTIES_2_EXTENSION_NAME};
     VkInstanceCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
     info.pApplicationInfo = &application;
@@ -103,16 +103,15 @@ Status VulkanContext::createInstance(bool validate) {
         info.pNext = &messenger;
         info.enabledLayerCount = 1;
         info.ppEnabledLayerNames = &layer;
-        info.enabledExtensionCount = 1;
-        info.ppEnabledExtensionNames = &extension;
+        extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     }
+    info.enabledExtensionCount = static_cast<uint32_t>(extensions.size());
+    info.ppEnabledExtensionNames = extensions.data();
     VERNIER_TRY_VK(vkCreateInstance(&info, nullptr, &instance_));
     cleanup_.add([this] { vkDestroyInstance(instance_, nullptr); });
     if (!validate) return {};
-    const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
-        vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
-    const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
-        vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
+    const auto create = instanceFunction<PFN_vkCreateDebugUtilsMessengerEXT>("vkCreateDebugUtilsMessengerEXT");
+    const auto destroy = instanceFunction<PFN_vkDestroyDebugUtilsMessengerEXT>("vkDestroyDebugUtilsMessengerEXT");
     VkDebugUtilsMessengerEXT handle = VK_NULL_HANDLE;
     VERNIER_TRY_VK(create(instance_, &messenger, nullptr, &handle));
     cleanup_.add([this, destroy, handle] { destroy(instance_, handle, nullptr); });
@@ -154,24 +153,9 @@ Status VulkanContext::createDevice(uint32_t deviceIndex) {
     compute_ = (family->queueFlags & VK_QUEUE_COMPUTE_BIT) != 0;
 
     negativeViewports_ = instanceVersion_ >= VK_API_VERSION_1_1 && properties_.apiVersion >= VK_API_VERSION_1_1;
-    uint32_t extensionCount = 0;
-    VERNIER_TRY_VK(vkEnumerateDeviceExtensionProperties(physicalDevice_, nullptr, &extensionCount, nullptr));
-    std::vector<VkExtensionProperties> extensions(extensionCount);
-    VERNIER_TRY_VK(vkEnumerateDeviceExtensionProperties(physicalDevice_, nullptr, &extensionCount, extensions.data()));
-    std::vector<const char*> names;
-    const auto enable = [&](const char* name) {
-        const bool found = std::any_of(extensions.begin(), extensions.end(), [&](const VkExtensionProperties& each) {
-            return std::strcmp(each.extensionName, name) == 0;
-        });
-        if (found) names.push_back(name);
-        return found;
-    };
-    if (!negativeViewports_) negativeViewports_ = enable(VK_KHR_MAINTENANCE_1_EXTENSION_NAME);
-    customBorders_ = enable(VK_EXT_CUSTOM_BORDER_COLOR_EXTENSION_NAME);
-    reductions_ = enable(VK_EXT_SAMPLER_FILTER_MINMAX_EXTENSION_NAME);
-    VkPhysicalDeviceCustomBorderColorFeaturesEXT borders{};
-    borders.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_CUSTOM_BORDER_COLOR_FEATURES_EXT;
-    borders.customBorderColors = VK_TRUE;
+    VERNIER_TRY(extensions_.query(
+        physicalDevice_, instanceFunction<PFN_vkGetPhysicalDeviceFeatures2KHR>("vkGetPhysicalDeviceFeatures2KHR")));
+    negativeViewports_ = negativeViewports_ || extensions_.maintenance1;
 
     // Robust access costs time that the other runs of a scene do not pay.
     features_.robustBufferAccess = VK_FALSE;
@@ -186,9 +170,9 @@ Status VulkanContext::createDevice(uint32_t deviceIndex) {
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queueInfo;
     info.pEnabledFeatures = &features_;
-    info.enabledExtensionCount = static_cast<uint32_t>(names.size());
-    info.ppEnabledExtensionNames = names.data();
-    if (customBorders_) info.pNext = &borders;
+    info.enabledExtensionCount = static_cast<uint32_t>(extensions_.names().size());
+    info.ppEnabledExtensionNames = extensions_.names().data();
+    info.pNext = extensions_.featureChain();
     VERNIER_TRY_VK(vkCreateDevice(physicalDevice_, &info, nullptr, &device_));
     cleanup_.add([this] { vkDestroyDevice(device_, nullptr); });
     vkGetDeviceQueue(device_, queueFamily_, 0, &queue_);

@@ -4,6 +4,7 @@
 
 #include "base/result.h"
 #include "conformance/drivers/try.h"
+#include "conformance/drivers/vulkan_extensions.h"
 
 #include <vulkan/vulkan.h>
 
@@ -74,9 +75,7 @@ class VulkanContext {
     bool hasCompute() const { return compute_; }
     /// Whether viewports may have negative heights.
     bool hasNegativeViewports() const { return negativeViewports_; }
-    bool hasCustomBorders() const { return customBorders_; }
-    /// Whether samplers can take minima and maxima.
-    bool hasReductions() const { return reductions_; }
+    const VulkanExtensions& extensions() const { return extensions_; }
 
     /// A memory type allowed by `typeBits` with all of `flags`; `unsupported` when there is none.
     Result<uint32_t> memoryType(uint32_t typeBits, VkMemoryPropertyFlags flags) const;
@@ -85,6 +84,10 @@ class VulkanContext {
     const std::string& validationErrors() const { return validationErrors_; }
 
   private:
+    template <class Function>
+    Function instanceFunction(const char* name) const {
+        return reinterpret_cast<Function>(vkGetInstanceProcAddr(instance_, name));
+    }
     Status createInstance(bool validate);
     Status createDevice(uint32_t deviceIndex);
     static VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
@@ -99,7 +102,8 @@ class VulkanContext {
     VkPhysicalDeviceProperties properties_{};
     VkPhysicalDeviceFeatures features_{};
     VkPhysicalDeviceMemoryProperties memory_{};
-    bool compute_ = false, negativeViewports_ = false, customBorders_ = false, reductions_ = false;
+    bool compute_ = false, negativeViewports_ = false;
+    VulkanExtensions extensions_;
     VkDevice device_ = VK_NULL_HANDLE;
     uint32_t queueFamily_ = 0;
     VkQueue queue_ = VK_NULL_HANDLE;

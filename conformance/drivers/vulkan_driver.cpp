@@ -149,18 +149,22 @@ Result<SceneCounts> SceneRun::readQueries() const {
 void SceneRun::recordPass(const ScenePass& scene, const VulkanPass& pass) {
     for (const SceneDraw& draw : scene.draws) {
         for (const SceneBinding& each : draw.bindings) {
-            if (each.image != kNone) resources_.useAll(frame_, each.image, ImageUse::sampled);
+            if (each.image == kNone) continue;
+            resources_.useAll(frame_, each.image,
+                              each.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE ? ImageUse::storage : ImageUse::sampled);
         }
     }
     for (const SceneAttachment& color : scene.colors) {
-        resources_.use(frame_, color.image, ImageUse::colorAttachment, color.mipLevel, 1, color.layer, 1);
+        resources_.use(frame_, color.image, ImageUse::colorAttachment, color.mipLevel, 1, color.layer,
+                       color.layerCount);
         if (color.resolveImage != kNone) {
-            resources_.use(frame_, color.resolveImage, ImageUse::colorAttachment, 0, 1, 0, 1);
+            resources_.use(frame_, color.resolveImage, ImageUse::colorAttachment, 0, 1, 0, color.layerCount);
         }
     }
     const SceneAttachment& depth = scene.depthStencil;
     if (depth.image != kNone) {
-        resources_.use(frame_, depth.image, ImageUse::depthAttachment, depth.mipLevel, 1, depth.layer, 1);
+        resources_.use(frame_, depth.image, ImageUse::depthAttachment, depth.mipLevel, 1, depth.layer,
+                       depth.layerCount);
     }
     VkRenderPassBeginInfo begin{};
     begin.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
@@ -180,6 +184,10 @@ void SceneRun::recordDraw(const SceneDraw& scene, const VulkanDraw& draw, const 
     vkCmdBindPipeline(frame_, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.handle);
     vkCmdSetViewport(frame_, 0, 1, &scene.viewport);
     vkCmdSetScissor(frame_, 0, 1, &scene.scissor);
+    for (size_t i = 0; i < scene.moreViews.size(); ++i) {
+        vkCmdSetViewport(frame_, static_cast<uint32_t>(i + 1), 1, &scene.moreViews[i].viewport);
+        vkCmdSetScissor(frame_, static_cast<uint32_t>(i + 1), 1, &scene.moreViews[i].scissor);
+    }
     if (!draw.sets.empty()) {
         vkCmdBindDescriptorSets(frame_, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.layout, 0,
                                 static_cast<uint32_t>(draw.sets.size()), draw.sets.data(), 0, nullptr);

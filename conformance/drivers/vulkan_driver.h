@@ -1,4 +1,5 @@
-// Runs scenes on whatever Vulkan driver the loader finds, with nothing beyond Vulkan 1.0's core.
+// Runs scenes on whatever Vulkan driver the loader finds, with Vulkan 1.0's core and the extensions that a scene asks
+// for (vulkan_extensions.h).
 #pragma once
 
 #include "conformance/drivers/driver.h"

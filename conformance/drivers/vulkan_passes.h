@@ -45,7 +45,7 @@ class VulkanPassBuilder {
     Status createLayouts(const SceneDraw& draw, VulkanPipeline& pipeline);
     Result<VkShaderModule> shaderModule(uint32_t index);
     Result<std::vector<VkDescriptorSet>> createSets(const SceneDraw& draw, const VulkanPipeline& pipeline);
-    Status checkFeatures(const ScenePipeline& scene) const;
+    Status checkFeatures(const ScenePipeline& scene, const SceneDraw& draw) const;
 
     VulkanContext& context_;
     VulkanResources& resources_;

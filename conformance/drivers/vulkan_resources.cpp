@@ -31,6 +31,10 @@ UseState stateOf(ImageUse use, VkImageAspectFlags aspects) {
                                                          : VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL,
                     VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
                     VK_ACCESS_SHADER_READ_BIT, false};
+        case ImageUse::storage:
+            return {VK_IMAGE_LAYOUT_GENERAL,
+                    VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+                    VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT, true};
         case ImageUse::colorAttachment:
             return {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
                     VK_ACCESS_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT, true};
@@ -50,6 +54,7 @@ VkImageType imageType(VkImageViewType view) {
 VkFormatFeatureFlags neededFeatures(VkImageUsageFlags usage) {
     VkFormatFeatureFlags features = 0;
     if ((usage & VK_IMAGE_USAGE_SAMPLED_BIT) != 0) features |= VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT;
+    if ((usage & VK_IMAGE_USAGE_STORAGE_BIT) != 0) features |= VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
     if ((usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT) != 0) features |= VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT;
     if ((usage & VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT) != 0) {
         features |= VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT;
@@ -148,7 +153,7 @@ Status VulkanResources::createImage(const SceneImage& scene) {
     VERNIER_TRY_VK(vkAllocateMemory(device, &allocation, nullptr, &memory));
     cleanup_.add([device, memory] { vkFreeMemory(device, memory, nullptr); });
     VERNIER_TRY_VK(vkBindImageMemory(device, image.handle, memory, 0));
-    if ((scene.usage & VK_IMAGE_USAGE_SAMPLED_BIT) != 0) {
+    if ((scene.usage & (VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT)) != 0) {
         // A view to sample through has one aspect.
         const VkImageAspectFlags aspect = image.aspects & ~VkImageAspectFlags{VK_IMAGE_ASPECT_STENCIL_BIT};
         const Result<VkImageView> view = createView(image, {aspect, 0, scene.mipLevels, 0, scene.arrayLayers},
@@ -181,9 +186,30 @@ Result<VkImageView> VulkanResources::createView(const Image& image, const VkImag
     return view;
 }
 
-Result<VkImageView> VulkanResources::attachmentView(uint32_t index, uint32_t mipLevel, uint32_t layer) {
+Result<VkImageView> VulkanResources::attachmentView(uint32_t index, uint32_t mipLevel, uint32_t layer,
+                                                    uint32_t layerCount) {
     const Image& image = images_[index];
-    return createView(image, {image.aspects, mipLevel, 1, layer, 1}, VK_IMAGE_VIEW_TYPE_2D);
+    return createView(image, {image.aspects, mipLevel, 1, layer, layerCount},
+                      layerCount == 1 ? VK_IMAGE_VIEW_TYPE_2D : VK_IMAGE_VIEW_TYPE_2D_ARRAY);
+}
+
+Result<VkBufferView> VulkanResources::texelView(const SceneBinding& binding) {
+    const VkFormatFeatureFlags needed = binding.type == VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER
+                                            ? VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT
+                                            : VK_FORMAT_FEATURE_UNIFORM_TEXEL_BUFFER_BIT;
+    if ((context_.formatProperties(binding.texelFormat).bufferFeatures & needed) == 0) {
+        return unsupported("texel buffers of format " + std::to_string(binding.texelFormat));
+    }
+    VkBufferViewCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO;
+    info.buffer = buffer(binding.buffer);
+    info.format = binding.texelFormat;
+    info.offset = binding.offset;
+    info.range = binding.range;
+    VkBufferView view = VK_NULL_HANDLE;
+    VERNIER_TRY_VK(vkCreateBufferView(context_.device(), &info, nullptr, &view));
+    cleanup_.add([device = context_.device(), view] { vkDestroyBufferView(device, view, nullptr); });
+    return view;
 }
 
 Status VulkanResources::createSampler(const SceneSampler& scene) {
@@ -205,14 +231,16 @@ Status VulkanResources::createSampler(const SceneSampler& scene) {
     border.sType = VK_STRUCTURE_TYPE_SAMPLER_CUSTOM_BORDER_COLOR_CREATE_INFO_EXT;
     std::copy(scene.customBorderColor.begin(), scene.customBorderColor.end(), border.customBorderColor.float32);
     if (scene.borderColor == VK_BORDER_COLOR_FLOAT_CUSTOM_EXT) {
-        if (!context_.hasCustomBorders()) return unsupported("the device lacks custom border colours");
+        if (context_.extensions().customBorders.customBorderColors == VK_FALSE) {
+            return unsupported("the device lacks custom border colours");
+        }
         info.pNext = &border;
     }
     VkSamplerReductionModeCreateInfo reduction{};
     reduction.sType = VK_STRUCTURE_TYPE_SAMPLER_REDUCTION_MODE_CREATE_INFO;
     reduction.reductionMode = scene.reduction;
     if (scene.reduction != VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE) {
-        if (!context_.hasReductions()) return unsupported("the device lacks minimum and maximum filters");
+        if (!context_.extensions().reductions) return unsupported("the device lacks minimum and maximum filters");
         reduction.pNext = info.pNext;
         info.pNext = &reduction;
     }

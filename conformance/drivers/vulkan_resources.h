@@ -15,6 +15,7 @@ enum class ImageUse : uint8_t {
     transferSource,
     transferDestination,
     sampled,
+    storage,
     colorAttachment,
     depthAttachment
 };
@@ -36,10 +37,12 @@ class VulkanResources {
     VkBuffer buffer(uint32_t index) const { return buffers_[index].handle; }
     VkImage image(uint32_t index) const { return images_[index].handle; }
     VkSampler sampler(uint32_t index) const { return samplers_[index]; }
-    /// All levels and layers, for sampling.
+    /// All levels and layers, for sampling and storing.
     VkImageView sampledView(uint32_t index) const { return images_[index].view; }
-    /// One level and layer, for an attachment.
-    Result<VkImageView> attachmentView(uint32_t index, uint32_t mipLevel, uint32_t layer);
+    /// One level of some layers, for an attachment.
+    Result<VkImageView> attachmentView(uint32_t index, uint32_t mipLevel, uint32_t layer, uint32_t layerCount);
+    /// A new view of a texel buffer.
+    Result<VkBufferView> texelView(const SceneBinding& binding);
 
     /// Records the barrier that takes subresources from their last use to the next one.
     void use(VkCommandBuffer commands, uint32_t image, ImageUse next, uint32_t mip, uint32_t mipCount, uint32_t layer,

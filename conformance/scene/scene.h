@@ -80,12 +80,20 @@ struct ScenePipeline {
     VkCullModeFlags cullMode = VK_CULL_MODE_NONE;
     VkFrontFace frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
     float lineWidth = 1;
+    VkLineRasterizationModeEXT lineMode = VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT;  // VK_EXT_line_rasterization
+    uint32_t stippleFactor = 0;                                                    // 0: lines are not stippled
+    uint16_t stipplePattern = 0;
+    bool provokingVertexLast = false;    // VK_EXT_provoking_vertex
+    bool depthNegativeOneToOne = false;  // VK_EXT_depth_clip_control
     bool depthClamp = false;
     bool depthBias = false;
     float depthBiasConstant = 0, depthBiasClamp = 0, depthBiasSlope = 0;
     VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
     bool alphaToCoverage = false, alphaToOne = false;
     uint32_t sampleMask = ~0u;
+    // One per sample, in sixteenths of a pixel from its upper left corner (0..15); none: the standard positions
+    // (VK_EXT_sample_locations). All pipelines of a pass agree.
+    std::vector<std::array<uint8_t, 2>> sampleLocations;
     bool sampleShading = false;
     float minSampleShading = 0;
     bool depthTest = false, depthWrite = false;
@@ -105,19 +113,27 @@ struct ScenePipeline {
 struct SceneBinding {
     uint32_t set = 0, binding = 0;
     // UNIFORM_BUFFER, STORAGE_BUFFER: buffer, offset, range. COMBINED_IMAGE_SAMPLER: image, sampler (all mips
-    // and layers, by SceneImage::viewType).
+    // and layers, by SceneImage::viewType). STORAGE_IMAGE: image, level 0 alone. UNIFORM_TEXEL_BUFFER,
+    // STORAGE_TEXEL_BUFFER: buffer, offset, range, texelFormat.
     VkDescriptorType type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     uint32_t buffer = kNone;
     VkDeviceSize offset = 0;
     VkDeviceSize range = VK_WHOLE_SIZE;
     uint32_t image = kNone;
     uint32_t sampler = kNone;
+    VkFormat texelFormat = VK_FORMAT_UNDEFINED;
 };
 
 struct SceneVertexBuffer {
     uint32_t binding = 0;
     uint32_t buffer = kNone;
     VkDeviceSize offset = 0;
+};
+
+/// A viewport with its scissor.
+struct SceneView {
+    VkViewport viewport{};
+    VkRect2D scissor{};
 };
 
 struct SceneDraw {
@@ -130,7 +146,8 @@ struct SceneDraw {
     VkIndexType indexType = VK_INDEX_TYPE_UINT16;
     VkViewport viewport{};
     VkRect2D scissor{};
-    uint32_t count = 0;  // vertices or indices
+    std::vector<SceneView> moreViews;  // those after the first, which the vertex shader chooses by ViewportIndex
+    uint32_t count = 0;                // vertices or indices
     uint32_t instances = 1;
     uint32_t first = 0;  // first vertex or first index
     int32_t vertexOffset = 0;
@@ -140,6 +157,7 @@ struct SceneDraw {
 struct SceneAttachment {
     uint32_t image = kNone;
     uint32_t mipLevel = 0, layer = 0;
+    uint32_t layerCount = 1;  // of layered and multiview passes; in each of its attachments the same
     VkAttachmentLoadOp loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
     VkClearValue clear{};
     uint32_t resolveImage = kNone;  // single-sampled; average resolve at the end of the pass
@@ -149,6 +167,7 @@ struct ScenePass {
     std::vector<SceneAttachment> colors;
     SceneAttachment depthStencil;  // image == kNone: none
     VkExtent2D extent{};           // render area from (0, 0)
+    uint32_t viewMask = 0;         // not 0: every draw goes to each of these layers (VK_KHR_multiview)
     std::vector<SceneDraw> draws;
 };
 

@@ -96,6 +96,27 @@ PipelineRecorder& PipelineRecorder::lineWidth(float width) {
     return *this;
 }
 
+PipelineRecorder& PipelineRecorder::lineMode(VkLineRasterizationModeEXT mode) {
+    state().lineMode = mode;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::stipple(uint32_t factor, uint16_t pattern) {
+    state().stippleFactor = factor;
+    state().stipplePattern = pattern;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::provokingVertexLast() {
+    state().provokingVertexLast = true;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::depthNegativeOneToOne() {
+    state().depthNegativeOneToOne = true;
+    return *this;
+}
+
 PipelineRecorder& PipelineRecorder::depthClamp() {
     state().depthClamp = true;
     return *this;
@@ -133,15 +154,24 @@ PipelineRecorder& PipelineRecorder::sampleMask(uint32_t mask) {
     return *this;
 }
 
+PipelineRecorder& PipelineRecorder::sampleLocations(std::vector<std::array<uint8_t, 2>> locations) {
+    state().sampleLocations = std::move(locations);
+    return *this;
+}
+
 PipelineRecorder& PipelineRecorder::sampleShading(float least) {
     state().sampleShading = true;
     state().minSampleShading = least;
     return *this;
 }
 
-PipelineRecorder& PipelineRecorder::alphaToCoverage(bool alphaToOne) {
+PipelineRecorder& PipelineRecorder::alphaToCoverage() {
     state().alphaToCoverage = true;
-    state().alphaToOne = alphaToOne;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::alphaToOne() {
+    state().alphaToOne = true;
     return *this;
 }
 
@@ -199,6 +229,17 @@ PassRecorder& PassRecorder::depthStencil(uint32_t image, float depth, uint32_t s
     return *this;
 }
 
+PassRecorder& PassRecorder::layers(uint32_t count) {
+    for (SceneAttachment& color : pass().colors) color.layerCount = count;
+    pass().depthStencil.layerCount = count;
+    return *this;
+}
+
+PassRecorder& PassRecorder::views(uint32_t mask) {
+    pass().viewMask = mask;
+    return layers(static_cast<uint32_t>(std::bit_width(mask)));
+}
+
 DrawRecorder& DrawRecorder::vertices(uint32_t buffer, uint32_t binding) {
     draw_->vertexBuffers.push_back({binding, buffer, 0});
     return *this;
@@ -240,6 +281,28 @@ DrawRecorder& DrawRecorder::texture(uint32_t binding, uint32_t image, uint32_t s
     return *this;
 }
 
+DrawRecorder& DrawRecorder::storageBuffer(uint32_t binding, uint32_t buffer) {
+    uniform(binding, buffer);
+    draw_->bindings.back().type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    return *this;
+}
+
+DrawRecorder& DrawRecorder::storageImage(uint32_t binding, uint32_t image) {
+    SceneBinding entry;
+    entry.binding = binding;
+    entry.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+    entry.image = image;
+    draw_->bindings.push_back(entry);
+    return *this;
+}
+
+DrawRecorder& DrawRecorder::texelBuffer(uint32_t binding, uint32_t buffer, VkFormat format, VkDescriptorType type) {
+    uniform(binding, buffer);
+    draw_->bindings.back().type = type;
+    draw_->bindings.back().texelFormat = format;
+    return *this;
+}
+
 DrawRecorder& DrawRecorder::viewport(float x, float y, float width, float height, float minDepth, float maxDepth) {
     draw_->viewport = {x, y, width, height, minDepth, maxDepth};
     return *this;
@@ -247,6 +310,11 @@ DrawRecorder& DrawRecorder::viewport(float x, float y, float width, float height
 
 DrawRecorder& DrawRecorder::scissor(int32_t x, int32_t y, uint32_t width, uint32_t height) {
     draw_->scissor = {{x, y}, {width, height}};
+    return *this;
+}
+
+DrawRecorder& DrawRecorder::view(const SceneView& view) {
+    draw_->moreViews.push_back(view);
     return *this;
 }
 
@@ -274,6 +342,12 @@ uint32_t SceneRecorder::colorTarget(std::string_view name, VkFormat format, VkEx
     return addImage(std::move(image));
 }
 
+uint32_t SceneRecorder::layeredTarget(std::string_view name, VkFormat format, VkExtent2D extent, uint32_t layers) {
+    const uint32_t index = colorTarget(name, format, extent);
+    scene_.images[index].arrayLayers = layers;
+    return index;
+}
+
 uint32_t SceneRecorder::depthTarget(std::string_view name, VkFormat format, VkExtent2D extent,
                                     VkSampleCountFlagBits samples, VkImageUsageFlags moreUsage) {
     SceneImage image;
@@ -282,6 +356,16 @@ uint32_t SceneRecorder::depthTarget(std::string_view name, VkFormat format, VkEx
     image.extent = extent;
     image.samples = samples;
     image.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | moreUsage;
+    return addImage(std::move(image));
+}
+
+uint32_t SceneRecorder::storageImage(std::string_view name, VkFormat format, VkExtent2D extent, Bytes data) {
+    SceneImage image;
+    image.name = name;
+    image.format = format;
+    image.extent = extent;
+    image.usage = VK_IMAGE_USAGE_STORAGE_BIT;
+    if (!data.empty()) image.data.push_back(std::move(data));
     return addImage(std::move(image));
 }
 

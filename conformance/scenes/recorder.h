@@ -44,14 +44,21 @@ class PipelineRecorder {
     PipelineRecorder& depth(VkCompareOp compare, bool write = true);
     PipelineRecorder& polygonMode(VkPolygonMode mode);
     PipelineRecorder& lineWidth(float width);
+    PipelineRecorder& lineMode(VkLineRasterizationModeEXT mode);
+    PipelineRecorder& stipple(uint32_t factor, uint16_t pattern);
+    PipelineRecorder& provokingVertexLast();
+    /// Clip depths from -w to w.
+    PipelineRecorder& depthNegativeOneToOne();
     PipelineRecorder& depthClamp();
     PipelineRecorder& depthBounds(float min, float max);
     PipelineRecorder& depthBias(float constant, float slope, float clamp = 0);
     PipelineRecorder& stencil(const VkStencilOpState& front, const VkStencilOpState& back);
     PipelineRecorder& samples(VkSampleCountFlagBits samples);
     PipelineRecorder& sampleMask(uint32_t mask);
+    PipelineRecorder& sampleLocations(std::vector<std::array<uint8_t, 2>> locations);
     PipelineRecorder& sampleShading(float least);
-    PipelineRecorder& alphaToCoverage(bool alphaToOne = false);
+    PipelineRecorder& alphaToCoverage();
+    PipelineRecorder& alphaToOne();
     /// The number of colour attachments (1 unless said); all unblended, all components written.
     PipelineRecorder& targets(uint32_t count);
     PipelineRecorder& blend(const VkPipelineColorBlendAttachmentState& state, uint32_t target = 0);
@@ -76,6 +83,10 @@ class PassRecorder {
     /// Keeps what an earlier step left in the image.
     PassRecorder& loadColor(uint32_t image);
     PassRecorder& depthStencil(uint32_t image, float depth = 1, uint32_t stencil = 0);
+    /// Draws to so many layers of the attachments added before, which the vertex shader chooses by Layer.
+    PassRecorder& layers(uint32_t count);
+    /// Draws everything to each of these layers of the attachments added before.
+    PassRecorder& views(uint32_t mask);
 
   private:
     ScenePass& pass() { return std::get<ScenePass>(scene_->steps.back()); }
@@ -94,8 +105,13 @@ class DrawRecorder {
     DrawRecorder& instances(uint32_t count, uint32_t firstInstance = 0);
     DrawRecorder& uniform(uint32_t binding, uint32_t buffer);
     DrawRecorder& texture(uint32_t binding, uint32_t image, uint32_t sampler);
+    DrawRecorder& storageBuffer(uint32_t binding, uint32_t buffer);
+    DrawRecorder& storageImage(uint32_t binding, uint32_t image);
+    DrawRecorder& texelBuffer(uint32_t binding, uint32_t buffer, VkFormat format, VkDescriptorType type);
     DrawRecorder& viewport(float x, float y, float width, float height, float minDepth = 0, float maxDepth = 1);
     DrawRecorder& scissor(int32_t x, int32_t y, uint32_t width, uint32_t height);
+    /// A further viewport, with a scissor.
+    DrawRecorder& view(const SceneView& view);
 
     template <class T>
     DrawRecorder& push(const T& value) {
@@ -130,8 +146,11 @@ class SceneRecorder {
 
     uint32_t colorTarget(std::string_view name, VkFormat format, VkExtent2D extent,
                          VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT, VkImageUsageFlags moreUsage = 0);
+    uint32_t layeredTarget(std::string_view name, VkFormat format, VkExtent2D extent, uint32_t layers);
     uint32_t depthTarget(std::string_view name, VkFormat format, VkExtent2D extent,
                          VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT, VkImageUsageFlags moreUsage = 0);
+    /// An image that shaders load from and store to, with or without contents.
+    uint32_t storageImage(std::string_view name, VkFormat format, VkExtent2D extent, Bytes data);
     /// A sampled image; levels[0] has `extent`, each next one half of it.
     uint32_t texture(std::string_view name, VkFormat format, VkExtent2D extent, std::vector<Bytes> levels);
     /// A sampled image of any kind, as described; its usage is set here.

@@ -1,0 +1,228 @@
+// The part of VulkanPassBuilder that makes pipelines.
+#include "conformance/drivers/stopwatch.h"
+#include "conformance/drivers/vulkan_passes.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <string>
+
+namespace vernier::conformance {
+namespace {
+
+bool readsSecondSource(const VkPipelineColorBlendAttachmentState& state) {
+    const auto second = [](VkBlendFactor factor) {
+        return factor >= VK_BLEND_FACTOR_SRC1_COLOR && factor <= VK_BLEND_FACTOR_ONE_MINUS_SRC1_ALPHA;
+    };
+    return second(state.srcColorBlendFactor) || second(state.dstColorBlendFactor) ||
+           second(state.srcAlphaBlendFactor) || second(state.dstAlphaBlendFactor);
+}
+
+/// Whether a vertex shader chooses its viewport or layer by itself.
+bool writesViewOrLayer(const SceneShader& shader) {
+    return shader.glsl.find("gl_ViewportIndex") != std::string::npos ||
+           shader.glsl.find("gl_Layer") != std::string::npos;
+}
+
+bool saysLines(const ScenePipeline& scene) {
+    return scene.lineMode != VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT || scene.stippleFactor != 0;
+}
+
+}  // namespace
+
+Status VulkanPassBuilder::checkFeatures(const ScenePipeline& scene, const SceneDraw& draw) const {
+    const VkPhysicalDeviceFeatures& features = context_.features();
+    const auto need = [](bool wanted, VkBool32 feature, const char* name) -> Status {
+        if (wanted && feature == VK_FALSE) return unsupported(std::string("the device lacks feature ") + name);
+        return {};
+    };
+    VERNIER_TRY(need(scene.depthClamp, features.depthClamp, "depthClamp"));
+    VERNIER_TRY(need(scene.depthBias && scene.depthBiasClamp != 0, features.depthBiasClamp, "depthBiasClamp"));
+    VERNIER_TRY(need(scene.polygonMode != VK_POLYGON_MODE_FILL, features.fillModeNonSolid, "fillModeNonSolid"));
+    VERNIER_TRY(need(scene.lineWidth != 1, features.wideLines, "wideLines"));
+    VERNIER_TRY(need(scene.depthBoundsTest, features.depthBounds, "depthBounds"));
+    VERNIER_TRY(need(scene.logicOpEnable, features.logicOp, "logicOp"));
+    VERNIER_TRY(need(scene.alphaToOne, features.alphaToOne, "alphaToOne"));
+    VERNIER_TRY(need(scene.sampleShading, features.sampleRateShading, "sampleRateShading"));
+    VERNIER_TRY(need(!draw.moreViews.empty(), features.multiViewport, "multiViewport"));
+    VERNIER_TRY(need(std::any_of(scene.blend.begin(), scene.blend.end(), readsSecondSource), features.dualSrcBlend,
+                     "dualSrcBlend"));
+    const VulkanExtensions& extensions = context_.extensions();
+    VERNIER_TRY(need(scene.provokingVertexLast, extensions.provokingVertex.provokingVertexLast, "provokingVertexLast"));
+    VERNIER_TRY(need(scene.depthNegativeOneToOne, extensions.clipControl.depthClipControl, "depthClipControl"));
+    VERNIER_TRY(need(!scene.sampleLocations.empty(), extensions.sampleLocations ? VK_TRUE : VK_FALSE,
+                     "VK_EXT_sample_locations"));
+    VERNIER_TRY(need(writesViewOrLayer(scene_.shaders[scene.vertexShader]),
+                     extensions.viewportIndexLayer ? VK_TRUE : VK_FALSE, "VK_EXT_shader_viewport_index_layer"));
+    const VkPhysicalDeviceLineRasterizationFeaturesEXT& lines = extensions.lines;
+    const bool stippled = scene.stippleFactor != 0;
+    const auto needLines = [&](VkLineRasterizationModeEXT mode, VkBool32 drawn, VkBool32 stipple, const char* name) {
+        return scene.lineMode != mode ? Status{} : need(true, stippled ? drawn & stipple : drawn, name);
+    };
+    VERNIER_TRY(needLines(VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT, lines.bresenhamLines, lines.stippledBresenhamLines,
+                          "(stippled) bresenhamLines"));
+    VERNIER_TRY(needLines(VK_LINE_RASTERIZATION_MODE_RECTANGULAR_EXT, lines.rectangularLines,
+                          lines.stippledRectangularLines, "(stippled) rectangularLines"));
+    VERNIER_TRY(needLines(VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT, lines.smoothLines,
+                          lines.stippledSmoothLines, "(stippled) smoothLines"));
+    VERNIER_TRY(needLines(VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT, VK_TRUE, lines.stippledRectangularLines,
+                          "stippledRectangularLines"));
+    const auto differs = [&](const VkPipelineColorBlendAttachmentState& each) {
+        return std::memcmp(&each, &scene.blend[0], sizeof each) != 0;
+    };
+    VERNIER_TRY(need(std::any_of(scene.blend.begin(), scene.blend.end(), differs), features.independentBlend,
+                     "independentBlend"));
+    return {};
+}
+
+Result<VkShaderModule> VulkanPassBuilder::shaderModule(uint32_t index) {
+    if (modules_[index] != VK_NULL_HANDLE) return modules_[index];
+    const VkDevice device = context_.device();
+    VkShaderModuleCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+    info.codeSize = scene_.shaders[index].spirv.size() * sizeof(uint32_t);
+    info.pCode = scene_.shaders[index].spirv.data();
+    VkShaderModule shader = VK_NULL_HANDLE;
+    const Stopwatch watch;
+    VERNIER_TRY_VK(vkCreateShaderModule(device, &info, nullptr, &shader));
+    moduleTime_ += watch.milliseconds();
+    resources_.cleanup().add([device, shader] { vkDestroyShaderModule(device, shader, nullptr); });
+    modules_[index] = shader;
+    return shader;
+}
+
+Result<VulkanPipeline> VulkanPassBuilder::createPipeline(const SceneDraw& draw, VkRenderPass renderPass) {
+    const VkDevice device = context_.device();
+    const ScenePipeline& scene = scene_.pipelines[draw.pipeline];
+    VERNIER_TRY(checkFeatures(scene, draw));
+    VulkanPipeline pipeline;
+    VERNIER_TRY(createLayouts(draw, pipeline));
+
+    std::vector<VkPipelineShaderStageCreateInfo> stages;
+    std::array<VkSpecializationInfo, 2> specializations{};
+    for (const uint32_t index : {scene.vertexShader, scene.fragmentShader}) {
+        if (index == kNone) continue;
+        const Result<VkShaderModule> shader = shaderModule(index);
+        if (!shader) return shader.error();
+        const SceneShader& source = scene_.shaders[index];
+        VkSpecializationInfo& specialization = specializations[stages.size()];
+        specialization = {static_cast<uint32_t>(source.specialization.size()), source.specialization.data(),
+                          source.specializationData.size(), source.specializationData.data()};
+        VkPipelineShaderStageCreateInfo stage{};
+        stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+        stage.stage = source.stage;
+        stage.module = *shader;
+        stage.pName = "main";
+        stage.pSpecializationInfo = source.specialization.empty() ? nullptr : &specialization;
+        stages.push_back(stage);
+    }
+    VkPipelineVertexInputStateCreateInfo vertexInput{};
+    vertexInput.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
+    vertexInput.vertexBindingDescriptionCount = static_cast<uint32_t>(scene.vertexBindings.size());
+    vertexInput.pVertexBindingDescriptions = scene.vertexBindings.data();
+    vertexInput.vertexAttributeDescriptionCount = static_cast<uint32_t>(scene.vertexAttributes.size());
+    vertexInput.pVertexAttributeDescriptions = scene.vertexAttributes.data();
+    VkPipelineInputAssemblyStateCreateInfo assembly{};
+    assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
+    assembly.topology = scene.topology;
+    assembly.primitiveRestartEnable = scene.primitiveRestart ? VK_TRUE : VK_FALSE;
+    VkPipelineViewportStateCreateInfo viewport{};
+    viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
+    viewport.viewportCount = viewport.scissorCount = static_cast<uint32_t>(1 + draw.moreViews.size());
+    VkPipelineViewportDepthClipControlCreateInfoEXT clipControl{};
+    clipControl.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_DEPTH_CLIP_CONTROL_CREATE_INFO_EXT;
+    clipControl.negativeOneToOne = VK_TRUE;
+    if (scene.depthNegativeOneToOne) viewport.pNext = &clipControl;
+    VkPipelineRasterizationStateCreateInfo raster{};
+    raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
+    raster.depthClampEnable = scene.depthClamp ? VK_TRUE : VK_FALSE;
+    raster.polygonMode = scene.polygonMode;
+    raster.cullMode = scene.cullMode;
+    raster.frontFace = scene.frontFace;
+    raster.depthBiasEnable = scene.depthBias ? VK_TRUE : VK_FALSE;
+    raster.depthBiasConstantFactor = scene.depthBiasConstant;
+    raster.depthBiasClamp = scene.depthBiasClamp;
+    raster.depthBiasSlopeFactor = scene.depthBiasSlope;
+    raster.lineWidth = scene.lineWidth;
+    VkPipelineRasterizationLineStateCreateInfoEXT lines{};
+    lines.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_LINE_STATE_CREATE_INFO_EXT;
+    lines.lineRasterizationMode = scene.lineMode;
+    lines.stippledLineEnable = scene.stippleFactor != 0 ? VK_TRUE : VK_FALSE;
+    lines.lineStippleFactor = std::max(1u, scene.stippleFactor);
+    lines.lineStipplePattern = scene.stipplePattern;
+    if (saysLines(scene)) {
+        lines.pNext = raster.pNext;
+        raster.pNext = &lines;
+    }
+    VkPipelineRasterizationProvokingVertexStateCreateInfoEXT provoking{};
+    provoking.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_PROVOKING_VERTEX_STATE_CREATE_INFO_EXT;
+    provoking.provokingVertexMode = VK_PROVOKING_VERTEX_MODE_LAST_VERTEX_EXT;
+    if (scene.provokingVertexLast) {
+        provoking.pNext = raster.pNext;
+        raster.pNext = &provoking;
+    }
+    VkPipelineMultisampleStateCreateInfo multisample{};
+    multisample.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
+    multisample.rasterizationSamples = scene.samples;
+    multisample.pSampleMask = &scene.sampleMask;
+    multisample.alphaToCoverageEnable = scene.alphaToCoverage ? VK_TRUE : VK_FALSE;
+    multisample.alphaToOneEnable = scene.alphaToOne ? VK_TRUE : VK_FALSE;
+    multisample.sampleShadingEnable = scene.sampleShading ? VK_TRUE : VK_FALSE;
+    multisample.minSampleShading = scene.minSampleShading;
+    std::vector<VkSampleLocationEXT> locations;
+    for (const auto& [x, y] : scene.sampleLocations) {
+        locations.push_back({static_cast<float>(x) / 16, static_cast<float>(y) / 16});
+    }
+    VkPipelineSampleLocationsStateCreateInfoEXT sampleLocations{};
+    sampleLocations.sType = VK_STRUCTURE_TYPE_PIPELINE_SAMPLE_LOCATIONS_STATE_CREATE_INFO_EXT;
+    sampleLocations.sampleLocationsEnable = VK_TRUE;
+    sampleLocations.sampleLocationsInfo.sType = VK_STRUCTURE_TYPE_SAMPLE_LOCATIONS_INFO_EXT;
+    sampleLocations.sampleLocationsInfo.sampleLocationsPerPixel = scene.samples;
+    sampleLocations.sampleLocationsInfo.sampleLocationGridSize = {1, 1};
+    sampleLocations.sampleLocationsInfo.sampleLocationsCount = static_cast<uint32_t>(locations.size());
+    sampleLocations.sampleLocationsInfo.pSampleLocations = locations.data();
+    if (!locations.empty()) multisample.pNext = &sampleLocations;
+    VkPipelineDepthStencilStateCreateInfo depth{};
+    depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
+    depth.depthTestEnable = scene.depthTest ? VK_TRUE : VK_FALSE;
+    depth.depthWriteEnable = scene.depthWrite ? VK_TRUE : VK_FALSE;
+    depth.depthCompareOp = scene.depthCompare;
+    depth.depthBoundsTestEnable = scene.depthBoundsTest ? VK_TRUE : VK_FALSE;
+    depth.minDepthBounds = scene.minDepthBounds;
+    depth.maxDepthBounds = scene.maxDepthBounds;
+    depth.stencilTestEnable = scene.stencilTest ? VK_TRUE : VK_FALSE;
+    depth.front = scene.front;
+    depth.back = scene.back;
+    VkPipelineColorBlendStateCreateInfo blend{};
+    blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
+    blend.logicOpEnable = scene.logicOpEnable ? VK_TRUE : VK_FALSE;
+    blend.logicOp = scene.logicOp;
+    blend.attachmentCount = static_cast<uint32_t>(scene.blend.size());
+    blend.pAttachments = scene.blend.data();
+    std::copy(scene.blendConstants.begin(), scene.blendConstants.end(), blend.blendConstants);
+    constexpr std::array kDynamic{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+    VkPipelineDynamicStateCreateInfo dynamic{};
+    dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
+    dynamic.dynamicStateCount = kDynamic.size();
+    dynamic.pDynamicStates = kDynamic.data();
+
+    VkGraphicsPipelineCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
+    info.stageCount = static_cast<uint32_t>(stages.size());
+    info.pStages = stages.data();
+    info.pVertexInputState = &vertexInput;
+    info.pInputAssemblyState = &assembly;
+    info.pViewportState = &viewport;
+    info.pRasterizationState = &raster;
+    info.pMultisampleState = &multisample;
+    info.pDepthStencilState = &depth;
+    info.pColorBlendState = &blend;
+    info.pDynamicState = &dynamic;
+    info.layout = pipeline.layout;
+    info.renderPass = renderPass;
+    VERNIER_TRY_VK(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline.handle));
+    resources_.cleanup().add([device, handle = pipeline.handle] { vkDestroyPipeline(device, handle, nullptr); });
+    return pipeline;
+}
+
+}  // namespace vernier::conformance

@@ -1,0 +1,372 @@
+// Scenes about how vertices become primitives and where these go: provoking vertices, restart, depth bias, clamping and
+// clip depths, viewports, layers and views.
+#include "conformance/scenes/recorder.h"
+#include "conformance/scenes/scenes.h"
+#include "conformance/scenes/shapes.h"
+
+#include <array>
+#include <cmath>
+#include <functional>
+
+namespace vernier::conformance::scenes {
+namespace {
+
+constexpr VkFormat kRgba8 = VK_FORMAT_R8G8B8A8_UNORM;
+constexpr VkExtent2D kExtent{160, 160};
+constexpr std::array<float, 4> kDark{0.07f, 0.08f, 0.11f, 1};
+
+struct Vertex {
+    glm::vec3 position, color;
+};
+
+constexpr const char* kVertexGlsl = R"(#version 450
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 color;
+layout(location = 0) out vec3 vColor;
+void main() {
+    gl_Position = vec4(position, 1.0);
+    vColor = color;
+}
+)";
+
+constexpr const char* kFlatVertexGlsl = R"(#version 450
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 color;
+layout(location = 0) flat out vec3 vColor;
+void main() {
+    gl_Position = vec4(position, 1.0);
+    vColor = color;
+}
+)";
+constexpr const char* kFlatFragmentGlsl = R"(#version 450
+layout(location = 0) flat in vec3 vColor;
+layout(location = 0) out vec4 color;
+void main() { color = vec4(vColor, 1.0); }
+)";
+
+PipelineRecorder pipeline(SceneRecorder& record, const char* vertexGlsl = kVertexGlsl,
+                          const char* fragmentGlsl = kColorFragmentGlsl) {
+    return record.pipeline(record.vertex(vertexGlsl), record.fragment(fragmentGlsl))
+        .binding(sizeof(Vertex))
+        .attribute(VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position))
+        .attribute(VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, color));
+}
+
+glm::vec3 hue(int i) {
+    const std::array<glm::vec3, 7> colors{{{0.9f, 0.3f, 0.25f},
+                                           {0.95f, 0.7f, 0.25f},
+                                           {0.6f, 0.85f, 0.3f},
+                                           {0.25f, 0.75f, 0.6f},
+                                           {0.25f, 0.5f, 0.9f},
+                                           {0.6f, 0.4f, 0.9f},
+                                           {0.9f, 0.4f, 0.7f}}};
+    return colors[static_cast<size_t>(i) % colors.size()];
+}
+
+/// A band of triangles for strips: `count` vertices, alternately above and below.
+std::vector<Vertex> band(int count, float top) {
+    std::vector<Vertex> vertices;
+    for (int i = 0; i < count; ++i) {
+        const float x = -0.9f + 1.8f * static_cast<float>(i) / static_cast<float>(count - 1);
+        vertices.push_back({{x, i % 2 == 0 ? top : top + 0.42f, 0.5f}, hue(i)});
+    }
+    return vertices;
+}
+
+/// A half wheel for fans, the hub first.
+std::vector<Vertex> wheel(int rim, float top) {
+    std::vector<Vertex> vertices{{{0.01f, top, 0.5f}, hue(rim)}};
+    for (int i = 0; i < rim; ++i) {
+        const double angle = 0.08 + 2.98 * i / (rim - 1);
+        vertices.push_back(
+            {{static_cast<float>(0.85 * std::cos(angle)), top + static_cast<float>(0.5 * std::sin(angle)), 0.5f},
+             hue(i)});
+    }
+    return vertices;
+}
+
+void addQuad(std::vector<Vertex>& list, glm::vec2 low, glm::vec2 high, const std::array<float, 4>& depths,
+             glm::vec3 color) {
+    const Vertex a{{low, depths[0]}, color}, b{{high.x, low.y, depths[1]}, color};
+    const Vertex c{{low.x, high.y, depths[2]}, color}, d{{high, depths[3]}, color};
+    list.insert(list.end(), {a, b, c, c, b, d});
+}
+
+}  // namespace
+
+Result<Scene> provoking_vertex() {
+    SceneRecorder record(
+        "provoking_vertex",
+        "Flat colours of strips, fans and lists with the first vertex as the provoking one on the left "
+        "and the last one on the right.");
+    const uint32_t target = record.colorTarget("color", kRgba8, {320, 160});
+    const auto strip = band(9, -0.95f), list = band(9, -0.45f), fan = wheel(7, 0.2f);
+    const uint32_t stripBuffer = record.vertexBuffer("strip", strip), listBuffer = record.vertexBuffer("list", list),
+                   fanBuffer = record.vertexBuffer("fan", fan);
+    record.pass({320, 160}).color(target, kDark);
+    for (const bool last : {false, true}) {
+        const auto draw = [&](VkPrimitiveTopology topology, uint32_t buffer, size_t count) {
+            PipelineRecorder flat = pipeline(record, kFlatVertexGlsl, kFlatFragmentGlsl).topology(topology);
+            if (last) flat.provokingVertexLast();
+            record.draw(flat, static_cast<uint32_t>(count))
+                .vertices(buffer)
+                .viewport(last ? 160.0f : 0.0f, 0, 160, 160)
+                .scissor(last ? 160 : 0, 0, 160, 160);
+        };
+        draw(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP, stripBuffer, strip.size());
+        draw(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST, listBuffer, list.size());
+        draw(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN, fanBuffer, fan.size());
+    }
+    record.output(target);
+    return record.finish();
+}
+
+Result<Scene> primitive_restart() {
+    SceneRecorder record("primitive_restart",
+                         "A strip and a fan cut by restart indices of 16 and 32 bits, twice in a row and after too few "
+                         "vertices; the base vertex is added after the comparison.");
+    const uint32_t target = record.colorTarget("color", kRgba8, kExtent);
+    auto vertices = band(12, -0.9f);
+    const auto fan = wheel(9, 0.05f);
+    const auto base = static_cast<int32_t>(vertices.size());
+    vertices.insert(vertices.end(), fan.begin(), fan.end());
+    constexpr uint16_t kCut = 0xffff;
+    constexpr uint32_t kWideCut = ~0u;
+    const std::array<uint16_t, 17> stripIndices{0, 1, 2, 3, kCut, kCut, 4, 5, kCut, 5, 6, 7, kCut, 8, 9, 10, 11};
+    const std::array<uint32_t, 13> fanIndices{kWideCut, 0, 1, 2, 3, kWideCut, 0, 4, 5, kWideCut, 0, 7, 9};
+    const uint32_t buffer = record.vertexBuffer("vertices", vertices);
+    const uint32_t narrow = record.indexBuffer("strip", stripIndices), wide = record.indexBuffer("fan", fanIndices);
+    const auto flat = [&](VkPrimitiveTopology topology) {
+        return pipeline(record, kFlatVertexGlsl, kFlatFragmentGlsl).topology(topology, true);
+    };
+    const uint32_t strips = flat(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP), fans = flat(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN);
+    record.pass(kExtent).color(target, kDark);
+    record.draw(strips, stripIndices.size()).vertices(buffer).indices(narrow, VK_INDEX_TYPE_UINT16);
+    record.draw(fans, fanIndices.size()).vertices(buffer).indices(wide, VK_INDEX_TYPE_UINT32).first(0, base);
+    record.output(target);
+    return record.finish();
+}
+
+namespace {
+
+/// Tiles over a leaning sheet, in its plane, each with a bias that decides whether it shows.
+Result<Scene> biasedTiles(SceneRecorder& record, VkFormat depthFormat) {
+    const uint32_t target = record.colorTarget("color", kRgba8, kExtent);
+    const uint32_t depth = record.depthTarget("depth", depthFormat, kExtent);
+    const auto depthAt = [](glm::vec2 p) { return 0.5f + 0.25f * p.x + 0.125f * p.y; };
+    const auto depthsOf = [&](glm::vec2 low, glm::vec2 high) {
+        return std::array<float, 4>{depthAt(low), depthAt({high.x, low.y}), depthAt({low.x, high.y}), depthAt(high)};
+    };
+    std::vector<Vertex> vertices;
+    addQuad(vertices, {-1, -1}, {1, 1}, depthsOf({-1, -1}, {1, 1}), {0.25f, 0.3f, 0.4f});
+    struct Bias {
+        float constant, slope, clamp;
+    };
+    constexpr std::array<Bias, 9> kBiases{{{-8, 0, 0},
+                                           {8, 0, 0},
+                                           {0, -2, 0},
+                                           {0, 2, 0},
+                                           {-4, -1, 0},
+                                           {0, -40, -0.001f},
+                                           {3000, 0, 0.0005f},
+                                           {-2000, 0, -0.25f},
+                                           {-100, 1, 0}}};
+    for (int i = 0; i < 9; ++i) {
+        const glm::vec2 low{-0.94f + 0.64f * static_cast<float>(i % 3), -0.94f + 0.64f * static_cast<float>(i / 3)};
+        addQuad(vertices, low, low + 0.6f, depthsOf(low, low + 0.6f), hue(i));
+    }
+    const uint32_t buffer = record.vertexBuffer("tiles", vertices);
+    record.pass(kExtent).color(target, kDark).depthStencil(depth);
+    record.draw(pipeline(record).depth(VK_COMPARE_OP_LESS), 6).vertices(buffer);
+    for (size_t i = 0; i < kBiases.size(); ++i) {
+        const Bias& bias = kBiases[i];
+        const uint32_t state =
+            pipeline(record).depth(VK_COMPARE_OP_LESS).depthBias(bias.constant, bias.slope, bias.clamp);
+        record.draw(state, 6).vertices(buffer).first(static_cast<uint32_t>(6 + 6 * i));
+    }
+    record.output(target);
+    record.output(depth);
+    return record.finish();
+}
+
+}  // namespace
+
+Result<Scene> depth_bias() {
+    SceneRecorder record("depth_bias",
+                         "Nine tiles in the plane of a leaning sheet, pulled out of it or pushed behind it by constant "
+                         "and slope biases, with and without clamps; 32-bit float depth.");
+    return biasedTiles(record, VK_FORMAT_D32_SFLOAT);
+}
+
+Result<Scene> depth_bias_fixed() {
+    SceneRecorder record("depth_bias_fixed", "The tiles of depth_bias on 16-bit fixed-point depth.");
+    return biasedTiles(record, VK_FORMAT_D16_UNORM);
+}
+
+namespace {
+
+/// Blades that reach through the near and the far plane.
+Result<Scene> blades(SceneRecorder& record, const std::function<void(PipelineRecorder&)>& state, float near) {
+    const uint32_t target = record.colorTarget("color", kRgba8, kExtent);
+    const uint32_t depth = record.depthTarget("depth", VK_FORMAT_D32_SFLOAT, kExtent);
+    std::vector<Vertex> vertices;
+    const float span = 1 - near;
+    for (int i = 0; i < 7; ++i) {
+        const float x = -0.93f + 0.27f * static_cast<float>(i);
+        const float from = near - 0.4f * span + 0.08f * span * static_cast<float>(i),
+                    to = 1.35f - 0.07f * static_cast<float>(i);
+        addQuad(vertices, {x, -0.9f}, {x + 0.22f, 0.9f}, {from, from + 0.1f, to, to + 0.05f}, hue(i));
+        addQuad(vertices, {-0.9f, x}, {0.9f, x + 0.1f}, {to, from, to, from}, hue(i + 3) * 0.7f);
+    }
+    PipelineRecorder pipe = pipeline(record).depth(VK_COMPARE_OP_LESS);
+    state(pipe);
+    const uint32_t buffer = record.vertexBuffer("blades", vertices);
+    record.pass(kExtent).color(target, kDark).depthStencil(depth);
+    record.draw(pipe, static_cast<uint32_t>(vertices.size())).vertices(buffer).viewport(0, 0, 160, 160, 0.125f, 0.75f);
+    record.output(target);
+    record.output(depth);
+    return record.finish();
+}
+
+}  // namespace
+
+Result<Scene> depth_clamp() {
+    SceneRecorder record(
+        "depth_clamp", "Blades through the near and the far plane, not clipped but clamped to the viewport's depths.");
+    return blades(
+        record, [](PipelineRecorder& state) { state.depthClamp(); }, 0);
+}
+
+Result<Scene> depth_clip_control() {
+    SceneRecorder record("depth_clip_control", "Blades clipped at depths -w and w, as in OpenGL.");
+    return blades(
+        record, [](PipelineRecorder& state) { state.depthNegativeOneToOne(); }, -1);
+}
+
+Result<Scene> depth_bounds() {
+    SceneRecorder record("depth_bounds", "A tint only where the depth stored lies within bounds, its own depth aside.");
+    const uint32_t target = record.colorTarget("color", kRgba8, kExtent);
+    const uint32_t depth = record.depthTarget("depth", VK_FORMAT_D32_SFLOAT, kExtent);
+    std::vector<Vertex> vertices;
+    addQuad(vertices, {-0.9f, -0.9f}, {0.9f, 0.8f}, {0.1f, 0.6f, 0.4f, 0.95f}, {0.3f, 0.45f, 0.6f});
+    addQuad(vertices, {-1, -1}, {1, 1}, {0.05f, 0.05f, 0.05f, 0.05f}, {0.95f, 0.8f, 0.35f});
+    const uint32_t sheet = pipeline(record).depth(VK_COMPARE_OP_LESS);
+    const uint32_t tint = pipeline(record).depthBounds(0.375f, 0.5625f).targets(1);
+    const uint32_t buffer = record.vertexBuffer("sheets", vertices);
+    record.pass(kExtent).color(target, kDark).depthStencil(depth);
+    record.draw(sheet, 6).vertices(buffer);
+    record.draw(tint, 6).vertices(buffer).first(6);
+    record.output(target);
+    record.output(depth);
+    return record.finish();
+}
+
+Result<Scene> viewports_indexed() {
+    SceneRecorder record("viewports_indexed",
+                         "Four instances of a wheel, each in a viewport and scissor of its own that the vertex shader "
+                         "chooses; one viewport stands on its head.");
+    const uint32_t target = record.colorTarget("color", kRgba8, kExtent);
+    const auto fan = wheel(9, -0.2f);
+    const uint32_t buffer = record.vertexBuffer("fan", fan);
+    const uint32_t state = pipeline(record, R"(#version 450
+#extension GL_ARB_shader_viewport_layer_array : enable
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 color;
+layout(location = 0) out vec3 vColor;
+void main() {
+    gl_Position = vec4(position, 1.0);
+    gl_ViewportIndex = gl_InstanceIndex;
+    vColor = color * (1.0 - 0.15 * float(gl_InstanceIndex));
+}
+)")
+                               .topology(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN);
+    record.pass(kExtent).color(target, kDark);
+    record.draw(state, static_cast<uint32_t>(fan.size()))
+        .vertices(buffer)
+        .instances(4)
+        .viewport(0, 0, 80, 80)
+        .scissor(0, 0, 80, 80)
+        .view({{80, 80, 80, -80, 0, 1}, {{80, 0}, {80, 70}}})
+        .view({{-20, 90, 120, 60, 0, 1}, {{5, 85}, {70, 70}}})
+        .view({{90, 85, 50, 75, 0, 1}, {{80, 80}, {80, 80}}});
+    record.output(target);
+    return record.finish();
+}
+
+namespace {
+
+/// Puts four layers of 80 x 80 side by side, where they can be seen.
+void showLayers(SceneRecorder& record, uint32_t layers, uint32_t flat) {
+    for (uint32_t layer = 0; layer < 4; ++layer) {
+        SceneCopyImage copy{layers, flat, {}};
+        copy.region.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, layer, 1};
+        copy.region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+        copy.region.dstOffset = {static_cast<int32_t>(layer % 2 * 80), static_cast<int32_t>(layer / 2 * 80), 0};
+        copy.region.extent = {80, 80, 1};
+        record.copy(copy);
+    }
+    record.output(flat);
+}
+
+}  // namespace
+
+Result<Scene> layers() {
+    SceneRecorder record("layers",
+                         "Four instances of a wheel, each in a layer of its own that the vertex shader chooses.");
+    const uint32_t target = record.layeredTarget("layers", kRgba8, {80, 80}, 4);
+    const uint32_t flat = record.colorTarget("side by side", kRgba8, kExtent);
+    const auto fan = wheel(9, -0.2f);
+    const uint32_t buffer = record.vertexBuffer("fan", fan);
+    const uint32_t state = pipeline(record, R"(#version 450
+#extension GL_ARB_shader_viewport_layer_array : enable
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 color;
+layout(location = 0) out vec3 vColor;
+void main() {
+    float turn = 0.4 * float(gl_InstanceIndex);
+    gl_Position = vec4(mat2(cos(turn), sin(turn), -sin(turn), cos(turn)) * position.xy, 0.5, 1.0);
+    gl_Layer = 3 - gl_InstanceIndex;
+    vColor = color;
+}
+)")
+                               .topology(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN);
+    record.pass({80, 80}).color(target, kDark).layers(4);
+    record.draw(state, static_cast<uint32_t>(fan.size())).vertices(buffer).instances(4);
+    showLayers(record, target, flat);
+    return record.finish();
+}
+
+Result<Scene> multiview() {
+    SceneRecorder record("multiview",
+                         "One draw in three views of four, which shift and tint by ViewIndex; the fourth layer is only "
+                         "cleared.");
+    const uint32_t target = record.layeredTarget("views", kRgba8, {80, 80}, 4);
+    const uint32_t flat = record.colorTarget("side by side", kRgba8, kExtent);
+    const auto fan = wheel(9, -0.2f);
+    const uint32_t buffer = record.vertexBuffer("fan", fan);
+    const uint32_t state = pipeline(record, R"(#version 450
+#extension GL_EXT_multiview : enable
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 color;
+layout(location = 0) out vec3 vColor;
+void main() {
+    gl_Position = vec4(position.x + 0.2 * float(gl_ViewIndex) - 0.3, position.yz, 1.0);
+    vColor = color;
+}
+)",
+                                    R"(#version 450
+#extension GL_EXT_multiview : enable
+layout(location = 0) in vec3 vColor;
+layout(location = 0) out vec4 color;
+void main() { color = vec4(gl_ViewIndex == 1 ? vColor.bgr : vColor, 1.0); }
+)")
+                               .topology(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN);
+    // Every layer gets its background first: those that no view draws to are not cleared by a pass of views.
+    record.pass({80, 80}).color(target, kDark).layers(4);
+    record.pass({80, 80}).loadColor(target).views(0b1011);
+    record.draw(state, static_cast<uint32_t>(fan.size())).vertices(buffer);
+    showLayers(record, target, flat);
+    return record.finish();
+}
+
+}  // namespace vernier::conformance::scenes
