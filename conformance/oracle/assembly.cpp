@@ -192,6 +192,9 @@ Result<DrawGeometry> assembleDraw(const Scene& scene, const SceneDraw& draw, Sha
                 auto vertex =
                     shadeVertex(*shader, fetcher.fetch(*number, instance), *number, instance, draw, resources);
                 if (!vertex) return vertex.error();
+                // VK_EXT_depth_clip_control: depths from -w to w end up where (z + w) / 2 from 0 to w would.
+                if (pipeline.depthNegativeOneToOne)
+                    vertex->position[2] = (vertex->position[2] + vertex->position[3]) / 2;
                 geometry.vertices.push_back(std::move(*vertex));
             }
             run.push_back(entry->second);

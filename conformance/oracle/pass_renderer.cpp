@@ -53,6 +53,9 @@ class PassRenderer {
         if (pass_.colors.size() > kMaxColorAttachments) {
             return unsupported("oracle: a pass with " + std::to_string(pass_.colors.size()) + " colour attachments");
         }
+        if (pass_.viewMask != 0) return unsupported("oracle: multiview");
+        for (const SceneAttachment& color : pass_.colors)
+            if (color.layerCount != 1) return unsupported("oracle: layered rendering");
         width_ = pass_.extent.width;
         height_ = pass_.extent.height;
         output_.colorCount = pass_.colors.size();
@@ -166,6 +169,8 @@ class PassRenderer {
         if (pipeline.logicOpEnable) return unsupported("oracle: logic operations");
         if (pipeline.depthBoundsTest) return unsupported("oracle: the depth bounds test");
         if (pipeline.sampleShading && samples_ > 1) return unsupported("oracle: shading of samples");
+        if (!pipeline.sampleLocations.empty()) return unsupported("oracle: sample locations");
+        if (!draw.moreViews.empty()) return unsupported("oracle: several viewports");
         if (pipeline.alphaToOne) return unsupported("oracle: alpha to one");
         for (const SceneBinding& binding : draw.bindings)
             if (binding.sampler != kNone && scene_.samplers[binding.sampler].maxAnisotropy > 1)

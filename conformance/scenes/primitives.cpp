@@ -151,8 +151,10 @@ namespace {
 
 /// Tiles over a leaning sheet, in its plane, each with a bias that decides whether it shows.
 Result<Scene> biasedTiles(SceneRecorder& record, VkFormat depthFormat) {
-    const uint32_t target = record.colorTarget("color", kRgba8, kExtent);
-    const uint32_t depth = record.depthTarget("depth", depthFormat, kExtent);
+    // A power of two, so that corners, and with them depths, are exact: only the bias parts sheet and tiles.
+    constexpr VkExtent2D kTileExtent{128, 128};
+    const uint32_t target = record.colorTarget("color", kRgba8, kTileExtent);
+    const uint32_t depth = record.depthTarget("depth", depthFormat, kTileExtent);
     const auto depthAt = [](glm::vec2 p) { return 0.5f + 0.25f * p.x + 0.125f * p.y; };
     const auto depthsOf = [&](glm::vec2 low, glm::vec2 high) {
         return std::array<float, 4>{depthAt(low), depthAt({high.x, low.y}), depthAt({low.x, high.y}), depthAt(high)};
@@ -172,11 +174,13 @@ Result<Scene> biasedTiles(SceneRecorder& record, VkFormat depthFormat) {
                                            {-2000, 0, -0.25f},
                                            {-100, 1, 0}}};
     for (int i = 0; i < 9; ++i) {
-        const glm::vec2 low{-0.94f + 0.64f * static_cast<float>(i % 3), -0.94f + 0.64f * static_cast<float>(i / 3)};
-        addQuad(vertices, low, low + 0.6f, depthsOf(low, low + 0.6f), hue(i));
+        const glm::vec2 low{-0.9375f + 0.625f * static_cast<float>(i % 3),
+                            -0.9375f + 0.625f * static_cast<float>(i / 3)};
+        const glm::vec2 high = low + 0.59375f;
+        addQuad(vertices, low, high, depthsOf(low, high), hue(i));
     }
     const uint32_t buffer = record.vertexBuffer("tiles", vertices);
-    record.pass(kExtent).color(target, kDark).depthStencil(depth);
+    record.pass(kTileExtent).color(target, kDark).depthStencil(depth);
     record.draw(pipeline(record).depth(VK_COMPARE_OP_LESS), 6).vertices(buffer);
     for (size_t i = 0; i < kBiases.size(); ++i) {
         const Bias& bias = kBiases[i];
@@ -297,6 +301,7 @@ namespace {
 
 /// Puts four layers of 80 x 80 side by side, where they can be seen.
 void showLayers(SceneRecorder& record, uint32_t layers, uint32_t flat) {
+    record.pass(kExtent).color(flat, {});
     for (uint32_t layer = 0; layer < 4; ++layer) {
         SceneCopyImage copy{layers, flat, {}};
         copy.region.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, layer, 1};

@@ -116,10 +116,24 @@ TEST(ValidateScene, NamesWhatIsWrong) {
     EXPECT_THAT(message([](Scene& s) { s.steps.push_back(SceneGenerateMips{4}); }), HasSubstr("SceneGenerateMips"));
     EXPECT_THAT(message([](Scene& s) {
                     SceneBinding binding;
-                    binding.type = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+                    binding.type = VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT;
                     std::get<ScenePass>(s.steps[0]).draws[0].bindings.push_back(binding);
                 }),
                 HasSubstr("SceneBinding::type"));
+    EXPECT_THAT(message([](Scene& s) {
+                    SceneBinding binding;
+                    binding.type = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+                    binding.buffer = 0;
+                    s.buffers.push_back({"texels", 0, Bytes(16)});
+                    std::get<ScenePass>(s.steps[0]).draws[0].bindings.push_back(binding);
+                }),
+                HasSubstr("texelFormat is 0"));
+    EXPECT_THAT(message([](Scene& s) { std::get<ScenePass>(s.steps[0]).colors[0].layerCount = 2; }),
+                HasSubstr("layerCount is 2"));
+    EXPECT_THAT(message([](Scene& s) { s.pipelines[0].sampleLocations.resize(2); }),
+                HasSubstr("sampleLocations has 2"));
+    EXPECT_THAT(message([](Scene& s) { std::get<ScenePass>(s.steps[0]).draws[0].moreViews.resize(16); }),
+                HasSubstr("moreViews"));
 }
 
 /// Building all scenes once, with the compiler's tables kept in between.
