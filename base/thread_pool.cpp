@@ -2,7 +2,7 @@
 
 #include <immintrin.h>
 
-#include <utility>
+#include <optional>
 
 namespace vernier {
 namespace {
@@ -20,6 +20,13 @@ bool awaitBriefly(const Ready& ready) {
     return false;
 }
 
+/// Which worker of which pool this thread is.
+struct Place {
+    const ThreadPool* pool = nullptr;
+    uint32_t worker = 0;
+};
+thread_local Place currentPlace;
+
 }  // namespace
 
 FloatControlScope::FloatControlScope() : saved_(_mm_getcsr()) {
@@ -29,8 +36,32 @@ FloatControlScope::~FloatControlScope() {
     _mm_setcsr(saved_);
 }
 
+/// Makes the thread a worker of the pool: the one that it is already, or else worker 0 as soon as nobody is.
+class ThreadPool::Seat {
+  public:
+    explicit Seat(ThreadPool& pool) {
+        if (currentPlace.pool == &pool) return;
+        turn_.emplace(pool.callers_);
+        floatControl_.emplace();
+        before_ = currentPlace;
+        currentPlace = {&pool, 0};
+    }
+    ~Seat() {
+        if (turn_) currentPlace = before_;
+    }
+    Seat(const Seat&) = delete;
+    Seat& operator=(const Seat&) = delete;
+    static uint32_t worker() { return currentPlace.worker; }
+
+  private:
+    std::optional<std::unique_lock<std::mutex>> turn_;
+    std::optional<FloatControlScope> floatControl_;
+    Place before_;
+};
+
 ThreadPool::ThreadPool(uint32_t threads) {
     try {
+        loops_.reserve(threads);  // a thread has one open loop at most
         workers_.reserve(threads - 1);
         for (uint32_t worker = 1; worker < threads; ++worker)
             workers_.emplace_back([this, worker] { workerMain(worker); });
@@ -54,31 +85,29 @@ void ThreadPool::stopWorkers() {
 }
 
 void ThreadPool::parallelFor(uint32_t count, const std::function<void(uint32_t, uint32_t)>& step) {
-    const std::lock_guard caller(callers_);
-    const FloatControlScope floatControl;
+    const Seat seat(*this);
     if (workers_.empty() || count <= 1) {
-        for (uint32_t index = 0; index < count; ++index) step(index, 0);
+        for (uint32_t index = 0; index < count; ++index) step(index, Seat::worker());
         return;
     }
+    Loop loop{step, count, {}, {}, {}};
     {
         const std::lock_guard lock(mutex_);
-        step_ = &step;
-        count_ = count;
-        next_.store(0, std::memory_order_relaxed);
+        loops_.push_back(&loop);
         ++generation_;
     }
     wake_.notify_all();
-    runSteps(step, count, 0);
+    runSteps(loop, Seat::worker());
     {
         // Nothing is left to share: who has not come by now need not be waited for.
         const std::lock_guard lock(mutex_);
-        step_ = nullptr;
+        std::erase(loops_, &loop);
     }
-    const auto allDone = [this] { return busy_.load(std::memory_order_acquire) == 0; };
+    const auto allDone = [&] { return loop.busy.load(std::memory_order_acquire) == 0; };
     awaitBriefly(allDone);
     std::unique_lock lock(mutex_);
     done_.wait(lock, allDone);
-    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+    if (loop.failure) std::rethrow_exception(loop.failure);
 }
 
 void ThreadPool::expectLoop() {
@@ -90,42 +119,81 @@ void ThreadPool::expectLoop() {
     wake_.notify_all();
 }
 
-void ThreadPool::runSteps(const Step& step, uint32_t count, uint32_t worker) noexcept {
-    try {
-        for (uint32_t index; (index = next_.fetch_add(1, std::memory_order_relaxed)) < count;) step(index, worker);
-    } catch (...) {
-        next_.store(count, std::memory_order_relaxed);
+void ThreadPool::post(Job& job) noexcept {
+    {
         const std::lock_guard lock(mutex_);
-        if (!failure_) failure_ = std::current_exception();
+        job.next_ = nullptr;
+        (lastJob_ ? lastJob_->next_ : firstJob_) = &job;
+        lastJob_ = &job;
+        ++generation_;
+    }
+    wake_.notify_all();
+}
+
+void ThreadPool::runSteps(Loop& loop, uint32_t worker) noexcept {
+    try {
+        for (uint32_t index; (index = loop.next.fetch_add(1, std::memory_order_relaxed)) < loop.count;)
+            loop.step(index, worker);
+    } catch (...) {
+        loop.next.store(loop.count, std::memory_order_relaxed);
+        const std::lock_guard lock(mutex_);
+        if (!loop.failure) loop.failure = std::current_exception();
+    }
+}
+
+/// Takes a job or joins a loop, if there is one to take or join. `lock` holds the mutex before and after.
+bool ThreadPool::takeWork(std::unique_lock<std::mutex>& lock, uint32_t worker) {
+    if (Job* job = firstJob_; job != nullptr) {
+        firstJob_ = job->next_;
+        if (firstJob_ == nullptr) lastJob_ = nullptr;
+        lock.unlock();
+        job->run();
+        lock.lock();
+        ++generation_;  // who waits for the job looks again
+        wake_.notify_all();
+        return true;
+    }
+    for (Loop* loop : loops_) {
+        if (loop->next.load(std::memory_order_relaxed) >= loop->count) continue;
+        ++loop->busy;
+        lock.unlock();
+        runSteps(*loop, worker);
+        lock.lock();
+        if (--loop->busy == 0) done_.notify_all();
+        return true;
+    }
+    return false;
+}
+
+void ThreadPool::workUntil(const std::function<bool()>& done) {
+    const Seat seat(*this);
+    std::unique_lock lock(mutex_);
+    while (!done()) {
+        if (takeWork(lock, Seat::worker())) continue;
+        const uint32_t seen = generation_;
+        const auto changed = [&] { return generation_.load(std::memory_order_acquire) != seen; };
+        lock.unlock();
+        awaitBriefly(changed);
+        lock.lock();
+        wake_.wait(lock, changed);
     }
 }
 
 void ThreadPool::workerMain(uint32_t worker) {
     const FloatControlScope floatControl;
-    uint32_t seen = 0, expected = 0;
+    currentPlace = {this, worker};
+    uint32_t expected = 0;
     std::unique_lock lock(mutex_);
-    while (true) {
-        wake_.wait(lock, [&] { return stop_ || generation_ != seen || expected_ != expected; });
-        if (stop_) return;
+    while (!stop_) {
+        if (takeWork(lock, worker)) continue;
+        const uint32_t seen = generation_;
+        const auto changed = [&] { return generation_.load(std::memory_order_relaxed) != seen || stop_; };
+        lock.unlock();
+        const bool came = awaitBriefly(changed);
+        lock.lock();
+        if (came) continue;
+        wake_.wait(lock, [&] { return changed() || expected_ != expected; });
         expected = expected_;
-        if (generation_ == seen) {
-            lock.unlock();
-            awaitBriefly([&] { return generation_.load(std::memory_order_relaxed) != seen || stop_; });
-            lock.lock();
-            continue;
-        }
-        seen = generation_;
-        if (step_ == nullptr) continue;
-        const Step& step = *step_;
-        const uint32_t count = count_;
-        ++busy_;
-        lock.unlock();
-        runSteps(step, count, worker);
-        lock.lock();
-        if (--busy_ == 0) done_.notify_one();
-        lock.unlock();
-        awaitBriefly([&] { return generation_.load(std::memory_order_relaxed) != seen || stop_; });
-        lock.lock();
     }
 }
 

@@ -1,4 +1,4 @@
-// Threads that share out loops of independent steps.
+// Threads that share out loops of independent steps, and take on whole jobs.
 #pragma once
 
 #include <atomic>
@@ -12,10 +12,23 @@
 
 namespace vernier {
 
-/// Runs loops on the calling thread and `threads - 1` workers, which sleep when there is nothing to do, though not at
-/// once: waking up takes as long as a short loop. parallelFor may be called by several threads: their loops run one
-/// after the other. Steps of a loop run in any order, on any thread; nothing that depends on the order may be computed
-/// in them.
+class ThreadPool;
+
+/// A piece of work that one thread takes on as a whole; loops inside it are shared out. See ThreadPool::post.
+class Job {
+  public:
+    virtual ~Job() = default;
+    virtual void run() noexcept = 0;
+
+  private:
+    friend class ThreadPool;
+    Job* next_ = nullptr;
+};
+
+/// Runs loops and jobs on the calling thread and `threads - 1` workers, which sleep when there is nothing to do, though
+/// not at once: waking up takes as long as a short loop. Steps of a loop run in any order, on any thread; nothing that
+/// depends on the order may be computed in them. A thread that has nothing else to do takes jobs before it joins loops.
+/// Besides the workers one thread at a time may use the pool, as worker 0; others wait for their turn.
 class ThreadPool {
   public:
     /// `threads` counts the caller too: 1 makes every loop run on the caller alone. At least 1. Throws std::bad_alloc
@@ -31,30 +44,45 @@ class ThreadPool {
     /// threadCount() and names the thread, for per-thread scratch memory. The floating-point control word of every
     /// thread is set to the default (round to nearest, denormals kept, no traps) for the duration. `step` must not
     /// call parallelFor. When a step throws, the steps that nobody has begun are left out and the first exception is
-    /// thrown from here, after all threads are done.
+    /// thrown from here, after all threads are done. Jobs may call it: several loops run side by side then.
     void parallelFor(uint32_t count, const std::function<void(uint32_t index, uint32_t worker)>& step);
 
-    /// A loop will follow soon: wakes the workers, so that they wait for it awake (for some microseconds).
+    /// A loop or job will follow soon: wakes the workers, so that they wait for it awake (for some microseconds).
     void expectLoop();
+
+    /// Hands over a job, which stays alive until it has run. Jobs are begun in the order of the calls. Without workers
+    /// they run in workUntil.
+    void post(Job& job) noexcept;
+
+    /// Works on jobs and loops until `done`, which may become true when a job ends; it is called by this thread alone.
+    void workUntil(const std::function<bool()>& done);
 
   private:
     using Step = std::function<void(uint32_t index, uint32_t worker)>;
+    /// A parallelFor that runs; lives on its caller's stack.
+    struct Loop {
+        const Step& step;
+        uint32_t count;
+        std::atomic<uint32_t> next{0};
+        std::atomic<uint32_t> busy{0};  // threads that help; written under the mutex
+        std::exception_ptr failure;     // the first; under the mutex
+    };
+    class Seat;
+
     void workerMain(uint32_t worker);
-    void runSteps(const Step& step, uint32_t count, uint32_t worker) noexcept;
+    void runSteps(Loop& loop, uint32_t worker) noexcept;
+    bool takeWork(std::unique_lock<std::mutex>& lock, uint32_t worker);
     void stopWorkers();
 
-    std::mutex callers_;  // one loop at a time
+    std::mutex callers_;  // held by who is worker 0
     std::mutex mutex_;
     std::condition_variable wake_, done_;
-    const Step* step_ = nullptr;  // nullptr: it is too late to join the loop
-    std::atomic<uint32_t> next_{0};
-    uint32_t count_ = 0;
+    std::vector<Loop*> loops_;  // that may be joined, the oldest first
+    Job *firstJob_ = nullptr, *lastJob_ = nullptr;
     // Written under the mutex; read without it by who waits awake.
-    std::atomic<uint32_t> generation_{0};  // of loops
+    std::atomic<uint32_t> generation_{0};  // of loops and jobs, begun or ended
     std::atomic<uint32_t> expected_{0};    // calls of expectLoop
-    std::atomic<uint32_t> busy_{0};        // workers in the loop
     std::atomic<bool> stop_{false};
-    std::exception_ptr failure_;  // the first of the loop that runs
     std::vector<std::thread> workers_;
 };
 

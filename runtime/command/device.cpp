@@ -38,6 +38,7 @@ struct Queue::Impl {
 };
 
 void Queue::Impl::main() {
+    const FloatControlScope floatControl;
     // Beside the application, which has nothing to draw yet.
     prepareBatches(device.isa(), device.desc().accuracy.math);
     uint64_t done = 0;
@@ -60,8 +61,8 @@ void Queue::Impl::process(Submission& submission) {
     if (!lost) {
         try {
             if (!executor) executor = std::make_unique<Executor>(device);
-            for (const CommandBuffer* commands : submission.commands)
-                if (!executor->run(*commands)) lost = true;
+            for (const CommandBuffer* commands : submission.commands) executor->run(*commands);
+            if (!executor->finish()) lost = true;
         } catch (...) {  // memory ran out: std::bad_alloc, or std::length_error of a container
             executor.reset();
             lost = true;

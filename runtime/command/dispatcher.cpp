@@ -1,7 +1,6 @@
 #include "runtime/command/dispatcher.h"
 
 #include <algorithm>
-#include <atomic>
 
 namespace vernier {
 namespace {

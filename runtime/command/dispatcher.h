@@ -1,6 +1,7 @@
 // Runs the work-groups of a dispatch on the device's threads.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <unordered_map>
@@ -12,7 +13,8 @@
 
 namespace vernier {
 
-/// Keeps the registers of every thread from dispatch to dispatch. Used by one thread at a time.
+/// Keeps the registers of every thread from dispatch to dispatch. Dispatches may run side by side: each is begun by a
+/// thread of the pool.
 class Dispatcher {
   public:
     explicit Dispatcher(ThreadPool& pool) : pool_(pool), threads_(pool.threadCount()) {}
@@ -36,7 +38,7 @@ class Dispatcher {
 
     ThreadPool& pool_;
     std::vector<Thread> threads_;
-    uint64_t dispatches_ = 0;
+    std::atomic<uint64_t> dispatches_{0};
 };
 
 }  // namespace vernier

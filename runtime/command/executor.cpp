@@ -9,6 +9,11 @@
 namespace vernier {
 namespace {
 
+/// Draws after which a pass renders what it has: each takes about a kilobyte until then.
+constexpr size_t kDrawsPerFlush = 1 << 13;
+/// Bytes of what dispatches point to after which they are waited for.
+constexpr size_t kDispatchBytes = 16 << 20;
+
 /// Applies what a pipeline fixes for every state the dynamic mask leaves out.
 void applyFixedState(const DynamicState& fixed, uint32_t dynamicMask, DynamicState& state) {
     const auto isFixed = [&](VkDynamicState name) { return (dynamicMask & dynamicStateBit(name)) == 0; };
@@ -58,10 +63,20 @@ std::optional<Arguments> argumentsAt(const command::BufferRange& range, VkDevice
 
 }  // namespace
 
-Executor::Executor(Device& device) : device_(device), pass_(device.pool()), dispatcher_(device.pool()) {}
+/// A dispatch with all it needs. Indirect counts are read when it runs.
+struct Executor::DispatchWork {
+    const ComputePipeline* pipeline;
+    ResourceBindings resources;
+    WorkGroupContext::Grid grid;
+    command::BufferRange arguments;  // buffer not nullptr: VkDispatchIndirectCommand
+    PassStatistics* statistics;
+};
+
+Executor::Executor(Device& device)
+    : device_(device), workers_(device.pool()), dispatcher_(device.pool()), scheduler_(device.pool()) {}
 Executor::~Executor() = default;
 
-bool Executor::run(const CommandBuffer& commands) {
+void Executor::run(const CommandBuffer& commands) {
     pipeline_ = nullptr;
     dynamic_ = {};
     dynamicSnapshot_ = nullptr;
@@ -70,9 +85,13 @@ bool Executor::run(const CommandBuffer& commands) {
     computeBindings_ = {};
     vertexStreams_ = {};
     indices_ = {};
-    arena_.reset();
     runAll(commands);
-    if (inPass_) run(command::EndRendering{});
+    if (pass_ != nullptr) run(command::EndRendering{});
+}
+
+bool Executor::finish() {
+    scheduler_.finish();
+    dispatchArena_.reset();
     return !lost_;
 }
 
@@ -126,11 +145,13 @@ void Executor::run(const command::PushConstants& command) {
 void Executor::run(const command::BindVertexBuffers& command) {
     for (size_t i = 0; i < command.ranges.size() && command.first + i < vertexStreams_.size(); ++i)
         vertexStreams_[command.first + i] = streamOf(command.ranges[i]);
+    streamsChanged_ = true;
 }
 
 void Executor::run(const command::BindIndexBuffer& command) {
     const VertexStream stream = streamOf(command.range);
     indices_ = {stream.data, stream.size, command.type};
+    streamsChanged_ = true;
 }
 
 void Executor::run(const command::SetViewports& command) {
@@ -194,17 +215,31 @@ void Executor::refreshDrawBindings() {
     if (!drawBindings_.changed) return;
     drawBindings_.changed = false;
     BoundDescriptors& bound = drawBindings_.bound;
-    bound.pushConstants = arena_.copy(std::span<const std::byte>(drawBindings_.pushConstants));
-    vertexResources_ = resolveBindings(pipeline_->vertexIr(), bound, arena_);
-    fragmentResources_ =
-        pipeline_->fragmentIr() ? resolveBindings(*pipeline_->fragmentIr(), bound, arena_) : ResourceBindings{};
+    Arena& arena = pass_->arena;
+    bound.pushConstants = arena.copy(std::span<const std::byte>(drawBindings_.pushConstants));
+    vertexResources_ = resolveBindings(pipeline_->vertexIr(), bound, arena);
+    addAccesses(pipeline_->vertexIr(), bound, pass_->geometry);
+    pass_->writesVertices |= pipeline_->vertexIr().hasSideEffects;
+    fragmentResources_ = {};
+    if (pipeline_->fragmentIr() == nullptr) return;
+    fragmentResources_ = resolveBindings(*pipeline_->fragmentIr(), bound, arena);
+    addAccesses(*pipeline_->fragmentIr(), bound, pass_->rest);
+}
+
+/// Vertex fetch may read to the end of every buffer that is bound.
+void Executor::addStreams() {
+    if (!streamsChanged_) return;
+    streamsChanged_ = false;
+    for (const VertexStream& stream : vertexStreams_) pass_->geometry.read(stream.data, stream.size);
+    pass_->geometry.read(indices_.data, indices_.size);
 }
 
 void Executor::draw(const command::Draw& command, uint32_t drawIndex) {
-    if (!pipeline_ || !inPass_ || command.count == 0 || command.instances == 0) return;
+    if (!pipeline_ || pass_ == nullptr || command.count == 0 || command.instances == 0) return;
     if (command.indexed && !indices_.data) return;
     refreshDrawBindings();
-    if (!dynamicSnapshot_) dynamicSnapshot_ = arena_.create(dynamic_);
+    addStreams();
+    if (!dynamicSnapshot_) dynamicSnapshot_ = pass_->arena.create(dynamic_);
     DrawCall call;
     call.pipeline = pipeline_;
     call.dynamic = dynamicSnapshot_;
@@ -218,7 +253,8 @@ void Executor::draw(const command::Draw& command, uint32_t drawIndex) {
     call.vertexOffset = command.vertexOffset;
     call.firstInstance = command.firstInstance;
     call.drawIndex = drawIndex;
-    pass_.draw(call);
+    pass_->pass.draw(call);
+    if (pass_->pass.recordedDraws() >= kDrawsPerFlush) catchUp();
 }
 
 void Executor::run(const command::Draw& command) {
@@ -226,6 +262,13 @@ void Executor::run(const command::Draw& command) {
 }
 
 void Executor::run(const command::DrawIndirect& command) {
+    AccessSet& arguments = scheduler_.nextAccesses();
+    for (const command::BufferRange& range : {command.arguments, command.countBuffer}) {
+        const VertexStream stream = streamOf(range);
+        arguments.read(stream.data, stream.size);
+    }
+    arguments.finish();
+    scheduler_.waitFor(scheduler_.conflicting(arguments));
     uint32_t count = command.drawCount;
     if (command.countBuffer.buffer) {
         const auto available = argumentsAt<uint32_t>(command.countBuffer, 0);
@@ -245,30 +288,52 @@ void Executor::run(const command::DrawIndirect& command) {
     }
 }
 
-void Executor::dispatch(const WorkGroupContext::Grid& grid, PassStatistics* statistics) {
-    if (!computePipeline_ || inPass_ || lost_ || grid.size() == 0) return;
+void Executor::dispatch(const DispatchWork& work) {
+    if (!computePipeline_ || pass_ != nullptr || lost_) return;
+    if (dispatchArena_.used() > kDispatchBytes) {
+        scheduler_.finish();
+        dispatchArena_.reset();
+        computeBindings_.changed = true;
+    }
+    AccessSet& accesses = scheduler_.nextAccesses();
+    BoundDescriptors& bound = computeBindings_.bound;
     if (computeBindings_.changed) {
         computeBindings_.changed = false;
-        computeArena_.reset();
-        BoundDescriptors& bound = computeBindings_.bound;
-        bound.pushConstants = computeBindings_.pushConstants;
-        computeResources_ = resolveBindings(computePipeline_->ir(), bound, computeArena_);
+        bound.pushConstants = dispatchArena_.copy(std::span<const std::byte>(computeBindings_.pushConstants));
+        computeResources_ = resolveBindings(computePipeline_->ir(), bound, dispatchArena_);
     }
-    if (!dispatcher_.run(*computePipeline_, computeResources_, grid)) lost_ = true;
-    const uint64_t invocations = grid.size() * computePipeline_->invocations();
-    finished_.computeInvocations += invocations;
-    if (statistics) statistics->computeInvocations += invocations;
+    addAccesses(computePipeline_->ir(), bound, accesses);
+    if (work.arguments.buffer != nullptr) {
+        const VertexStream stream = streamOf(work.arguments);
+        accesses.read(stream.data, stream.size);
+    }
+    DispatchWork& kept = *dispatchArena_.create(work);
+    kept.pipeline = computePipeline_;
+    kept.resources = computeResources_;
+    scheduler_.submit([this, &kept] { runDispatch(kept); });
+}
+
+void Executor::runDispatch(const DispatchWork& work) {
+    WorkGroupContext::Grid grid = work.grid;
+    if (work.arguments.buffer != nullptr) {
+        const auto a = argumentsAt<VkDispatchIndirectCommand>(work.arguments, 0);
+        if (!a) return;
+        grid.count = {a->x, a->y, a->z};
+        if (!checkGroupCounts(grid.count)) return;
+    }
+    if (grid.size() == 0) return;
+    if (!dispatcher_.run(*work.pipeline, work.resources, grid)) lost_ = true;
+    PassStatistics counted;
+    counted.computeInvocations = grid.size() * work.pipeline->invocations();
+    count(counted, work.statistics);
 }
 
 void Executor::run(const command::Dispatch& command) {
-    dispatch({command.count, command.base}, command.statistics);
+    dispatch({nullptr, {}, {command.count, command.base}, {}, command.statistics});
 }
 
 void Executor::run(const command::DispatchIndirect& command) {
-    const auto a = argumentsAt<VkDispatchIndirectCommand>(command.arguments, 0);
-    if (!a) return;
-    const std::array<uint32_t, 3> count{a->x, a->y, a->z};
-    if (checkGroupCounts(count)) dispatch({count, {}}, command.statistics);
+    dispatch({nullptr, {}, {}, command.arguments, command.statistics});
 }
 
 void Executor::run(const command::ExecuteCommands& command) {
@@ -277,12 +342,13 @@ void Executor::run(const command::ExecuteCommands& command) {
 
 void Executor::run(const command::SetEvent& command) {
     // Work before an event is done when the event is seen to be set.
-    if (inPass_) pass_.flush();
+    catchUp();
     command.event->store(command.value, std::memory_order_release);
     command.event->notify_all();
 }
 
 void Executor::run(const command::WaitEvent& command) {
+    catchUp();
     command.event->wait(false, std::memory_order_acquire);
 }
 

@@ -1,17 +1,23 @@
-// Runs the commands of command buffers, one after the other, on the queue's thread. The work inside a command is shared
-// out over the device's threads.
+// Walks through the commands of command buffers on the queue's thread and makes passes, dispatches and transfers pieces
+// of work for all threads, with the memory that each reads and writes. Work that does not touch the same memory runs
+// side by side, whatever barriers were recorded; all other work in the order of the commands. What the walk itself
+// needs to know (indirect arguments, queries, events) waits.
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <bit>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "base/arena.h"
 #include "runtime/command/command_buffer.h"
 #include "runtime/command/device.h"
 #include "runtime/command/dispatcher.h"
+#include "runtime/command/scheduler.h"
 #include "runtime/raster/render_pass.h"
+#include "runtime/raster/render_workers.h"
 
 namespace vernier {
 
@@ -20,9 +26,10 @@ class Executor {
     explicit Executor(Device& device);
     ~Executor();
 
-    /// State set by commands (pipeline, descriptors, dynamic state) starts anew. False: a shader ran out of its loop
-    /// budget.
-    bool run(const CommandBuffer& commands);
+    /// State set by commands (pipeline, descriptors, dynamic state) starts anew. Work may still be running afterwards.
+    void run(const CommandBuffer& commands);
+    /// Waits for all work. False: a shader ran out of its loop budget. Throws what a piece of work threw.
+    bool finish();
 
   private:
     void runAll(const CommandBuffer& commands);
@@ -30,23 +37,48 @@ class Executor {
 #include "runtime/command/commands.def"
 #undef VERNIER_COMMAND
 
-    void beginTargets(const command::BeginRendering& command);
+    /// A pass that is recorded, waits, or runs, with all that its draws point to.
+    struct PassWork {
+        explicit PassWork(RenderWorkers& workers) : pass(workers) {}
+        RenderPass pass;
+        Arena arena;
+        PassStatistics* sink = nullptr;
+        bool begun = false;           // some of its draws have run
+        bool writesVertices = false;  // vertex programs of it write memory
+        AccessSet geometry;           // what its vertex stage reads
+        AccessSet rest;               // attachments, and what fragment programs reach
+    };
+    /// One dispatch that waits or runs; lies in dispatchArena_.
+    struct DispatchWork;
+
+    PassWork& takePass();
+    void submitPass(PassWork& work);
+    void endPass(PassWork& work);
+    void catchUp();
+    void addStreams();
+
     void draw(const command::Draw& command, uint32_t drawIndex);
     void refreshDrawBindings();
-    void dispatch(const WorkGroupContext::Grid& grid, PassStatistics* statistics);
+    void dispatch(const DispatchWork& work);
+    void runDispatch(const DispatchWork& work);
+    void count(const PassStatistics& difference, PassStatistics* sink);
     PassStatistics totals() const;
     uint32_t viewCount() const {
-        return inPass_ && views_ != 0 ? static_cast<uint32_t>(std::popcount(views_)) : 1;
+        return pass_ != nullptr && views_ != 0 ? static_cast<uint32_t>(std::popcount(views_)) : 1;
     }
 
     Device& device_;
-    RenderPass pass_;
+    RenderWorkers workers_;
     Dispatcher dispatcher_;
-    bool inPass_ = false;
-    uint32_t views_ = 0;  // of the pass
-    bool lost_ = false;
-    PassStatistics* passSink_ = nullptr;
-    PassStatistics finished_;  // of the passes and dispatches that have ended
+    std::vector<std::unique_ptr<PassWork>> passes_;
+    PassWork* pass_ = nullptr;  // that is being recorded
+    uint32_t views_ = 0;        // of it
+    std::atomic<bool> lost_{false};
+
+    mutable std::mutex endedMutex_;      // of what follows
+    std::vector<PassWork*> idlePasses_;  // the one that ended last is taken first: its memory is in the caches
+    PassStatistics finished_;            // of the passes and dispatches that have ended
+    std::atomic<uint32_t> idleCount_{0};
 
     /// What descriptors and push constants draws, or dispatches, find.
     struct Bindings {
@@ -59,17 +91,16 @@ class Executor {
     }
     Bindings drawBindings_, computeBindings_;
 
-    /// What draws point to until their pass ends.
-    Arena arena_;
     const GraphicsPipeline* pipeline_ = nullptr;
     DynamicState dynamic_;
-    const DynamicState* dynamicSnapshot_ = nullptr;  // in the arena; nullptr after a change
+    const DynamicState* dynamicSnapshot_ = nullptr;  // in the pass's arena; nullptr after a change
     ResourceBindings vertexResources_, fragmentResources_;
     std::array<VertexStream, kMaxVertexBindings> vertexStreams_{};
     IndexStream indices_;
+    bool streamsChanged_ = true;  // since they were last added to the accesses of the pass
 
-    /// What the next dispatch points to.
-    Arena computeArena_;
+    /// What dispatches point to until they have run.
+    Arena dispatchArena_;
     const ComputePipeline* computePipeline_ = nullptr;
     ResourceBindings computeResources_;
 
@@ -80,6 +111,8 @@ class Executor {
         PassStatistics start;
     };
     std::vector<ActiveQuery> queries_;
+
+    Scheduler scheduler_;  // last: its work uses everything above
 };
 
 }  // namespace vernier

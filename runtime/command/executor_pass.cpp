@@ -1,12 +1,17 @@
-// The commands that begin and end passes, move data, and ask questions.
+// The commands that begin and end passes, and ask questions.
 #include <chrono>
 
 #include "runtime/command/executor.h"
 #include "runtime/command/query_pool.h"
-#include "runtime/transfer/transfer.h"
 
 namespace vernier {
 namespace {
+
+/// Passes that wait or run at a time.
+constexpr size_t kMostPasses = 8;
+/// A pass with more primitives than this keeps all threads busy by itself; its vertices would be long out of the caches
+/// when they are wanted.
+constexpr uint64_t kPrimitivesAhead = 1 << 15;
 
 RenderTarget targetOf(const ImageView* view) {
     RenderTarget target;
@@ -37,23 +42,10 @@ RenderTarget targetOf(const RenderingAttachment& attachment) {
     return target;
 }
 
-/// Field by field: PassStatistics holds nothing but counters.
-template <class Combine>
-PassStatistics combineStatistics(const PassStatistics& a, const PassStatistics& b, Combine combine) {
-    static_assert(sizeof(PassStatistics) % sizeof(uint64_t) == 0);
-    PassStatistics result = a;
-    auto* to = reinterpret_cast<uint64_t*>(&result);
-    const auto* from = reinterpret_cast<const uint64_t*>(&b);
-    for (size_t i = 0; i < sizeof(PassStatistics) / sizeof(uint64_t); ++i) to[i] = combine(to[i], from[i]);
-    return result;
-}
-
-PassStatistics add(const PassStatistics& a, const PassStatistics& b) {
-    return combineStatistics(a, b, [](uint64_t x, uint64_t y) { return x + y; });
-}
-
-PassStatistics subtract(const PassStatistics& a, const PassStatistics& b) {
-    return combineStatistics(a, b, [](uint64_t x, uint64_t y) { return x - y; });
+/// The bytes that drawing to a target may change, and what lies between its layers.
+void addTarget(const RenderTarget& target, uint32_t layers, AccessSet& accesses) {
+    if (target.data == nullptr || layers == 0) return;
+    accesses.write(target.data, (layers - 1) * target.layerPitch + target.samples * target.samplePitch);
 }
 
 uint64_t nowNanoseconds() {
@@ -62,6 +54,22 @@ uint64_t nowNanoseconds() {
 }
 
 }  // namespace
+
+/// One that nothing is left to do for. There are few: those that wait hold memory.
+Executor::PassWork& Executor::takePass() {
+    if (idleCount_ == 0 && passes_.size() < kMostPasses) {
+        passes_.push_back(std::make_unique<PassWork>(workers_));
+        idlePasses_.reserve(passes_.size());
+        return *passes_.back();
+    }
+    scheduler_.waitUntil([this] { return idleCount_ != 0; });
+    if (idleCount_ == 0) scheduler_.finish();  // throws: a pass failed, and is not used again
+    const std::lock_guard lock(endedMutex_);
+    PassWork& work = *idlePasses_.back();
+    idlePasses_.pop_back();
+    --idleCount_;
+    return work;
+}
 
 void Executor::run(const command::BeginRendering& command) {
     device_.pool().expectLoop();
@@ -80,83 +88,112 @@ void Executor::run(const command::BeginRendering& command) {
     targets.viewMask = command.viewMask;
     targets.samples = command.samples;
     targets.isa = device_.isa();
-    passSink_ = command.statistics;
-    inPass_ = true;
-    pass_.begin(targets);
+
+    PassWork& work = takePass();
+    work.sink = command.statistics;
+    work.begun = work.writesVertices = false;
+    work.geometry.clear();
+    work.rest.clear();
+    const uint32_t layers =
+        command.viewMask != 0 ? static_cast<uint32_t>(std::bit_width(command.viewMask)) : command.layers;
+    for (uint32_t i = 0; i < command.colorCount; ++i) {
+        addTarget(targets.colors[i], layers, work.rest);
+        addTarget(targets.resolves[i], layers, work.rest);
+    }
+    addTarget(targets.depthStencil, layers, work.rest);
+    addTarget(targets.depthStencilResolve, layers, work.rest);
+    work.pass.begin(targets);
+    work.pass.setExactCounts(!queries_.empty());
+    pass_ = &work;
     views_ = command.viewMask;
+    streamsChanged_ = drawBindings_.changed = true;
 }
 
 void Executor::run(const command::EndRendering&) {
-    if (!inPass_) return;
-    if (!pass_.end()) lost_ = true;
-    inPass_ = false;
-    finished_ = add(finished_, pass_.statistics());
-    if (passSink_) *passSink_ = add(*passSink_, pass_.statistics());
-    arena_.reset();
+    if (pass_ == nullptr) return;
+    submitPass(*pass_);
+    pass_ = nullptr;
     dynamicSnapshot_ = nullptr;
     drawBindings_.changed = true;
 }
 
+/// Where only the attachments have to be waited for, the vertex stage runs ahead.
+void Executor::submitPass(PassWork& work) {
+    AccessSet& geometry = scheduler_.nextAccesses();
+    geometry.add(work.geometry);
+    geometry.finish();
+    const Scheduler::Mask before = scheduler_.conflicting(geometry);
+    work.rest.add(work.geometry);
+    work.rest.finish();
+    Scheduler::Mask ahead = 0;
+    const uint64_t primitives = work.pass.recordedPrimitives();
+    if (!work.begun && !work.writesVertices && primitives != 0 && primitives <= kPrimitivesAhead &&
+        (scheduler_.conflicting(work.rest) & ~before) != 0)
+        ahead = scheduler_.submit([&work] { work.pass.prepare(); });
+    scheduler_.nextAccesses().add(work.rest);
+    scheduler_.submit([this, &work] { endPass(work); }, ahead);
+}
+
+void Executor::endPass(PassWork& work) {
+    if (!work.pass.end()) lost_ = true;
+    count(work.pass.statistics(), work.sink);
+    work.arena.reset();
+    const std::lock_guard lock(endedMutex_);
+    idlePasses_.push_back(&work);
+    ++idleCount_;
+}
+
+/// Everything recorded so far is done afterwards.
+void Executor::catchUp() {
+    scheduler_.finish();
+    if (pass_ == nullptr) return;
+    pass_->begun = true;
+    pass_->pass.flush();
+}
+
 void Executor::run(const command::Flush&) {
-    if (inPass_) pass_.flush();
+    if (pass_ != nullptr) catchUp();
 }
 
 void Executor::run(const command::ClearAttachments& command) {
-    if (!inPass_) return;
+    if (pass_ == nullptr) return;
     for (const VkClearAttachment& attachment : command.attachments)
         for (const VkClearRect& rect : command.rects)
-            pass_.clear(attachment.aspectMask, attachment.colorAttachment, attachment.clearValue, rect);
+            pass_->pass.clear(attachment.aspectMask, attachment.colorAttachment, attachment.clearValue, rect);
 }
 
-/// The transfer commands: one call per region.
-#define VERNIER_PER_REGION(Name, items, call)                         \
-    void Executor::run(const command::Name& command) {                \
-        const TransferContext context{device_.pool(), device_.isa()}; \
-        for (const auto& item : command.items) call;                  \
-    }
-VERNIER_PER_REGION(CopyBuffer, regions, copyBuffer(context, *command.source, *command.destination, item))
-VERNIER_PER_REGION(CopyImage, regions, copyImage(context, *command.source, *command.destination, item))
-VERNIER_PER_REGION(CopyBufferToImage, regions, copyBufferToImage(context, *command.buffer, *command.image, item))
-VERNIER_PER_REGION(CopyImageToBuffer, regions, copyImageToBuffer(context, *command.image, *command.buffer, item))
-VERNIER_PER_REGION(BlitImage, regions, blitImage(context, *command.source, *command.destination, item, command.filter))
-VERNIER_PER_REGION(ResolveImage, regions, resolveImage(context, *command.source, *command.destination, item))
-VERNIER_PER_REGION(ClearColorImage, ranges, clearColorImage(context, *command.image, command.value, item))
-VERNIER_PER_REGION(ClearDepthStencilImage, ranges, clearDepthStencilImage(context, *command.image, command.value, item))
-#undef VERNIER_PER_REGION
-
-void Executor::run(const command::FillBuffer& command) {
-    fillBuffer({device_.pool(), device_.isa()}, *command.buffer, command.offset, command.size, command.value);
-}
-
-void Executor::run(const command::UpdateBuffer& command) {
-    updateBuffer(*command.buffer, command.offset, command.bytes);
+void Executor::count(const PassStatistics& difference, PassStatistics* sink) {
+    const std::lock_guard lock(endedMutex_);
+    finished_ = combine(finished_, difference, std::plus<>{});
+    if (sink != nullptr) *sink = combine(*sink, difference, std::plus<>{});
 }
 
 PassStatistics Executor::totals() const {
-    return inPass_ ? add(finished_, pass_.statistics()) : finished_;
+    const std::lock_guard lock(endedMutex_);
+    return pass_ != nullptr ? combine(finished_, pass_->pass.statistics(), std::plus<>{}) : finished_;
 }
 
 void Executor::run(const command::BeginQuery& command) {
-    if (inPass_) pass_.flush();
+    catchUp();
     queries_.push_back({command.pool, command.query, viewCount(), totals()});
-    pass_.setExactCounts(true);
+    if (pass_ != nullptr) pass_->pass.setExactCounts(true);
 }
 
 void Executor::run(const command::EndQuery& command) {
-    if (inPass_) pass_.flush();
+    catchUp();
     for (auto query = queries_.begin(); query != queries_.end(); ++query) {
         if (query->pool != command.pool || query->query != command.query) continue;
-        command.pool->write(command.query, subtract(totals(), query->start));
+        command.pool->write(command.query, combine(totals(), query->start, std::minus<>{}));
         // With multiview a query takes as many as there are views: "the first contains the result, the others zero".
         for (uint32_t n = 1; n < query->views; ++n) command.pool->write(command.query + n, {});
         queries_.erase(query);
-        pass_.setExactCounts(!queries_.empty());
+        if (pass_ != nullptr) pass_->pass.setExactCounts(!queries_.empty());
         return;
     }
 }
 
 void Executor::run(const command::WriteTimestamp& command) {
-    if (inPass_) pass_.flush();
+    catchUp();
     const uint64_t now = nowNanoseconds();
     for (uint32_t n = 0; n < viewCount(); ++n) command.pool->writeTimestamp(command.query + n, now);
 }
@@ -168,6 +205,7 @@ void Executor::run(const command::ResetQueries& command) {
 void Executor::run(const command::CopyQueryResults& command) {
     const Buffer& buffer = *command.buffer;
     if (command.offset >= buffer.size()) return;
+    catchUp();
     command.pool->results(command.first, command.count, buffer.data() + command.offset, buffer.size() - command.offset,
                           command.stride, command.flags);
 }

@@ -144,9 +144,8 @@ ContextCache::Entry& ContextCache::get(const std::shared_ptr<const BatchProgram>
     return entries_.emplace(program.get(), Entry{BatchContext(program), 0}).first->second;
 }
 
-void ContextCache::startPass() {
+void ContextCache::trim() {
     if (entries_.size() > kMaxKeptContexts) entries_.clear();
-    for (auto& [program, entry] : entries_) entry.begun = 0;
 }
 
 void ShadedVertices::resize(uint32_t count, const Plan& plan) {

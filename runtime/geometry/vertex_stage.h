@@ -18,11 +18,11 @@ class ContextCache {
   public:
     struct Entry {
         BatchContext context;
-        uint64_t begun = 0;  // what beginDraw was last called for; 0 = nothing
+        uint64_t begun = 0;  // the token that beginDraw was last called for; 0 = none. Tokens are never used twice
     };
     Entry& get(const std::shared_ptr<const BatchProgram>& program);
-    /// Forgets what was begun: bindings of an earlier pass may be gone. Drops contexts when there are many.
-    void startPass();
+    /// Drops the contexts when there are many: nobody may use one then.
+    void trim();
 
   private:
     std::unordered_map<const BatchProgram*, Entry> entries_;

@@ -57,7 +57,7 @@ void FragmentStage::startPass(const PassTargets& targets) {
     statistics_ = {};
     outOfBudget_ = false;
     draw_ = nullptr;
-    contexts_.startPass();
+    contexts_.trim();
 }
 
 void FragmentStage::startTile(int32_t tileX, int32_t tileY) {

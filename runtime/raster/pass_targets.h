@@ -3,9 +3,12 @@
 
 #include <vulkan/vulkan_core.h>
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 
 #include "base/simd.h"
 #include "runtime/limits.h"
@@ -64,5 +67,15 @@ struct PassStatistics {
     uint64_t vertexCycles = 0,
              rasterCycles = 0;  // time-stamp counter, all threads; for people, not for tests
 };
+
+/// Field by field: PassStatistics holds nothing but counters.
+template <class Operation>
+PassStatistics combine(const PassStatistics& a, const PassStatistics& b, Operation operation) {
+    using Counters = std::array<uint64_t, sizeof(PassStatistics) / sizeof(uint64_t)>;
+    Counters x = std::bit_cast<Counters>(a);
+    const Counters y = std::bit_cast<Counters>(b);
+    std::transform(x.begin(), x.end(), y.begin(), x.begin(), operation);
+    return std::bit_cast<PassStatistics>(x);
+}
 
 }  // namespace vernier

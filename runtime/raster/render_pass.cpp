@@ -9,11 +9,10 @@
 #include <variant>
 #include <vector>
 
-#include "runtime/geometry/assemble.h"
 #include "runtime/raster/attachment_ops.h"
 #include "runtime/raster/depth_resolve.h"
 #include "runtime/raster/hidden_work.h"
-#include "runtime/raster/tile_renderer.h"
+#include "runtime/raster/render_workers.h"
 
 namespace vernier {
 namespace {
@@ -21,10 +20,6 @@ namespace {
 /// Chunks processed before tiles are rendered: bounds the memory of binned primitives, so that it stays in the caches
 /// between geometry and tiles, but leaves each tile enough primitives for its own colours and depths to stay there.
 constexpr uint32_t kChunksPerWave = 64;
-/// Recorded primitives after which the pass renders what it has, so that a long pass does not hold all its
-/// draws.
-constexpr uint64_t kPrimitivesPerFlush = uint64_t{kChunksPerWave} * kChunkPrimitives;
-constexpr size_t kDrawsPerFlush = 1 << 16;
 
 /// One step of a wave: a chunk's worth of primitives, or a clear.
 struct Step {
@@ -38,11 +33,30 @@ bool sameBindings(const ResourceBindings& a, const ResourceBindings& b) {
            a.count == b.count && a.combine == b.combine;
 }
 
-/// One thread's part of the backend.
-struct Worker {
-    Assembler assembler;
-    TileRenderer renderer;
-    uint64_t vertexCycles = 0, rasterCycles = 0;
+/// A run of the commands: geometry first, then tiles.
+struct Wave {
+    std::vector<Step> steps;
+    uint32_t stepCount = 0;
+    std::vector<Chunk> chunks;
+};
+
+/// What a thread counts for one pass.
+struct alignas(64) ThreadCounts {
+    PassStatistics sums;
+
+    void add(GeometryStatistics& geometry) {
+        sums.inputPrimitives += geometry.inputPrimitives;
+        sums.vertexInvocations += geometry.vertexInvocations;
+        sums.clippingInvocations += geometry.clippingInvocations;
+        sums.clippingPrimitives += geometry.clippingPrimitives;
+        sums.clippedPrimitives += geometry.clippedPrimitives;
+        sums.rasterPrimitives += geometry.rasterPrimitives;
+        geometry = {};
+    }
+    void add(PassStatistics& fragments) {
+        sums = combine(sums, fragments, std::plus<>{});
+        fragments = {};
+    }
 };
 
 /// Hands a range of cycles to a counter.
@@ -61,17 +75,17 @@ class CycleCount {
 }  // namespace
 
 struct RenderPass::Impl {
-    explicit Impl(ThreadPool& threadPool) : pool(threadPool) {
-        for (uint32_t n = 0; n < pool.threadCount(); ++n) workers.push_back(std::make_unique<Worker>());
-    }
+    explicit Impl(RenderWorkers& shared) : workers(shared), pool(shared.pool()), counts(pool.threadCount()) {}
 
     void add(PreparedDraw draw);
+    void prepare();
     void renderRecorded();
-    void cutIntoSteps(uint64_t& primitive, size_t& command);
-    void runGeometry();
-    void continueStipple();
-    void collectTileWork();
-    void runTiles();
+    void cutIntoSteps(Wave& wave);
+    void runChunk(Wave& wave, uint32_t index, uint32_t thread);
+    void continueStipple(Wave& wave);
+    void collectTileWork(const Wave& wave);
+    void runTile(uint32_t index, uint32_t thread, bool mayHide);
+    void runTiles(Wave& ahead);
     void loadTile(const PixelRect& rect, uint32_t layer, bool colorsReplaced) const;
     bool loads(const RenderTarget& target, uint32_t layer) const {
         return targets.viewMask == 0 || (target.loadViews >> layer & 1) != 0;
@@ -87,10 +101,12 @@ struct RenderPass::Impl {
     void resolve();
     void sumStatistics();
 
+    RenderWorkers& workers;
     ThreadPool& pool;
-    std::vector<std::unique_ptr<Worker>> workers;
+    uint64_t number = 0;  // for RenderWorkers::enter
     PassTargets targets;
     TileGrid grid;
+    std::vector<ThreadCounts> counts;
     PassStatistics statistics;
     uint64_t inputVertices = 0;
 
@@ -99,12 +115,13 @@ struct RenderPass::Impl {
     std::deque<ClearCommand> clears;
     std::vector<std::variant<uint32_t, const ClearCommand*>> commands;
     uint64_t recordedPrimitives = 0;
-    uint64_t nextToken = 1;  // of draws[0]; tokens are never used twice
 
-    // Of the wave being rendered.
-    std::vector<Step> steps;
-    uint32_t stepCount = 0;
-    std::vector<Chunk> chunks;
+    // Being rendered: tiles of one wave beside the geometry of the other.
+    bool prepared = false;
+    uint64_t token = 0;  // names the bindings of draws[0], token + 1 those of draws[1]
+    uint64_t nextPrimitive = 0;
+    size_t nextCommand = 0;
+    std::array<Wave, 2> waves;
     std::vector<std::vector<TileWork>> tileWork;
     std::vector<uint32_t> activeTiles;
     bool loaded = false;  // load operations are done
@@ -123,65 +140,71 @@ PixelRect RenderPass::Impl::tileRect(uint32_t tile) const {
             std::min(y + kTileSize, area.y1)};
 }
 
-/// Cuts recorded commands into at most kChunksPerWave steps, from (command, primitive) on.
-void RenderPass::Impl::cutIntoSteps(uint64_t& primitive, size_t& command) {
-    stepCount = 0;
+/// Cuts recorded commands into at most kChunksPerWave steps, from (nextCommand, nextPrimitive) on.
+void RenderPass::Impl::cutIntoSteps(Wave& wave) {
+    wave.stepCount = 0;
     const auto newStep = [&]() -> Step& {
-        if (stepCount == steps.size()) steps.emplace_back();
-        Step& step = steps[stepCount++];
+        if (wave.stepCount == wave.steps.size()) wave.steps.emplace_back();
+        Step& step = wave.steps[wave.stepCount++];
         step.ranges.clear();
         step.clear = nullptr;
         step.primitives = 0;
         return step;
     };
-    while (command < commands.size()) {
-        if (const auto* clear = std::get_if<const ClearCommand*>(&commands[command])) {
-            if (stepCount == kChunksPerWave) return;
+    for (; nextCommand < commands.size(); ++nextCommand) {
+        if (const auto* clear = std::get_if<const ClearCommand*>(&commands[nextCommand])) {
+            if (wave.stepCount == kChunksPerWave) break;
             newStep().clear = *clear;
-            ++command;
             continue;
         }
-        const uint32_t index = std::get<uint32_t>(commands[command]);
+        const uint32_t index = std::get<uint32_t>(commands[nextCommand]);
         const uint64_t total = draws[index].primitives();
-        while (primitive < total) {
-            const bool open = stepCount > 0 && steps[stepCount - 1].clear == nullptr &&
-                              steps[stepCount - 1].primitives < kChunkPrimitives;
-            if (!open && stepCount == kChunksPerWave) return;
-            Step& step = open ? steps[stepCount - 1] : newStep();
+        while (nextPrimitive < total) {
+            const bool open = wave.stepCount > 0 && wave.steps[wave.stepCount - 1].clear == nullptr &&
+                              wave.steps[wave.stepCount - 1].primitives < kChunkPrimitives;
+            if (!open && wave.stepCount == kChunksPerWave) break;
+            Step& step = open ? wave.steps[wave.stepCount - 1] : newStep();
             const auto count =
-                static_cast<uint32_t>(std::min<uint64_t>(kChunkPrimitives - step.primitives, total - primitive));
-            step.ranges.push_back({index, primitive, count});
+                static_cast<uint32_t>(std::min<uint64_t>(kChunkPrimitives - step.primitives, total - nextPrimitive));
+            step.ranges.push_back({index, nextPrimitive, count});
             step.primitives += count;
-            primitive += count;
+            nextPrimitive += count;
         }
-        primitive = 0;
-        ++command;
+        if (nextPrimitive < total) break;
+        nextPrimitive = 0;
     }
+    if (wave.chunks.size() < wave.stepCount) wave.chunks.resize(wave.stepCount);
 }
 
-void RenderPass::Impl::runGeometry() {
-    if (chunks.size() < stepCount) chunks.resize(stepCount);
-    pool.parallelFor(stepCount, [&](uint32_t index, uint32_t worker) {
-        Worker& self = *workers[worker];
-        const CycleCount cycles(self.vertexCycles);
-        chunks[index].clear();
-        if (steps[index].clear != nullptr) return;
-        if (!self.assembler.run(draws, nextToken, steps[index].ranges, grid, chunks[index]))
-            outOfBudget.store(true, std::memory_order_relaxed);
-    });
+void RenderPass::Impl::runChunk(Wave& wave, uint32_t index, uint32_t thread) {
+    const CycleCount cycles(counts[thread].sums.vertexCycles);
+    wave.chunks[index].clear();
+    if (wave.steps[index].clear != nullptr) return;
+    Assembler& assembler = workers.enter(thread, number, targets).assembler;
+    if (!assembler.run(draws, token, wave.steps[index].ranges, grid, wave.chunks[index]))
+        outOfBudget.store(true, std::memory_order_relaxed);
+    counts[thread].add(assembler.statistics());
+}
+
+void RenderPass::Impl::prepare() {
+    prepared = true;
+    token = workers.takeNumbers(draws.size());
+    nextPrimitive = nextCommand = 0;
+    cutIntoSteps(waves[0]);
+    pool.parallelFor(waves[0].stepCount, [&](uint32_t index, uint32_t thread) { runChunk(waves[0], index, thread); });
 }
 
 /// Stipple counters of strips that chunks cut: each chunk goes on from where the one before ended.
-void RenderPass::Impl::continueStipple() {
-    for (uint32_t n = 0; n < stepCount; ++n) {
-        Chunk& chunk = chunks[n];
+void RenderPass::Impl::continueStipple(Wave& wave) {
+    for (uint32_t n = 0; n < wave.stepCount; ++n) {
+        Chunk& chunk = wave.chunks[n];
         const size_t count = chunk.restartsStipple ? chunk.continuingShapes : chunk.shapes.size();
         for (size_t k = 0; k < count; ++k) chunk.shapes[k].stippleStart += stipple;
         stipple = chunk.restartsStipple ? chunk.stippleEnd : stipple + chunk.stippleEnd;
     }
 }
 
-void RenderPass::Impl::collectTileWork() {
+void RenderPass::Impl::collectTileWork(const Wave& wave) {
     tileWork.resize(grid.count());
     for (const uint32_t tile : activeTiles) tileWork[tile].clear();
     activeTiles.clear();
@@ -189,14 +212,14 @@ void RenderPass::Impl::collectTileWork() {
         if (tileWork[tile].empty()) activeTiles.push_back(tile);
         tileWork[tile].push_back(work);
     };
-    for (uint32_t n = 0; n < stepCount; ++n) {
-        if (const ClearCommand* clear = steps[n].clear; clear != nullptr) {
+    for (uint32_t n = 0; n < wave.stepCount; ++n) {
+        if (const ClearCommand* clear = wave.steps[n].clear; clear != nullptr) {
             for (uint32_t tile = 0; tile < grid.count(); ++tile)
                 if (isDrawn(layerOf(tile)) && clear->clears(layerOf(tile))) add(tile, {nullptr, clear, 0, 0, false});
             continue;
         }
-        for (const TileRange& range : chunks[n].ranges)
-            add(range.tile, {&chunks[n], nullptr, range.first, range.count, range.large});
+        for (const TileRange& range : wave.chunks[n].ranges)
+            add(range.tile, {&wave.chunks[n], nullptr, range.first, range.count, range.large});
     }
     if (loaded) return;
     // The first wave touches every tile: load operations clear where nothing is drawn, too.
@@ -217,44 +240,55 @@ void RenderPass::Impl::loadTile(const PixelRect& rect, uint32_t layer, bool colo
     if (aspects != 0 && loads(depth, layer)) clearPixels(depth, aspects, depth.clear, rect, layer);
 }
 
-void RenderPass::Impl::runTiles() {
-    const auto count = static_cast<uint32_t>(activeTiles.size());
+void RenderPass::Impl::runTile(uint32_t index, uint32_t thread, bool mayHide) {
+    const CycleCount cycles(counts[thread].sums.rasterCycles);
+    const uint32_t tile = activeTiles[index];
+    const PixelRect rect = tileRect(tile);
+    const uint32_t inLayer = tile % grid.perLayer();
+    const bool cleared = !loaded && targets.depthStencil.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR &&
+                         loads(targets.depthStencil, layerOf(tile));
+    const TileInput input{rect,
+                          grid.x0 + static_cast<int32_t>(inLayer % grid.columns) * kTileSize,
+                          grid.y0 + static_cast<int32_t>(inLayer / grid.columns) * kTileSize,
+                          draws,
+                          tileWork[tile],
+                          cleared};
+    const VisibleStart start = mayHide ? visibleStart(targets, input) : VisibleStart{};
+    if (!loaded) loadTile(rect, layerOf(tile), start.replacesColors);
+    if (tileWork[tile].empty()) return;
+    TileRenderer& renderer = workers.enter(thread, number, targets).renderer;
+    renderer.render(rect, layerOf(tile), input.tileX, input.tileY, cleared, draws, token, tileWork[tile], start.item,
+                    start.entry);
+    counts[thread].add(renderer.fragments().statistics());
+    if (renderer.fragments().outOfBudget()) outOfBudget.store(true, std::memory_order_relaxed);
+}
+
+/// The tiles that have work, and beside them the geometry of `ahead`.
+void RenderPass::Impl::runTiles(Wave& ahead) {
+    const auto tiles = static_cast<uint32_t>(activeTiles.size());
     const bool mayHide = !exactCounts && mayHideWork(targets, draws);
-    pool.parallelFor(count, [&](uint32_t index, uint32_t worker) {
-        Worker& self = *workers[worker];
-        const CycleCount cycles(self.rasterCycles);
-        const uint32_t tile = activeTiles[index];
-        const PixelRect rect = tileRect(tile);
-        const uint32_t inLayer = tile % grid.perLayer();
-        const bool cleared = !loaded && targets.depthStencil.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR &&
-                             loads(targets.depthStencil, layerOf(tile));
-        const TileInput input{rect,
-                              grid.x0 + static_cast<int32_t>(inLayer % grid.columns) * kTileSize,
-                              grid.y0 + static_cast<int32_t>(inLayer / grid.columns) * kTileSize,
-                              draws,
-                              tileWork[tile],
-                              cleared};
-        const VisibleStart start = mayHide ? visibleStart(targets, input) : VisibleStart{};
-        if (!loaded) loadTile(rect, layerOf(tile), start.replacesColors);
-        if (tileWork[tile].empty()) return;
-        self.renderer.render(rect, layerOf(tile), input.tileX, input.tileY, cleared, draws, nextToken, tileWork[tile],
-                             start.item, start.entry);
+    pool.parallelFor(tiles + ahead.stepCount, [&](uint32_t index, uint32_t thread) {
+        if (index < tiles) {
+            runTile(index, thread, mayHide);
+        } else {
+            runChunk(ahead, index - tiles, thread);
+        }
     });
     loaded = true;
-    for (const auto& worker : workers) worker->renderer.fragments().unbind();
 }
 
 void RenderPass::Impl::renderRecorded() {
-    uint64_t primitive = 0;
-    size_t command = 0;
-    while (command < commands.size() || !loaded) {
-        cutIntoSteps(primitive, command);
-        runGeometry();
-        if (stippled) continueStipple();
-        collectTileWork();
-        runTiles();
+    if (commands.empty() && loaded) return;
+    if (!prepared) prepare();
+    for (uint32_t n = 0, left = 1; left != 0; n ^= 1) {
+        Wave &wave = waves[n], &ahead = waves[n ^ 1];
+        if (stippled) continueStipple(wave);
+        collectTileWork(wave);
+        cutIntoSteps(ahead);
+        left = ahead.stepCount;
+        runTiles(ahead);
     }
-    nextToken += draws.size();
+    prepared = false;
     draws.clear();
     clears.clear();
     commands.clear();
@@ -280,29 +314,10 @@ void RenderPass::Impl::resolve() {
 void RenderPass::Impl::sumStatistics() {
     statistics = {};
     statistics.inputVertices = inputVertices;
-    for (const auto& worker : workers) {
-        const GeometryStatistics& geometry = worker->assembler.statistics();
-        statistics.inputPrimitives += geometry.inputPrimitives;
-        statistics.vertexInvocations += geometry.vertexInvocations;
-        statistics.clippingInvocations += geometry.clippingInvocations;
-        statistics.clippingPrimitives += geometry.clippingPrimitives;
-        statistics.clippedPrimitives += geometry.clippedPrimitives;
-        statistics.rasterPrimitives += geometry.rasterPrimitives;
-        const PassStatistics& fragments = worker->renderer.fragments().statistics();
-        statistics.fragmentInvocations += fragments.fragmentInvocations;
-        statistics.helperInvocations += fragments.helperInvocations;
-        statistics.batches += fragments.batches;
-        statistics.samplesPassed += fragments.samplesPassed;
-        statistics.perspectiveDivides += fragments.perspectiveDivides;
-        statistics.destinationReads += fragments.destinationReads;
-        statistics.depthReads += fragments.depthReads;
-        statistics.coarseDepthRejects += fragments.coarseDepthRejects;
-        statistics.vertexCycles += worker->vertexCycles;
-        statistics.rasterCycles += worker->rasterCycles;
-    }
+    for (const ThreadCounts& thread : counts) statistics = combine(statistics, thread.sums, std::plus<>{});
 }
 
-RenderPass::RenderPass(ThreadPool& pool) : impl_(std::make_unique<Impl>(pool)) {}
+RenderPass::RenderPass(RenderWorkers& workers) : impl_(std::make_unique<Impl>(workers)) {}
 RenderPass::~RenderPass() = default;
 
 void RenderPass::begin(const PassTargets& targets) {
@@ -318,12 +333,8 @@ void RenderPass::begin(const PassTargets& targets) {
     self.statistics = {};
     self.activeTiles.clear();
     self.tileWork.assign(self.grid.count(), {});
-    for (const auto& worker : self.workers) {
-        worker->assembler.contexts().startPass();
-        worker->assembler.statistics() = {};
-        worker->renderer.startPass(self.targets);
-        worker->vertexCycles = worker->rasterCycles = 0;
-    }
+    self.number = self.workers.takeNumbers(1);
+    std::fill(self.counts.begin(), self.counts.end(), ThreadCounts{});
 }
 
 void RenderPass::draw(const DrawCall& call) {
@@ -351,7 +362,6 @@ void RenderPass::Impl::add(PreparedDraw draw) {
     self.stippled |= draw.state->stippledLine;
     self.draws.push_back(std::move(draw));
     self.commands.emplace_back(index);
-    if (self.recordedPrimitives >= kPrimitivesPerFlush || self.draws.size() >= kDrawsPerFlush) self.renderRecorded();
 }
 
 void RenderPass::setExactCounts(bool exact) {
@@ -372,6 +382,18 @@ void RenderPass::clear(VkImageAspectFlags aspect, uint32_t color, const VkClearV
     self.commands.emplace_back(&self.clears.back());
 }
 
+size_t RenderPass::recordedDraws() const {
+    return impl_->draws.size();
+}
+
+uint64_t RenderPass::recordedPrimitives() const {
+    return impl_->recordedPrimitives;
+}
+
+void RenderPass::prepare() {
+    impl_->prepare();
+}
+
 void RenderPass::flush() {
     impl_->renderRecorded();
 }
@@ -380,8 +402,6 @@ bool RenderPass::end() {
     Impl& self = *impl_;
     self.renderRecorded();
     self.resolve();
-    for (const auto& worker : self.workers)
-        if (worker->renderer.fragments().outOfBudget()) self.outOfBudget = true;
     return !self.outOfBudget;
 }
 

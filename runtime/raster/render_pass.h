@@ -8,15 +8,17 @@
 #include <cstdint>
 #include <memory>
 
-#include "base/thread_pool.h"
 #include "runtime/geometry/draw_call.h"
 #include "runtime/raster/pass_targets.h"
 
 namespace vernier {
 
+class RenderWorkers;
+
 class RenderPass {
   public:
-    explicit RenderPass(ThreadPool& pool);
+    /// `workers` may be shared by passes that run at the same time.
+    explicit RenderPass(RenderWorkers& workers);
     ~RenderPass();
 
     /// Starts a pass. A pass object is reused from pass to pass and keeps its memory.
@@ -27,6 +29,12 @@ class RenderPass {
     /// While set, work that a later primitive hides is done all the same, because someone counts its fragments and
     /// samples (queries). Call it before draws or after flush().
     void setExactCounts(bool exact);
+    /// Since begin() or flush(). Draws take memory until they are rendered; with multiview a draw counts once per view.
+    size_t recordedDraws() const;
+    uint64_t recordedPrimitives() const;
+    /// Runs vertex programs for the first draws, and nothing that touches an attachment. After it only end() or flush()
+    /// may come.
+    void prepare();
     /// Finishes all draws so far, so that their results can be read from memory; the pass goes on.
     void flush();
     /// Runs what is left, resolves, and stores. Returns false when a shader ran out of its loop budget.

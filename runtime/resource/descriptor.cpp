@@ -28,31 +28,6 @@ Table tableOf(ir::ResourceKind kind) {
     }
 }
 
-/// The descriptors a resource of a program stands for, and where the dynamic offsets of its binding begin.
-struct Found {
-    std::span<const Descriptor> slots;
-    const DescriptorBinding* binding = nullptr;
-    std::span<const uint32_t> dynamicOffsets;
-};
-
-Found find(const ir::Resource& resource, const BoundDescriptors& bound) {
-    if (resource.set >= std::size(bound.sets) || !bound.sets[resource.set]) return {};
-    const DescriptorSet& set = *bound.sets[resource.set];
-    const DescriptorBinding* binding = set.layout().find(resource.binding);
-    if (!binding) return {};
-    const uint32_t count = resource.arraySize ? std::min(resource.arraySize, binding->count) : binding->count;
-    return {set.slots().subspan(binding->firstSlot, count), binding, bound.dynamicOffsets[resource.set]};
-}
-
-BufferBinding bufferOf(const Found& found, uint32_t index) {
-    const Descriptor& descriptor = found.slots[index];
-    const uint32_t dynamic = found.binding->firstDynamic + index;
-    if (!isDynamic(found.binding->type) || dynamic >= found.dynamicOffsets.size()) return descriptor.buffer;
-    const VkDeviceSize offset = std::min<VkDeviceSize>(found.dynamicOffsets[dynamic], descriptor.bufferBytesLeft);
-    return {descriptor.buffer.data + offset,
-            clampSize(std::min<VkDeviceSize>(descriptor.buffer.size, descriptor.bufferBytesLeft - offset))};
-}
-
 }  // namespace
 
 DescriptorSetLayout DescriptorSetLayout::create(std::vector<DescriptorBinding> bindings) {
@@ -103,6 +78,24 @@ void DescriptorSet::writeTexelBuffer(uint32_t slot, const TextureView* view, Isa
     slots_[slot].texture = makeTexelBufferUnit(view, isa);
 }
 
+BoundDescriptorRange findDescriptors(const ir::Resource& resource, const BoundDescriptors& bound) {
+    if (resource.set >= std::size(bound.sets) || !bound.sets[resource.set]) return {};
+    const DescriptorSet& set = *bound.sets[resource.set];
+    const DescriptorBinding* binding = set.layout().find(resource.binding);
+    if (!binding) return {};
+    const uint32_t count = resource.arraySize ? std::min(resource.arraySize, binding->count) : binding->count;
+    return {set.slots().subspan(binding->firstSlot, count), binding, bound.dynamicOffsets[resource.set]};
+}
+
+BufferBinding boundBuffer(const BoundDescriptorRange& found, uint32_t index) {
+    const Descriptor& descriptor = found.slots[index];
+    const uint32_t dynamic = found.binding->firstDynamic + index;
+    if (!isDynamic(found.binding->type) || dynamic >= found.dynamicOffsets.size()) return descriptor.buffer;
+    const VkDeviceSize offset = std::min<VkDeviceSize>(found.dynamicOffsets[dynamic], descriptor.bufferBytesLeft);
+    return {descriptor.buffer.data + offset,
+            clampSize(std::min<VkDeviceSize>(descriptor.buffer.size, descriptor.bufferBytesLeft - offset))};
+}
+
 ResourceBindings resolveBindings(const ir::Program& program, const BoundDescriptors& bound, Arena& arena) {
     const size_t resources = program.resources.size();
     const std::span<uint32_t> base = arena.array<uint32_t>(resources);
@@ -115,7 +108,7 @@ ResourceBindings resolveBindings(const ir::Program& program, const BoundDescript
         count[r] = resource.kind == ir::ResourceKind::pushConstants ? 1
                    : resource.kind == ir::ResourceKind::workgroupMemory
                        ? 0  // the work-group's context owns it
-                       : static_cast<uint32_t>(find(resource, bound).slots.size());
+                       : static_cast<uint32_t>(findDescriptors(resource, bound).slots.size());
         size += count[r];
     }
     const std::span<BufferBinding> buffers = arena.array<BufferBinding>(sizes[0]);
@@ -130,11 +123,11 @@ ResourceBindings resolveBindings(const ir::Program& program, const BoundDescript
             continue;
         }
         if (count[r] == 0) continue;
-        const Found found = find(resource, bound);
+        const BoundDescriptorRange found = findDescriptors(resource, bound);
         for (uint32_t i = 0; i < count[r]; ++i) {
             switch (tableOf(resource.kind)) {
                 case Table::buffers:
-                    buffers[base[r] + i] = bufferOf(found, i);
+                    buffers[base[r] + i] = boundBuffer(found, i);
                     break;
                 case Table::images:
                     images[base[r] + i] = bindingOf(found.slots[i].texture);

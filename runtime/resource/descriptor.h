@@ -70,6 +70,16 @@ struct BoundDescriptors {
     std::span<const std::byte> pushConstants;
 };
 
+/// The descriptors a resource of a program stands for, and the dynamic offsets of its set.
+struct BoundDescriptorRange {
+    std::span<const Descriptor> slots;  // empty: none are bound
+    const DescriptorBinding* binding = nullptr;
+    std::span<const uint32_t> dynamicOffsets;
+};
+BoundDescriptorRange findDescriptors(const ir::Resource& resource, const BoundDescriptors& bound);
+/// The buffer of descriptor `index` < slots.size(), with its dynamic offset.
+BufferBinding boundBuffer(const BoundDescriptorRange& found, uint32_t index);
+
 /// The bindings of one program: looks up every resource of `program` in `bound` and lays the results out in `arena`.
 /// Unbound or missing descriptors become empty bindings, which read as zero. The result lives as long as the arena.
 ResourceBindings resolveBindings(const ir::Program& program, const BoundDescriptors& bound, Arena& arena);

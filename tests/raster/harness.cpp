@@ -133,7 +133,7 @@ DynamicState dynamicFor(uint32_t width, uint32_t height) {
 
 Pass::Pass(ThreadPool& pool, std::vector<RenderTarget> colors, RenderTarget depth, uint32_t width, uint32_t height,
            uint32_t samples)
-    : pass_(pool) {
+    : workers_(pool), pass_(workers_) {
     targets_.colorCount = static_cast<uint32_t>(colors.size());
     for (size_t n = 0; n < colors.size(); ++n) targets_.colors[n] = colors[n];
     targets_.depthStencil = depth;

@@ -13,6 +13,7 @@
 #include "runtime/format/format.h"
 #include "runtime/plan/plan.h"
 #include "runtime/raster/render_pass.h"
+#include "runtime/raster/render_workers.h"
 
 namespace vernier::raster_test {
 
@@ -86,6 +87,7 @@ class Pass {
         std::vector<uint32_t> indices;
     };
     PassTargets targets_;
+    RenderWorkers workers_;
     RenderPass pass_;
     std::vector<std::unique_ptr<Kept>> kept_;
 };
