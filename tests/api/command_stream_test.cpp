@@ -215,12 +215,16 @@ class Stream {
         return result;
     }
 
-    void bindWords(uint32_t binding) { expect(vnBindBuffer(context_, 0, binding, 0, buffers_[pick(kBuffers)], 0, 0)); }
+    /// What a command reads, at binding 0, and what it writes, at binding 2. Draws of one pass share what they write.
+    void bindWords(uint32_t written) {
+        const uint32_t read = (written + 1 + pick(kBuffers - 1)) % kBuffers;
+        expect(vnBindBuffer(context_, 0, 0, 0, buffers_[read], 0, 0));
+        expect(vnBindBuffer(context_, 0, 2, 0, buffers_[written], 0, 0));
+    }
 
-    void draw(uint32_t image, const Place& target) {
+    void draw(uint32_t image, const Place& target, uint32_t counts) {
         expect(vnBindProgram(context_, draws_[pick(static_cast<uint32_t>(draws_.size()))]));
-        bindWords(0);
-        bindWords(2);
+        bindWords(counts);
         uint32_t from = pick(kImages);
         Place sampled = place();
         if (from == image && sampled == target) sampled.layer ^= 1;
@@ -258,14 +262,15 @@ class Stream {
         }
         expect(vnBindDepthStencilState(context_, withDepth ? depthState_ : VnDepthStencilState{}));
         expect(vnBeginPass(context_, &desc));
-        for (uint32_t n = pick(4); n != 0; --n) draw(image, target);
+        const uint32_t counts = pick(kBuffers);
+        for (uint32_t n = pick(4); n != 0; --n) draw(image, target, counts);
         expect(vnEndPass(context_));
         expect(vnDestroyView(device_, view));
     }
 
     void dispatch(uint32_t which) {
         expect(vnBindProgram(context_, computes_[which]));
-        bindWords(0);
+        bindWords(pick(kBuffers));
         if (which == 1) {
             const VnView view = viewOf(images_[pick(kImages)], place());
             expect(vnBindTexture(context_, 0, 1, 0, view, {}));
@@ -276,7 +281,6 @@ class Stream {
             expect(vnBindBuffer(context_, 0, 2, 0, arguments_, kSlot * pick(4), kSlot));
             return expect(vnDispatch(context_, 1, 1, 1));
         }
-        bindWords(2);
         if (pick(3) == 0) return expect(vnDispatchIndirect(context_, arguments_, kSlot * pick(4)));
         expect(vnDispatch(context_, kWords / 64, 1, 1));
     }
