@@ -113,8 +113,7 @@ std::span<std::byte> layersOf(const Image& image, uint32_t mip, uint32_t first, 
     const uint32_t layers = volume ? level.extent.depth : image.info().arrayLayers;
     if (first >= layers || count == 0) return {};
     count = std::min(count, layers - first);
-    if (volume)
-        return {image.address(mip, 0, first), static_cast<size_t>(count * level.slicePitch)};
+    if (volume) return {image.address(mip, 0, first), static_cast<size_t>(count * level.slicePitch)};
     return {image.address(mip, first), static_cast<size_t>((count - 1) * image.layerPitch() + level.slicePitch)};
 }
 
