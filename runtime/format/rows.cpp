@@ -109,20 +109,24 @@ HWY_INLINE void unpackVector(const TexelLayout& layout, const uint8_t* texels, v
 
 template <ComponentKind kKind, int kBytes, bool kShared>
 void unpackRow(const TexelLayout& layout, const void* texels, size_t n, void* const planes[4]) {
-    const auto* const source = static_cast<const uint8_t*>(texels);
-    size_t i = 0;
-    for (; i + kLanes <= n; i += kLanes) {
-        unpackVector<kKind, kBytes, kShared>(layout, source + i * kBytes, planes, i);
-    }
-    if (i == n) return;
-    alignas(64) uint8_t rest[kLanes * kBytes] = {};
+    alignas(64) uint8_t rest[kLanes * kBytes];
     alignas(64) uint32_t values[4][kLanes];
     void* const valuePlanes[4] = {values[0], values[1], values[2], values[3]};
-    std::memcpy(rest, source + i * kBytes, (n - i) * kBytes);
-    unpackVector<kKind, kBytes, kShared>(layout, rest, valuePlanes, 0);
-    for (int c = 0; c < 4; ++c) {
-        if (planes[c] == nullptr) continue;
-        std::memcpy(static_cast<uint8_t*>(planes[c]) + i * sizeof(uint32_t), values[c], (n - i) * sizeof(uint32_t));
+    for (size_t i = 0; i < n; i += kLanes) {
+        const uint8_t* source = static_cast<const uint8_t*>(texels) + i * kBytes;
+        const size_t count = n - i;
+        const bool whole = count >= kLanes;
+        if (!whole) {
+            std::memset(rest, 0, sizeof rest);
+            std::memcpy(rest, source, count * kBytes);
+            source = rest;
+        }
+        unpackVector<kKind, kBytes, kShared>(layout, source, whole ? planes : valuePlanes, whole ? i : 0);
+        if (whole) continue;
+        for (int c = 0; c < 4; ++c) {
+            if (planes[c] == nullptr) continue;
+            std::memcpy(static_cast<uint8_t*>(planes[c]) + i * sizeof(uint32_t), values[c], count * sizeof(uint32_t));
+        }
     }
 }
 
@@ -152,28 +156,34 @@ HWY_INLINE void packVector(const TexelLayout& layout, const void* const planes[4
 
 template <ComponentKind kKind, int kBytes>
 void packRow(const TexelLayout& layout, const void* const planes[4], size_t n, void* texels) {
-    auto* const target = static_cast<uint8_t*>(texels);
-    size_t i = 0;
-    for (; i + kLanes <= n; i += kLanes) packVector<kKind, kBytes>(layout, planes, i, target + i * kBytes);
-    if (i == n) return;
-    alignas(64) uint8_t rest[kLanes * kBytes] = {};
-    alignas(64) uint32_t values[4][kLanes] = {};
+    alignas(64) uint8_t rest[kLanes * kBytes];
+    alignas(64) uint32_t values[4][kLanes];
     const void* const valuePlanes[4] = {values[0], values[1], values[2], values[3]};
-    for (int c = 0; c < 4; ++c) {
-        if (layout.rgba[c].bits == 0) continue;
-        std::memcpy(values[c], static_cast<const uint8_t*>(planes[c]) + i * sizeof(uint32_t),
-                    (n - i) * sizeof(uint32_t));
+    for (size_t i = 0; i < n; i += kLanes) {
+        uint8_t* const target = static_cast<uint8_t*>(texels) + i * kBytes;
+        const size_t count = n - i;
+        const bool whole = count >= kLanes;
+        if (!whole) {
+            std::memset(values, 0, sizeof values);
+            for (int c = 0; c < 4; ++c) {
+                if (layout.rgba[c].bits == 0) continue;
+                std::memcpy(values[c], static_cast<const uint8_t*>(planes[c]) + i * sizeof(uint32_t),
+                            count * sizeof(uint32_t));
+            }
+            std::memset(rest, 0, sizeof rest);
+            if (layout.keepOtherBits) std::memcpy(rest, target, count * kBytes);
+        }
+        packVector<kKind, kBytes>(layout, whole ? planes : valuePlanes, whole ? i : 0, whole ? target : rest);
+        if (!whole) std::memcpy(target, rest, count * kBytes);
     }
-    if (layout.keepOtherBits) std::memcpy(rest, target + i * kBytes, (n - i) * kBytes);
-    packVector<kKind, kBytes>(layout, valuePlanes, 0, rest);
-    std::memcpy(target + i * kBytes, rest, (n - i) * kBytes);
 }
 
-/// E5B9G9R9: written by clears and copies only, so without SIMD.
-void packSharedExponentRow(const TexelLayout& layout, const void* const planes[4], size_t n, void* texels) {
+/// For layouts that no attachment has: written by clears and copies only, so without SIMD.
+void packRareRow(const TexelLayout& layout, const void* const planes[4], size_t n, void* texels) {
     for (size_t i = 0; i < n; ++i) {
         VkClearColorValue value{};
-        for (int c = 0; c < 3; ++c) {
+        for (int c = 0; c < 4; ++c) {
+            if (layout.rgba[c].bits == 0) continue;
             std::memcpy(&value.uint32[c], static_cast<const uint8_t*>(planes[c]) + i * sizeof(uint32_t),
                         sizeof(uint32_t));
         }
@@ -181,47 +191,61 @@ void packSharedExponentRow(const TexelLayout& layout, const void* const planes[4
     }
 }
 
+/// kBytes: the sizes of texels there are; in packing, those of attachments and storage images.
 template <ComponentKind kKind, int... kBytes>
-void choose(FormatOps& ops) {
+void chooseUnpack(FormatOps& ops) {
     const auto tryBytes = [&]<int kB>(std::integral_constant<int, kB>) {
-        if (ops.layout.bytes != kB) return;
-        ops.unpackFn = unpackRow<kKind, kB, false>;
-        ops.packFn = packRow<kKind, kB>;
+        if (ops.layout.bytes == kB) ops.unpackFn = unpackRow<kKind, kB, false>;
+    };
+    (tryBytes(std::integral_constant<int, kBytes>()), ...);
+}
+template <ComponentKind kKind, int... kBytes>
+void choosePack(FormatOps& ops) {
+    const auto tryBytes = [&]<int kB>(std::integral_constant<int, kB>) {
+        if (ops.layout.bytes == kB) ops.packFn = packRow<kKind, kB>;
     };
     (tryBytes(std::integral_constant<int, kBytes>()), ...);
 }
 
 void selectRows(FormatOps& ops) {
+    ops.packFn = packRareRow;
     switch (ops.layout.rgba[0].kind) {
         case ComponentKind::unorm:
-            choose<ComponentKind::unorm, 1, 2, 3, 4, 6, 8>(ops);
+            chooseUnpack<ComponentKind::unorm, 1, 2, 3, 4, 6, 8>(ops);
+            choosePack<ComponentKind::unorm, 1, 2, 4, 8>(ops);
             break;
         case ComponentKind::snorm:
-            choose<ComponentKind::snorm, 1, 2, 3, 4, 6, 8>(ops);
+            chooseUnpack<ComponentKind::snorm, 1, 2, 3, 4, 6, 8>(ops);
+            choosePack<ComponentKind::snorm, 1, 2, 4, 8>(ops);
             break;
         case ComponentKind::uscaled:
-            choose<ComponentKind::uscaled, 1, 2, 3, 4, 6, 8>(ops);
+            chooseUnpack<ComponentKind::uscaled, 1, 2, 3, 4, 6, 8>(ops);
             break;
         case ComponentKind::sscaled:
-            choose<ComponentKind::sscaled, 1, 2, 3, 4, 6, 8>(ops);
+            chooseUnpack<ComponentKind::sscaled, 1, 2, 3, 4, 6, 8>(ops);
             break;
         case ComponentKind::uint:
-            choose<ComponentKind::uint, 1, 2, 3, 4, 6, 8, 12, 16>(ops);
+            chooseUnpack<ComponentKind::uint, 1, 2, 3, 4, 6, 8, 12, 16>(ops);
+            choosePack<ComponentKind::uint, 1, 2, 4, 8, 16>(ops);
             break;
         case ComponentKind::sint:
-            choose<ComponentKind::sint, 1, 2, 3, 4, 6, 8, 12, 16>(ops);
+            chooseUnpack<ComponentKind::sint, 1, 2, 3, 4, 6, 8, 12, 16>(ops);
+            choosePack<ComponentKind::sint, 1, 2, 4, 8, 16>(ops);
             break;
         case ComponentKind::sfloat:
-            choose<ComponentKind::sfloat, 2, 4, 6, 8, 12, 16>(ops);
+            chooseUnpack<ComponentKind::sfloat, 2, 4, 6, 8, 12, 16>(ops);
+            choosePack<ComponentKind::sfloat, 2, 4, 8, 16>(ops);
             break;
         case ComponentKind::srgb:
-            choose<ComponentKind::srgb, 1, 2, 3, 4>(ops);
+            chooseUnpack<ComponentKind::srgb, 1, 2, 3, 4>(ops);
+            choosePack<ComponentKind::srgb, 1, 2, 4>(ops);
             break;
         case ComponentKind::ufloat:
-            choose<ComponentKind::ufloat, 4>(ops);
             if (ops.layout.sharedExponent) {
                 ops.unpackFn = unpackRow<ComponentKind::uint, 4, true>;
-                ops.packFn = packSharedExponentRow;
+            } else {
+                chooseUnpack<ComponentKind::ufloat, 4>(ops);
+                choosePack<ComponentKind::ufloat, 4>(ops);
             }
             break;
         case ComponentKind::none:

@@ -4,12 +4,10 @@
 #include <array>
 #include <atomic>
 #include <bit>
-#include <cstring>
+#include <optional>
 
 namespace vernier {
 namespace {
-
-constexpr std::array<float, kMaxSampleLanes> kZeroLanes{};
 
 const float* asFloat(const uint32_t* lanes) {
     return reinterpret_cast<const float*>(lanes);
@@ -33,72 +31,93 @@ void placeCoordinates(const ImageCall& call, Target (&coord)[4], Convert convert
     if (call.op->arrayed) coord[3] = convert(call.coord[spatial]);
 }
 
-/// Calls run(mask, offset) once for every texel offset that occurs among the active lanes. Without offsets: once.
+using TexelOffset = std::array<int32_t, 3>;
+
+TexelOffset offsetOf(const ImageCall& call, uint32_t lane) {
+    TexelOffset result{};
+    for (size_t i = 0; i < 3; ++i)
+        if (call.offset[i]) result[i] = asInt(call.offset[i])[lane];
+    return result;
+}
+
+/// The texel offset of all lanes, if they have the same one.
+std::optional<TexelOffset> commonOffset(const ImageCall& call) {
+    uint32_t differences = 0;
+    for (const uint32_t* offsets : call.offset) {
+        if (!offsets) continue;
+        for (uint32_t lane = 1; lane < call.lanes; ++lane) differences |= offsets[lane] ^ offsets[0];
+    }
+    return differences == 0 ? std::optional(offsetOf(call, 0)) : std::nullopt;
+}
+
+/// Calls run(mask, offset) once for every texel offset that occurs among the active lanes.
 template <class Run>
 void forEachOffset(const ImageCall& call, Run run) {
-    std::array<int32_t, 3> offset{};
-    if (!call.offset[0]) return run(call.mask, offset);
     std::array<uint32_t, kMaxSampleLanes> pending{}, group{};
     for (uint32_t lane = 0; lane < call.lanes; ++lane) pending[lane] = call.mask ? call.mask[lane] : ~0u;
-    const auto offsetOf = [&](uint32_t lane) {
-        std::array<int32_t, 3> result{};
-        for (size_t i = 0; i < 3; ++i)
-            if (call.offset[i]) result[i] = asInt(call.offset[i])[lane];
-        return result;
-    };
     for (uint32_t first = 0; first < call.lanes; ++first) {
         if (!pending[first]) continue;
-        offset = offsetOf(first);
+        const TexelOffset offset = offsetOf(call, first);
         for (uint32_t lane = 0; lane < call.lanes; ++lane) {
-            group[lane] = pending[lane] && offsetOf(lane) == offset ? ~0u : 0u;
+            group[lane] = pending[lane] && offsetOf(call, lane) == offset ? ~0u : 0u;
             if (group[lane]) pending[lane] = 0;
         }
         run(group.data(), offset);
     }
 }
 
-/// Results of a group of lanes go to a scratch copy first when there are several groups: a routine may write lanes
-/// outside its mask.
-void runSample(const TextureUnit& unit, SampleFn routine, const ImageCall& call, LodMode mode, bool gather) {
-    forEachOffset(call, [&](const uint32_t* mask, const std::array<int32_t, 3>& offset) {
-        SampleRequest request;
-        request.lanes = call.lanes;
+/// A routine may write lanes outside its mask: the results of each group of lanes go to a copy first.
+void sampleWithOffsets(const TextureUnit& unit, SampleFn routine, const ImageCall& call, SampleRequest request) {
+    std::array<std::array<float, kMaxSampleLanes>, 4> scratch;
+    for (size_t i = 0; i < 4; ++i) request.out[i] = call.result[i] ? scratch[i].data() : nullptr;
+    forEachOffset(call, [&](const uint32_t* mask, const TexelOffset& offset) {
         request.mask = mask;
-        placeCoordinates(call, request.coord, [](const uint32_t* lanes) { return asFloat(lanes); });
-        // A view with more dimensions than the instruction knows of: the others are 0.
-        for (const float*& lanes : request.coord) lanes = lanes ? lanes : kZeroLanes.data();
-        request.dref = call.dref ? asFloat(call.dref) : kZeroLanes.data();
-        request.lodMode = mode;
-        request.lod = call.lodOrBias ? asFloat(call.lodOrBias) : nullptr;
-        request.minLod = call.minLod ? asFloat(call.minLod) : nullptr;
-        for (size_t i = 0; i < 3; ++i) {
-            request.gradX[i] = call.ddx[i] ? asFloat(call.ddx[i]) : kZeroLanes.data();
-            request.gradY[i] = call.ddy[i] ? asFloat(call.ddy[i]) : kZeroLanes.data();
-            request.offset[i] = offset[i];
-        }
-        request.component = gather ? call.op->component : 0;
-        const bool direct = mask == call.mask;
-        std::array<std::array<float, kMaxSampleLanes>, 4> scratch;
-        for (size_t i = 0; i < 4; ++i)
-            request.out[i] = !call.result[i] ? nullptr : direct ? asFloat(call.result[i]) : scratch[i].data();
+        std::copy(offset.begin(), offset.end(), request.offset);
         routine(*unit.view, *unit.sampler, request);
-        if (direct) return;
         for (size_t i = 0; i < 4; ++i)
             for (uint32_t lane = 0; call.result[i] && lane < call.lanes; ++lane)
                 if (mask[lane]) call.result[i][lane] = std::bit_cast<uint32_t>(scratch[i][lane]);
     });
 }
 
+/// Coordinates that the view has and the instruction does not know of are left out: 0.
+void runSample(const TextureUnit& unit, SampleFn routine, const ImageCall& call, LodMode mode) {
+    SampleRequest request;
+    request.lanes = call.lanes;
+    request.mask = call.mask;
+    placeCoordinates(call, request.coord, [](const uint32_t* lanes) { return asFloat(lanes); });
+    request.dref = asFloat(call.dref);
+    request.lodMode = mode;
+    request.lod = asFloat(call.lodOrBias);
+    request.minLod = asFloat(call.minLod);
+    if (mode == LodMode::gradients) {
+        for (size_t i = 0; i < 3; ++i) {
+            request.gradX[i] = asFloat(call.ddx[i]);
+            request.gradY[i] = asFloat(call.ddy[i]);
+        }
+    }
+    if (call.op->kind == ir::ImageKind::gather) request.component = call.op->component;
+    if (call.offset[0]) {
+        const std::optional<TexelOffset> offset = commonOffset(call);
+        if (!offset) return sampleWithOffsets(unit, routine, call, request);
+        std::copy(offset->begin(), offset->end(), request.offset);
+    }
+    for (size_t i = 0; i < 4; ++i) request.out[i] = asFloat(call.result[i]);
+    routine(*unit.view, *unit.sampler, request);
+}
+
 void runFetch(const TextureUnit& unit, const ImageCall& call) {
-    forEachOffset(call, [&](const uint32_t* mask, const std::array<int32_t, 3>& offset) {
-        FetchRequest request;
-        request.lanes = call.lanes;
+    FetchRequest request;
+    request.lanes = call.lanes;
+    request.mask = call.mask;
+    placeCoordinates(call, request.coord, [](const uint32_t* lanes) { return asInt(lanes); });
+    request.lod = asInt(call.lodOrBias);
+    request.sample = asInt(call.sample);
+    for (size_t i = 0; i < 4; ++i) request.out[i] = asFloat(call.result[i]);
+    if (!call.offset[0]) return unit.fetch(*unit.view, request);
+    forEachOffset(call, [&](const uint32_t* mask, const TexelOffset& offset) {
         request.mask = mask;
-        placeCoordinates(call, request.coord, [](const uint32_t* lanes) { return asInt(lanes); });
-        request.lod = call.lodOrBias ? asInt(call.lodOrBias) : nullptr;
-        request.sample = call.sample ? asInt(call.sample) : nullptr;
         std::copy(offset.begin(), offset.end(), request.offset);
-        for (size_t i = 0; i < 4; ++i) request.out[i] = call.result[i] ? asFloat(call.result[i]) : nullptr;
         unit.fetch(*unit.view, request);
     });
 }
@@ -220,15 +239,15 @@ void runUnit(const TextureUnit& unit, const ImageCall& call) {
     }
     switch (call.op->kind) {
         case Kind::sampleImplicit:
-            return runSample(unit, unit.sample, call, LodMode::implicitLod, false);
+            return runSample(unit, unit.sample, call, LodMode::implicitLod);
         case Kind::sampleLod:
-            return runSample(unit, unit.sample, call, LodMode::explicitLod, false);
+            return runSample(unit, unit.sample, call, LodMode::explicitLod);
         case Kind::sampleGrad:
-            return runSample(unit, unit.sample, call, LodMode::gradients, false);
+            return runSample(unit, unit.sample, call, LodMode::gradients);
         case Kind::gather:
-            return runSample(unit, unit.gather, call, LodMode::base, true);
+            return runSample(unit, unit.gather, call, LodMode::base);
         case Kind::queryLod:
-            return runSample(unit, unit.queryLod, call, LodMode::implicitLod, false);
+            return runSample(unit, unit.queryLod, call, LodMode::implicitLod);
         case Kind::fetch:
         case Kind::read:
             return runFetch(unit, call);

@@ -31,8 +31,8 @@ HWY_INLINE void unrolled(const Step& step) {
     }
 }
 
-/// What is known about both address modes when a routine is compiled.
-enum class Wrap { repeat, clampToEdge, any };
+/// What is known about an address mode when a routine is compiled.
+enum class Wrap { clampToEdge, any };
 
 /// The texels of a footprint along one axis: always indices of texels that exist.
 struct AxisTaps {
@@ -84,7 +84,6 @@ HWY_INLINE VF texelCoordinate(VF s, const Axis& axis) {
         const VF u = axis.normalized ? hn::Mul(s, splatFloat(size)) : s;
         return clampOrLowV(u, splatFloat(-kFarTexel), splatFloat(kFarTexel));
     };
-    if constexpr (kWrap == Wrap::repeat) return repeat();
     if constexpr (kWrap == Wrap::clampToEdge) return keep();
     switch (axis.mode) {
         case VK_SAMPLER_ADDRESS_MODE_REPEAT:
@@ -109,7 +108,6 @@ HWY_INLINE VI wrapIndex(VI i, const Axis& axis, VI& inside) {
         const VI down = hn::IfThenElseZero(hn::Gt(i, splatInt(axis.size - 1)), size);
         return hn::Sub(hn::Add(i, up), down);
     };
-    if constexpr (kWrap == Wrap::repeat) return repeat();
     if constexpr (kWrap == Wrap::clampToEdge) return clampIndex(i, axis.size);
     inside = hn::Set(I32(), -1);
     switch (axis.mode) {
@@ -136,14 +134,21 @@ HWY_INLINE void nearestTap(VF s, const Axis& axis, AxisTaps& taps) {
     taps.index[0] = wrapIndex<kWrap>(hn::Add(i, splatInt(axis.offset)), axis, taps.inside[0]);
 }
 
-template <Wrap kWrap>
 HWY_INLINE void linearTaps(VF s, const Axis& axis, AxisTaps& taps) {
-    const VF u = hn::Sub(texelCoordinate<kWrap>(s, axis), splatFloat(0.5f));
+    const VF u = hn::Sub(texelCoordinate<Wrap::any>(s, axis), splatFloat(0.5f));
     const VF whole = hn::Floor(u);
     taps.weight = hn::Sub(u, whole);
     const VI i = hn::Add(hn::ConvertTo(I32(), whole), splatInt(axis.offset));
-    taps.index[0] = wrapIndex<kWrap>(i, axis, taps.inside[0]);
-    taps.index[1] = wrapIndex<kWrap>(hn::Add(i, splatInt(1)), axis, taps.inside[1]);
+    taps.index[0] = wrapIndex<Wrap::any>(i, axis, taps.inside[0]);
+    taps.index[1] = wrapIndex<Wrap::any>(hn::Add(i, splatInt(1)), axis, taps.inside[1]);
+}
+
+// Out of line, for routines that are large anyway.
+HWY_NOINLINE static void sharedNearestTap(VF s, const Axis& axis, AxisTaps& taps) {
+    nearestTap<Wrap::any>(s, axis, taps);
+}
+HWY_NOINLINE static void sharedLinearTaps(VF s, const Axis& axis, AxisTaps& taps) {
+    linearTaps(s, axis, taps);
 }
 
 }  // namespace HWY_NAMESPACE

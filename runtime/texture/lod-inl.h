@@ -36,25 +36,34 @@ HWY_INLINE VF log2V(VF x) {
     return hn::Add(hn::ConvertTo(df, e), hn::Mul(series, s));
 }
 
+template <class T, class D = hn::ScalableTag<T>>
+HWY_NOINLINE hn::Vec<D> loadSomeLanes(const T* plane, uint32_t count) {
+    alignas(64) T part[hn::MaxLanes(D())] = {};
+    std::memcpy(part, plane, count * sizeof(T));
+    return hn::Load(D(), part);
+}
+
 /// Lanes of a plane; zero where there is none and beyond the end. `count` is the number of lanes left.
 template <class T, class D = hn::ScalableTag<T>>
 HWY_INLINE hn::Vec<D> loadLanes(const T* plane, uint32_t first, uint32_t count) {
     const D d;
     if (plane == nullptr) return hn::Zero(d);
-    if (count >= hn::Lanes(d)) return hn::LoadU(d, plane + first);
-    alignas(64) T part[hn::MaxLanes(d)] = {};
-    std::memcpy(part, plane + first, count * sizeof(T));
-    return hn::Load(d, part);
+    if (HWY_LIKELY(count >= hn::Lanes(d))) return hn::LoadU(d, plane + first);
+    return loadSomeLanes(plane + first, count);
+}
+
+HWY_NOINLINE static void storeSomeLanes(VU value, float* plane, uint32_t count) {
+    alignas(64) float part[hn::MaxLanes(F32())];
+    hn::Store(floatOf(value), F32(), part);
+    std::memcpy(plane, part, count * sizeof(float));
 }
 
 HWY_INLINE void storeLanes(VU value, float* plane, uint32_t first, uint32_t count) {
-    if (count >= hn::Lanes(U32())) {
+    if (HWY_LIKELY(count >= hn::Lanes(U32()))) {
         hn::StoreU(floatOf(value), F32(), plane + first);
-        return;
+    } else {
+        storeSomeLanes(value, plane + first, count);
     }
-    alignas(64) float part[hn::MaxLanes(F32())];
-    hn::Store(floatOf(value), F32(), part);
-    std::memcpy(plane + first, part, count * sizeof(float));
 }
 
 /// The horizontal and vertical difference over each quad, in all its lanes. A vector holds whole quads, one

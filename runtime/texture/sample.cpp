@@ -1,5 +1,5 @@
-// Which sampling routine a view and a sampler get: one per kind of texel, shape of image and pair of address
-// modes.
+// Which sampling routine a view and a sampler get: a fast one (word_sampler-inl.h) where they fit one, else one by the
+// kind of texel and the shape of the image.
 #include "runtime/texture/sample_extended.h"
 #include "runtime/texture/texture.h"
 
@@ -11,88 +11,101 @@
 #include <hwy/highway.h>
 
 #include "runtime/texture/sampler-inl.h"
+#include "runtime/texture/word_sampler-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vernier {
 namespace HWY_NAMESPACE {
 
-template <class Source, Shape kShape, Wrap kWrap>
+template <class Source, Shape kShape>
 void runSample(const TextureView& view, const SamplerState& sampler, const SampleRequest& request) {
-    Sampler<Source, kShape, kWrap>(view, sampler, request).sample();
+    Sampler<Source, kShape>({view, sampler, request}).sample();
 }
 
 template <Shape kShape>
 void runGather(const TextureView& view, const SamplerState& sampler, const SampleRequest& request) {
-    if (view.block != nullptr) return Sampler<BlockSource<4>, kShape, Wrap::any>(view, sampler, request).gather();
-    Sampler<AnySource<4>, kShape, Wrap::any>(view, sampler, request).gather();
+    Sampler<AnySource<4>, kShape>({view, sampler, request}).gather();
 }
 
 template <Shape kShape>
 void runQueryLod(const TextureView& view, const SamplerState& sampler, const SampleRequest& request) {
-    Sampler<AnySource<1>, kShape, Wrap::any>(view, sampler, request).queryLod();
+    const SampleCall call{view, sampler, request};
+    alignas(64) float lambdas[kLambdaLanes];
+    lambdaPrimes<kShape>(call, lambdas);
+    call.forEachVector([&](uint32_t first, uint32_t count) HWY_ATTR {
+        const VF lambdaPrime = hn::Load(F32(), lambdas + first);
+        const LevelChoice choice = chooseLevels(view, sampler, lowestLod(sampler, request, first, count), lambdaPrime);
+        const VF level = hn::Add(hn::ConvertTo(F32(), choice.high), choice.weight);
+        if (request.out[0] != nullptr) storeLanes(bitsOf(level), request.out[0], first, count);
+        if (request.out[1] != nullptr) storeLanes(bitsOf(lambdaPrime), request.out[1], first, count);
+    });
 }
 
-Shape shapeOf(VkImageViewType type) {
-    if (type == VK_IMAGE_VIEW_TYPE_3D) return Shape::volume;
-    return type == VK_IMAGE_VIEW_TYPE_CUBE || type == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY ? Shape::cube : Shape::flat;
+/// `kAny`: the routine for requests with a texel offset.
+template <SampleFn kAny, class Words, WordWrap kWrap, bool kLinear, bool kLevels>
+void runWords(const TextureView& view, const SamplerState& sampler, const SampleRequest& request) {
+    if ((request.offset[0] | request.offset[1]) != 0) return kAny(view, sampler, request);
+    WordSampler<Words, kWrap, kLinear, kLevels>({view, sampler, request}).sample();
 }
 
-template <bool kSrgb>
-SampleFn selectRgba8(const TextureView& view, const SamplerState& sampler) {
-    using Narrow = Rgba8Source<kSrgb, false>;
-    using Wide = Rgba8Source<kSrgb, true>;
-    switch (shapeOf(view.type)) {
+template <SampleFn kAny, class Words, WordWrap kWrap>
+SampleFn selectFilter(const TextureView& view, const SamplerState& sampler) {
+    const bool linear = sampler.magFilter == VK_FILTER_LINEAR;
+    if (onlyLevel(view, sampler)) {
+        return linear ? runWords<kAny, Words, kWrap, true, false> : runWords<kAny, Words, kWrap, false, false>;
+    }
+    if constexpr (Words::kLevels) {
+        return linear ? runWords<kAny, Words, kWrap, true, true> : runWords<kAny, Words, kWrap, false, true>;
+    }
+    return kAny;
+}
+
+/// kAny if no fast routine fits.
+template <SampleFn kAny, class Words>
+SampleFn selectWords(const TextureView& view, const SamplerState& sampler) {
+    const bool oneDimensional = view.type == VK_IMAGE_VIEW_TYPE_1D || view.type == VK_IMAGE_VIEW_TYPE_1D_ARRAY;
+    const VkSamplerAddressMode u = sampler.addressMode[0], v = oneDimensional ? u : sampler.addressMode[1];
+    if (u != v || sampler.magFilter != sampler.minFilter || sampler.unnormalizedCoordinates || !offsetsFitInt32(view))
+        return kAny;
+    if (u == VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE)
+        return selectFilter<kAny, Words, WordWrap::clampToEdge>(view, sampler);
+    if constexpr (Words::kBorder) {
+        if (u == VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_BORDER)
+            return selectFilter<kAny, Words, WordWrap::clampToBorder>(view, sampler);
+    } else {
+        if (u == VK_SAMPLER_ADDRESS_MODE_REPEAT) return selectFilter<kAny, Words, WordWrap::repeat>(view, sampler);
+    }
+    return kAny;
+}
+
+template <class Source>
+SampleFn byShape(VkImageViewType type) {
+    switch (shapeOf(type)) {
         case Shape::volume:
-            return runSample<Wide, Shape::volume, Wrap::any>;
+            return runSample<Source, Shape::volume>;
         case Shape::cube:
-            return runSample<Wide, Shape::cube, Wrap::any>;
+            return runSample<Source, Shape::cube>;
         case Shape::flat:
             break;
     }
-    if (!offsetsFitInt32(view)) return runSample<Wide, Shape::flat, Wrap::any>;
-    const bool oneDimensional = view.type == VK_IMAGE_VIEW_TYPE_1D || view.type == VK_IMAGE_VIEW_TYPE_1D_ARRAY;
-    const VkSamplerAddressMode u = sampler.addressMode[0], v = oneDimensional ? u : sampler.addressMode[1];
-    if (u == v && u == VK_SAMPLER_ADDRESS_MODE_REPEAT) return runSample<Narrow, Shape::flat, Wrap::repeat>;
-    if (u == v && u == VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE) return runSample<Narrow, Shape::flat, Wrap::clampToEdge>;
-    return runSample<Narrow, Shape::flat, Wrap::any>;
+    return runSample<Source, Shape::flat>;
 }
 
 SampleFn selectSampleRoutine(const TextureView& view, const SamplerState& sampler) {
+    const Shape shape = shapeOf(view.type);
+    const Rgba8Kind rgba8 = rgba8Kind(view, sampler);
+    if (rgba8 != Rgba8Kind::none) {
+        if (shape != Shape::flat) return byShape<Rgba8Source>(view.type);
+        constexpr SampleFn kAny = runSample<Rgba8Source, Shape::flat>;
+        return rgba8 == Rgba8Kind::unorm ? selectWords<kAny, Unorm8Words>(view, sampler)
+                                         : selectWords<kAny, Srgb8Words>(view, sampler);
+    }
     const TexelLayout& layout = view.ops.layout;
-    const Component& first = layout.rgba[0];
-    const bool words = layout.bytes == 4 && view.texelPitch == 4;
-    if (view.block != nullptr) {
-        switch (shapeOf(view.type)) {
-            case Shape::volume:
-                return runSample<BlockSource<4>, Shape::volume, Wrap::any>;
-            case Shape::cube:
-                return runSample<BlockSource<4>, Shape::cube, Wrap::any>;
-            case Shape::flat:
-                return runSample<BlockSource<4>, Shape::flat, Wrap::any>;
-        }
-    }
-    switch (rgba8Kind(view, sampler)) {
-        case Rgba8Kind::unorm:
-            return selectRgba8<false>(view, sampler);
-        case Rgba8Kind::srgb:
-            return selectRgba8<true>(view, sampler);
-        case Rgba8Kind::none:
-            break;
-    }
-    switch (shapeOf(view.type)) {
-        case Shape::volume:
-            return runSample<AnySource<4>, Shape::volume, Wrap::any>;
-        case Shape::cube:
-            return runSample<AnySource<4>, Shape::cube, Wrap::any>;
-        case Shape::flat:
-            break;
-    }
-    if (layout.rgba[1].bits != 0) return runSample<AnySource<4>, Shape::flat, Wrap::any>;
-    if (words && first.offset == 0 && offsetsFitInt32(view)) {
-        if (first.bits == 32) return runSample<R32Source<false>, Shape::flat, Wrap::any>;
-        if (first.bits == 24) return runSample<R32Source<true>, Shape::flat, Wrap::any>;
-    }
-    return runSample<AnySource<1>, Shape::flat, Wrap::any>;
+    if (shape != Shape::flat || layout.rgba[1].bits != 0) return byShape<AnySource<4>>(view.type);
+    if (!isOneWord(view)) return runSample<AnySource<1>, Shape::flat>;
+    constexpr SampleFn kAny = runSample<R32Source, Shape::flat>;
+    const bool isDepth = layout.rgba[0].kind == ComponentKind::sfloat && sampler.compareEnable;
+    return isDepth ? selectWords<kAny, DepthWords>(view, sampler) : kAny;
 }
 
 SampleFn selectGatherRoutine(const TextureView& view) {

@@ -7,7 +7,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "runtime/texture/sampler-inl.h"
+#include "runtime/texture/anisotropic-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vernier {
@@ -15,28 +15,28 @@ namespace HWY_NAMESPACE {
 
 template <class Source, Shape kShape>
 void runExtended(const TextureView& view, const SamplerState& sampler, const SampleRequest& request) {
-    Sampler<Source, kShape, Wrap::any, true>(view, sampler, request).sample();
+    const SampleCall call{view, sampler, request};
+    const bool derivatives = request.lodMode == LodMode::implicitLod || request.lodMode == LodMode::gradients;
+    if (sampler.maxAnisotropy > 1.0f && derivatives) return AnisotropicSampler<Source, kShape>(call).sample();
+    Sampler<Source, kShape, true>(call).sample();
 }
 
 template <class Source>
 SampleFn byShape(VkImageViewType type) {
-    if (type == VK_IMAGE_VIEW_TYPE_3D) return runExtended<Source, Shape::volume>;
-    const bool cube = type == VK_IMAGE_VIEW_TYPE_CUBE || type == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY;
-    return cube ? runExtended<Source, Shape::cube> : runExtended<Source, Shape::flat>;
+    switch (shapeOf(type)) {
+        case Shape::volume:
+            return runExtended<Source, Shape::volume>;
+        case Shape::cube:
+            return runExtended<Source, Shape::cube>;
+        case Shape::flat:
+            break;
+    }
+    return runExtended<Source, Shape::flat>;
 }
 
 SampleFn selectExtendedRoutine(const TextureView& view, const SamplerState& sampler) {
-    if (view.block != nullptr) return byShape<BlockSource<4>>(view.type);
-    const bool wide = !offsetsFitInt32(view);
-    switch (rgba8Kind(view, sampler)) {
-        case Rgba8Kind::unorm:
-            return wide ? byShape<AnySource<4>>(view.type) : byShape<Rgba8Source<false, false>>(view.type);
-        case Rgba8Kind::srgb:
-            return wide ? byShape<AnySource<4>>(view.type) : byShape<Rgba8Source<true, false>>(view.type);
-        case Rgba8Kind::none:
-            break;
-    }
-    return byShape<AnySource<4>>(view.type);
+    const bool rgba8 = rgba8Kind(view, sampler) != Rgba8Kind::none;
+    return rgba8 ? byShape<Rgba8Source>(view.type) : byShape<AnySource<4>>(view.type);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -10,16 +10,15 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <optional>
 
 #include "runtime/texture/block_cache.h"
-#include "runtime/texture/lod-inl.h"
+#include "runtime/texture/footprint-inl.h"
 #include "runtime/texture/routing.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vernier {
 namespace HWY_NAMESPACE {
-
-constexpr uint32_t kVectorLanes = hn::MaxLanes(F32());
 
 /// Where one texel of the footprint is, in all lanes; indices are in range. slice: array layer, cube face or
 /// z.
@@ -41,105 +40,8 @@ using Texel = VU[4];
 
 constexpr uint8_t kConstantPlane = 4;
 
-/// Texels of four bytes as they lie in memory. kWide: the offsets in the level may exceed int32.
-template <bool kWide>
-HWY_INLINE VU loadWord(const TextureLevel& level, const TexelPosition& at) {
-    if constexpr (kWide) {
-        alignas(64) int32_t x[kVectorLanes], y[kVectorLanes], slice[kVectorLanes];
-        alignas(64) uint32_t words[kVectorLanes];
-        hn::Store(at.x, I32(), x);
-        hn::Store(at.y, I32(), y);
-        hn::Store(at.slice, I32(), slice);
-        for (uint32_t i = 0; i < kVectorLanes; ++i) {
-            std::memcpy(&words[i],
-                        level.data + static_cast<uint64_t>(slice[i]) * level.slicePitch +
-                            static_cast<uint64_t>(y[i]) * level.rowPitch + static_cast<uint64_t>(x[i]) * 4,
-                        4);
-        }
-        return hn::Load(U32(), words);
-    } else {
-        const VI row = hn::Mul(at.y, splatInt(static_cast<int32_t>(level.rowPitch)));
-        const VI slice = hn::Mul(at.slice, splatInt(static_cast<int32_t>(level.slicePitch)));
-        const VI offset = hn::Add(hn::Add(row, slice), hn::ShiftLeft<2>(at.x));
-        return hn::GatherOffset(U32(), reinterpret_cast<const uint32_t*>(level.data), offset);
-    }
-}
-
-/// The texels of a 2x2 footprint, tap 2j + i at (x[i], y[j]); the offsets fit int32. Texels that lie side by side in
-/// memory are read two at a time: a gather costs by the number of places it reads.
-HWY_INLINE void loadWordSquare(const TextureLevel& level, const AxisTaps& x, const AxisTaps& y, VI slice,
-                               VU (&words)[4]) {
-    if (HWY_UNLIKELY(!hn::AllTrue(I32(), hn::Eq(x.index[1], hn::Add(x.index[0], splatInt(1)))))) {
-        unrolled<4>([&](auto t) VERNIER_INLINE_LAMBDA {
-            words[t] = loadWord<false>(level, TexelPosition{x.index[t & 1], y.index[t >> 1], slice});
-        });
-        return;
-    }
-    const hn::RepartitionToWide<U32> d64;
-    const hn::RebindToSigned<decltype(d64)> i64;
-    const hn::Half<I32> half;
-    const auto* base = reinterpret_cast<const uint64_t*>(level.data);
-    const VI first =
-        hn::Add(hn::Mul(slice, splatInt(static_cast<int32_t>(level.slicePitch))), hn::ShiftLeft<2>(x.index[0]));
-    unrolled<2>([&](auto j) VERNIER_INLINE_LAMBDA {
-        const VI offset = hn::Add(hn::Mul(y.index[j], splatInt(static_cast<int32_t>(level.rowPitch))), first);
-        const VU low = hn::BitCast(U32(), hn::GatherOffset(d64, base, hn::PromoteTo(i64, hn::LowerHalf(half, offset))));
-        const VU high =
-            hn::BitCast(U32(), hn::GatherOffset(d64, base, hn::PromoteTo(i64, hn::UpperHalf(half, offset))));
-        words[2 * j] = hn::ConcatEven(U32(), high, low);
-        words[2 * j + 1] = hn::ConcatOdd(U32(), high, low);
-    });
-}
-
-/// Four 8-bit components in any order. unorm stays in codes until finish(); sRGB is decoded at once.
-template <bool kSrgb, bool kWide>
-struct Rgba8Source {
-    static constexpr bool kFinite = true;
-    static constexpr int kPlanes = 4;
-    uint8_t planeOf[4];
-
-    explicit Rgba8Source(const TextureView& view) {
-        for (int c = 0; c < 4; ++c) planeOf[c] = view.ops.layout.rgba[c].offset / 8;
-    }
-
-    void borderPlanes(const VkClearColorValue& color, uint32_t (&planes)[4]) const {
-        for (int c = 0; c < 4; ++c) {
-            planes[planeOf[c]] = std::bit_cast<uint32_t>(kSrgb ? color.float32[c] : 255.0f * color.float32[c]);
-        }
-    }
-
-    template <int kTaps>
-    HWY_INLINE void load(const TextureView&, const TextureLevel& level, const TexelPosition (&at)[kTaps], uint32_t,
-                         Texel (&texels)[kTaps]) const {
-        unrolled<kTaps>([&](auto t) VERNIER_INLINE_LAMBDA { unpack(loadWord<kWide>(level, at[t]), texels[t]); });
-    }
-
-    static constexpr bool kWords = !kWide;
-    /// Of the four texels of loadWordSquare().
-    HWY_INLINE void loadSquare(const TextureLevel& level, const AxisTaps& x, const AxisTaps& y, VI slice,
-                               Texel (&texels)[4]) const {
-        VU words[4];
-        loadWordSquare(level, x, y, slice, words);
-        unrolled<4>([&](auto t) VERNIER_INLINE_LAMBDA { unpack(words[t], texels[t]); });
-    }
-
-    HWY_INLINE VU finish(VU plane) const {
-        return kSrgb ? plane : bitsOf(divideExact(floatOf(plane), splatFloat(255.0f), splatFloat(1.0f / 255)));
-    }
-
-  private:
-    static HWY_INLINE void unpack(VU word, Texel& texel) {
-        const VU mask = splatBits(0xff);
-        const VU codes[4] = {hn::And(word, mask), hn::And(hn::ShiftRight<8>(word), mask),
-                             hn::And(hn::ShiftRight<16>(word), mask), hn::ShiftRight<24>(word)};
-        unrolled<3>([&](auto p) VERNIER_INLINE_LAMBDA {
-            texel[p] = bitsOf(kSrgb ? decodeSrgbV(codes[p]) : toFloatV(codes[p]));
-        });
-        texel[3] = bitsOf(kSrgb ? decodeUnormV(codes[3], 8) : toFloatV(codes[3]));
-    }
-};
-
-/// Gathers address texels by a signed 32-bit offset from the level's first one.
+/// Whether the texels of all levels can be addressed by a signed 32-bit offset from the level's first one, as gathers
+/// do.
 inline bool offsetsFitInt32(const TextureView& view) {
     for (uint32_t i = 0; i < view.levelCount; ++i) {
         const TextureLevel& level = view.levels[i];
@@ -151,9 +53,39 @@ inline bool offsetsFitInt32(const TextureView& view) {
     return true;
 }
 
+/// Calls step(lane, address of the texel's slice, x, y).
+template <class Step>
+HWY_INLINE void forEachLane(const TextureLevel& level, const TexelPosition& at, Step step) {
+    alignas(64) int32_t x[kVectorLanes], y[kVectorLanes], slice[kVectorLanes];
+    hn::Store(at.x, I32(), x);
+    hn::Store(at.y, I32(), y);
+    hn::Store(at.slice, I32(), slice);
+    for (uint32_t i = 0; i < kVectorLanes; ++i) {
+        step(i, level.data + static_cast<uint64_t>(slice[i]) * level.slicePitch, static_cast<uint32_t>(x[i]),
+             static_cast<uint32_t>(y[i]));
+    }
+}
+
+HWY_NOINLINE static VU loadDistantWord(const TextureLevel& level, const TexelPosition& at) {
+    alignas(64) uint32_t words[kVectorLanes];
+    forEachLane(level, at, [&](uint32_t lane, const std::byte* slice, uint32_t x, uint32_t y) {
+        std::memcpy(&words[lane], slice + uint64_t{y} * level.rowPitch + uint64_t{x} * 4, 4);
+    });
+    return hn::Load(U32(), words);
+}
+
+/// Texels of four bytes as they lie in memory. `distant`: the offsets in a level may exceed int32.
+HWY_INLINE VU loadWord(const TextureLevel& level, const TexelPosition& at, bool distant) {
+    if (HWY_UNLIKELY(distant)) return loadDistantWord(level, at);
+    const VI row = hn::Mul(at.y, splatInt(static_cast<int32_t>(level.rowPitch)));
+    const VI slice = hn::Mul(at.slice, splatInt(static_cast<int32_t>(level.slicePitch)));
+    const VI offset = hn::Add(hn::Add(row, slice), hn::ShiftLeft<2>(at.x));
+    return hn::GatherOffset(U32(), reinterpret_cast<const uint32_t*>(level.data), offset);
+}
+
 enum class Rgba8Kind : uint8_t { none, unorm, srgb };
 
-/// Whether an Rgba8Source reads the view, and which.
+/// Whether an Rgba8Source reads the view, and which codes it has.
 inline Rgba8Kind rgba8Kind(const TextureView& view, const SamplerState& sampler) {
     const TexelLayout& layout = view.ops.layout;
     if (layout.bytes != 4 || view.texelPitch != 4 || view.block != nullptr || sampler.compareEnable) {
@@ -168,14 +100,77 @@ inline Rgba8Kind rgba8Kind(const TextureView& view, const SamplerState& sampler)
                                          : Rgba8Kind::none;
 }
 
-/// One component in four bytes: a float, or (kFixed24) the low 24 bits of the texel as unorm.
-template <bool kFixed24>
+/// Codes of 8 bits, filtered as such, to values: codes / 255, correctly rounded. The reciprocal in two parts is exact
+/// to 2^-48 or so, and the rounding of the lesser product does not matter more: a quotient by 255 comes no closer than
+/// 2^-33 of itself to the middle of two floats (25 bits for the middle, 8 for the divisor).
+HWY_INLINE VF finishUnorm8(VF codes) {
+#if HWY_TARGET == HWY_SSE4
+    return hn::Div(codes, splatFloat(255.0f));
+#else
+    constexpr float kHigh = 1.0f / 255;
+    constexpr auto kLow = static_cast<float>(1.0 / 255 - static_cast<double>(kHigh));
+    return hn::MulAdd(codes, splatFloat(kHigh), hn::Mul(codes, splatFloat(kLow)));
+#endif
+}
+
+/// Four 8-bit components in any order. unorm stays in codes until finish(); sRGB is decoded at once.
+struct Rgba8Source {
+    static constexpr bool kFinite = true;
+    static constexpr int kPlanes = 4;
+    uint8_t planeOf[4];
+
+    explicit Rgba8Source(const TextureView& view)
+        : srgb_(view.ops.layout.rgba[0].kind == ComponentKind::srgb), distant_(!offsetsFitInt32(view)) {
+        for (int c = 0; c < 4; ++c) planeOf[c] = view.ops.layout.rgba[c].offset / 8;
+    }
+
+    void borderPlanes(const VkClearColorValue& color, uint32_t (&planes)[4]) const {
+        for (int c = 0; c < 4; ++c) {
+            planes[planeOf[c]] = std::bit_cast<uint32_t>(srgb_ ? color.float32[c] : 255.0f * color.float32[c]);
+        }
+    }
+
+    template <int kTaps>
+    HWY_INLINE void load(const TextureView&, const TextureLevel& level, const TexelPosition (&at)[kTaps], uint32_t,
+                         Texel (&texels)[kTaps]) const {
+        unrolled<kTaps>([&](auto t) VERNIER_INLINE_LAMBDA { unpack(loadWord(level, at[t], distant_), texels[t]); });
+        if (!srgb_) return;
+        for (Texel& texel : texels) decodeSrgb(texel);
+    }
+
+    HWY_INLINE VU finish(VU plane) const { return srgb_ ? plane : bitsOf(finishUnorm8(floatOf(plane))); }
+
+  private:
+    static HWY_INLINE void unpack(VU word, Texel& texel) {
+        const VU mask = splatBits(0xff);
+        const VU codes[4] = {hn::And(word, mask), hn::And(hn::ShiftRight<8>(word), mask),
+                             hn::And(hn::ShiftRight<16>(word), mask), hn::ShiftRight<24>(word)};
+        unrolled<4>([&](auto p) VERNIER_INLINE_LAMBDA { texel[p] = bitsOf(toFloatV(codes[p])); });
+    }
+    static HWY_NOINLINE void decodeSrgb(Texel& texel) {
+        for (int p = 0; p < 3; ++p)
+            texel[p] = bitsOf(decodeSrgbV(hn::BitCast(U32(), hn::ConvertTo(I32(), floatOf(texel[p])))));
+        texel[3] = bitsOf(finishUnorm8(floatOf(texel[3])));
+    }
+
+    bool srgb_, distant_;
+};
+
+/// Whether an R32Source reads the view: one component in four bytes, a float or the low 24 bits as unorm.
+inline bool isOneWord(const TextureView& view) {
+    const TexelLayout& layout = view.ops.layout;
+    const Component& first = layout.rgba[0];
+    return view.block == nullptr && layout.bytes == 4 && view.texelPitch == 4 && layout.rgba[1].bits == 0 &&
+           first.offset == 0 && (first.bits == 32 || first.bits == 24);
+}
+
 struct R32Source {
     static constexpr bool kFinite = false;
     static constexpr int kPlanes = 1;
     static constexpr uint8_t planeOf[4] = {0, kConstantPlane, kConstantPlane, kConstantPlane};
 
-    explicit R32Source(const TextureView&) {}
+    explicit R32Source(const TextureView& view)
+        : fixed24_(view.ops.layout.rgba[0].bits == 24), distant_(!offsetsFitInt32(view)) {}
 
     void borderPlanes(const VkClearColorValue& color, uint32_t (&planes)[4]) const { planes[0] = color.uint32[0]; }
 
@@ -183,29 +178,34 @@ struct R32Source {
     HWY_INLINE void load(const TextureView&, const TextureLevel& level, const TexelPosition (&at)[kTaps], uint32_t,
                          Texel (&texels)[kTaps]) const {
         unrolled<kTaps>([&](auto t) VERNIER_INLINE_LAMBDA {
-            const VU word = loadWord<false>(level, at[t]);
-            texels[t][0] = kFixed24 ? bitsOf(decodeUnormV(hn::And(word, splatBits(0xffffff)), 24)) : word;
+            const VU word = loadWord(level, at[t], distant_);
+            texels[t][0] = fixed24_ ? bitsOf(decodeUnormV(hn::And(word, splatBits(0xffffff)), 24)) : word;
         });
     }
 
     HWY_INLINE VU finish(VU plane) const { return plane; }
+
+  private:
+    bool fixed24_, distant_;
 };
 
-/// Any format, through its conversion of rows. kPlaneCount is 1 for formats of one component, else 4.
+/// Any format, through its conversion of rows; compressed ones by the texels of decoded blocks. kPlaneCount is 1 for
+/// formats of one component, else 4.
 template <int kPlaneCount>
 struct AnySource {
     static constexpr bool kFinite = false;
     static constexpr int kPlanes = kPlaneCount;
     static constexpr uint8_t planeOf[4] = {0, kPlanes > 1 ? 1 : kConstantPlane, kPlanes > 2 ? 2 : kConstantPlane,
                                            kPlanes > 3 ? 3 : kConstantPlane};
-    TexelLayout layout;
 
-    explicit AnySource(const TextureView& view) : layout(view.ops.layout) {}
+    explicit AnySource(const TextureView& view) : layout_(view.ops.layout) {
+        if (view.block != nullptr) cache_.emplace(view);
+    }
 
     void borderPlanes(const VkClearColorValue& color, uint32_t (&planes)[4]) const {
         // "Texel Replacement" covers the components that the format has; the others are substituted as ever.
         for (int c = 0; c < 4; ++c) {
-            planes[c] = layout.rgba[c].bits != 0 ? color.uint32[c] : constantBits(layout, c == 3);
+            planes[c] = layout_.rgba[c].bits != 0 ? color.uint32[c] : constantBits(layout_, c == 3);
         }
     }
 
@@ -213,23 +213,24 @@ struct AnySource {
     template <int kTaps>
     HWY_NOINLINE void load(const TextureView& view, const TextureLevel& level, const TexelPosition (&at)[kTaps],
                            uint32_t needed, Texel (&texels)[kTaps]) const {
-        const std::byte* pointers[kTaps * kVectorLanes];
-        for (int t = 0; t < kTaps; ++t) {
-            alignas(64) int32_t x[kVectorLanes], y[kVectorLanes], slice[kVectorLanes];
-            hn::Store(at[t].x, I32(), x);
-            hn::Store(at[t].y, I32(), y);
-            hn::Store(at[t].slice, I32(), slice);
-            for (uint32_t i = 0; i < kVectorLanes; ++i) {
-                pointers[static_cast<uint32_t>(t) * kVectorLanes + i] =
-                    level.data + static_cast<uint64_t>(slice[i]) * level.slicePitch +
-                    static_cast<uint64_t>(y[i]) * level.rowPitch + static_cast<uint64_t>(x[i]) * view.texelPitch;
-            }
+        constexpr uint32_t kCount = kTaps * kVectorLanes;
+        alignas(64) uint32_t values[kPlanes][kCount];
+        void* planes[4] = {};
+        for (int c = 0; c < kPlanes; ++c) {
+            if ((needed >> c & 1) != 0) planes[c] = values[c];
         }
-        alignas(64) uint32_t values[kPlanes][kTaps * kVectorLanes];
-        void* planes[4];
-        for (int c = 0; c < 4; ++c)
-            planes[c] = c < kPlanes && (needed >> c & 1) != 0 ? values[c < kPlanes ? c : 0] : nullptr;
-        view.ops.unpackEach(pointers, kTaps * kVectorLanes, planes);
+        if (cache_) {
+            unpackBlocks(view, level, at, kTaps, planes);
+        } else {
+            const std::byte* pointers[kCount];
+            for (uint32_t t = 0; t < kTaps; ++t) {
+                forEachLane(level, at[t], [&](uint32_t lane, const std::byte* slice, uint32_t x, uint32_t y) {
+                    pointers[t * kVectorLanes + lane] =
+                        slice + uint64_t{y} * level.rowPitch + uint64_t{x} * view.texelPitch;
+                });
+            }
+            view.ops.unpackEach(pointers, kCount, planes);
+        }
         unrolled<kTaps>([&](auto t) VERNIER_INLINE_LAMBDA {
             unrolled<kPlanes>([&](auto c) VERNIER_INLINE_LAMBDA {
                 texels[t][c] = planes[c] == nullptr ? hn::Zero(U32()) : hn::Load(U32(), values[c] + t * kVectorLanes);
@@ -238,45 +239,54 @@ struct AnySource {
     }
 
     HWY_INLINE VU finish(VU plane) const { return plane; }
-};
 
-/// Compressed formats: texels of decoded blocks, through their conversion of rows.
-template <int kPlaneCount>
-struct BlockSource : AnySource<kPlaneCount> {
-    mutable BlockCache cache;
-
-    explicit BlockSource(const TextureView& view) : AnySource<kPlaneCount>(view), cache(view) {}
-
-    template <int kTaps>
-    HWY_NOINLINE void load(const TextureView& view, const TextureLevel& level, const TexelPosition (&at)[kTaps],
-                           uint32_t needed, Texel (&texels)[kTaps]) const {
-        constexpr uint32_t kCount = kTaps * kVectorLanes;
-        alignas(16) std::byte packed[kCount * kMaxDecodedBytes];
+  private:
+    /// At most four taps.
+    HWY_NOINLINE void unpackBlocks(const TextureView& view, const TextureLevel& level, const TexelPosition* at,
+                                   uint32_t taps, void* const (&planes)[4]) const {
+        alignas(16) std::byte packed[4 * kVectorLanes * kMaxDecodedBytes];
         const uint32_t bytes = view.ops.layout.bytes;
-        for (uint32_t t = 0; t < kTaps; ++t) {
-            alignas(64) int32_t x[kVectorLanes], y[kVectorLanes], slice[kVectorLanes];
-            hn::Store(at[t].x, I32(), x);
-            hn::Store(at[t].y, I32(), y);
-            hn::Store(at[t].slice, I32(), slice);
-            for (uint32_t i = 0; i < kVectorLanes; ++i) {
-                cache.read(view, level, level.data + static_cast<uint64_t>(slice[i]) * level.slicePitch,
-                           static_cast<uint32_t>(x[i]), static_cast<uint32_t>(y[i]),
-                           packed + (t * kVectorLanes + i) * bytes);
-            }
-        }
-        alignas(64) uint32_t values[kPlaneCount][kCount];
-        void* planes[4] = {};
-        for (int c = 0; c < kPlaneCount; ++c) {
-            if ((needed >> c & 1) != 0) planes[c] = values[c];
-        }
-        view.ops.unpack(packed, kCount, planes);
-        unrolled<kTaps>([&](auto t) VERNIER_INLINE_LAMBDA {
-            unrolled<kPlaneCount>([&](auto c) VERNIER_INLINE_LAMBDA {
-                texels[t][c] = planes[c] == nullptr ? hn::Zero(U32()) : hn::Load(U32(), values[c] + t * kVectorLanes);
+        for (uint32_t t = 0; t < taps; ++t) {
+            forEachLane(level, at[t], [&](uint32_t lane, const std::byte* slice, uint32_t x, uint32_t y) {
+                cache_->read(view, level, slice, x, y, packed + (t * kVectorLanes + lane) * bytes);
             });
-        });
+        }
+        view.ops.unpack(packed, taps * kVectorLanes, planes);
     }
+
+    const TexelLayout& layout_;
+    mutable std::optional<BlockCache> cache_;
 };
+
+/// 1 where the comparison of the reference with the texel passes, else 0.
+HWY_INLINE VU compareTexel(VkCompareOp op, VF dref, VF texel) {
+    hn::Mask<F32> pass;
+    switch (op) {
+        case VK_COMPARE_OP_LESS:
+            pass = hn::Lt(dref, texel);
+            break;
+        case VK_COMPARE_OP_EQUAL:
+            pass = hn::Eq(dref, texel);
+            break;
+        case VK_COMPARE_OP_LESS_OR_EQUAL:
+            pass = hn::Le(dref, texel);
+            break;
+        case VK_COMPARE_OP_GREATER:
+            pass = hn::Gt(dref, texel);
+            break;
+        case VK_COMPARE_OP_NOT_EQUAL:
+            pass = hn::Ne(dref, texel);
+            break;
+        case VK_COMPARE_OP_GREATER_OR_EQUAL:
+            pass = hn::Ge(dref, texel);
+            break;
+        case VK_COMPARE_OP_ALWAYS:
+            return bitsOf(splatFloat(1.0f));
+        default:
+            return hn::Zero(U32());
+    }
+    return bitsOf(hn::IfThenElseZero(pass, splatFloat(1.0f)));
+}
 
 /// a where t = 0, towards b: a + t (b - a), the same bits as a where a = b.
 HWY_INLINE VF lerpFinite(VF a, VF b, VF t) {

@@ -97,12 +97,12 @@ enum class LodMode : uint8_t {
 struct SampleRequest {
     uint32_t lanes = 0;              // a multiple of 4
     const uint32_t* mask = nullptr;  // 0 or ~0 per lane, null = all active; out of inactive lanes is unspecified
-    const float* coord[4] = {};      // s, t, r, layer; the ones that the view type has not may be null
-    const float* dref = nullptr;     // comparison value, read when the sampler compares
+    const float* coord[4] = {};      // s, t, r, layer; null = 0
+    const float* dref = nullptr;     // comparison value, read when the sampler compares; null = 0
     LodMode lodMode = LodMode::implicitLod;
     const float* lod = nullptr;
     const float* minLod = nullptr;  // bounds the level of detail from below, as the sampler's does; null = no bound
-    const float* gradX[3] = {};
+    const float* gradX[3] = {};     // null = 0
     const float* gradY[3] = {};
     int32_t offset[3] = {};  // texels
     uint32_t component = 0;  // gather: 0..3, after the view's swizzle has its say
