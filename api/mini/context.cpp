@@ -48,7 +48,7 @@ void vnDestroyContext(VnContext context) {
 
 VnResult vnFlush(VnContext context) {
     return guardedContext(context, __func__, [&] {
-        if (context->inPass) return wrongState(context, "vnFlush", "a pass is open");
+        if (VnResult result = checkSubmit(context, "vnFlush")) return result;
         if (context->recording->commands.first()) context->submit();
         return VN_SUCCESS;
     });
@@ -237,8 +237,19 @@ VnResult vnBeginPass(VnContext context, const VnPassDesc* desc) {
 VnResult vnEndPass(VnContext context) {
     return guardedContext(context, __func__, [&] {
         if (!context->inPass) return wrongState(context, "vnEndPass", "no pass is open");
+        if (std::any_of(context->queries.begin(), context->queries.end(),
+                        [](const auto& query) { return query.inPass; }))
+            return wrongState(context, "vnEndPass", "a query has begun in the pass and not ended");
         context->recording->commands.record(command::EndRendering{});
         context->inPass = false;
+        return VN_SUCCESS;
+    });
+}
+
+VnResult vnPassBarrier(VnContext context) {
+    return guardedContext(context, __func__, [&] {
+        if (!context->inPass) return wrongState(context, "vnPassBarrier", "no pass is open");
+        context->recording->commands.record(command::Flush{});
         return VN_SUCCESS;
     });
 }

@@ -69,6 +69,11 @@ struct VnContext_T {
     // The pass being recorded.
     bool inPass = false;
     VkRect2D renderArea{};
+    struct ActiveQuery {
+        std::shared_ptr<vernier::mini::QueryObject> query;
+        bool inPass;
+    };
+    std::vector<ActiveQuery> queries;
     vernier::mini::PipelineKey key;  // the attachments' part; the rest follows the bindings below
 
     // What is bound.

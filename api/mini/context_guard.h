@@ -15,9 +15,15 @@ inline VnResult wrongState(VnContext context, const char* function, const std::s
     return fail(context->device, VN_ERROR_INVALID_STATE, std::string(function) + ": " + text);
 }
 
+/// Whether what is recorded may be submitted.
+inline VnResult checkSubmit(VnContext context, const char* function) {
+    if (context->inPass) return wrongState(context, function, "a pass is open");
+    return context->queries.empty() ? VN_SUCCESS : wrongState(context, function, "a query has begun and not ended");
+}
+
 /// Submits what is recorded and waits for all of it.
 inline VnResult finish(VnContext context, const char* function) {
-    if (context->inPass) return wrongState(context, function, "a pass is open");
+    if (VnResult result = checkSubmit(context, function)) return result;
     if (context->recording->commands.first()) context->submit();
     context->waitIdle();
     if (context->device->runtime->queue().lost())

@@ -12,6 +12,7 @@
 
 #include "api/mini/handle_table.h"
 #include "runtime/command/device.h"
+#include "runtime/command/query_pool.h"
 #include "runtime/plan/compute_pipeline.h"
 #include "runtime/plan/pipeline.h"
 #include "runtime/resource/buffer_view.h"
@@ -68,6 +69,12 @@ struct BlendStateObject {
     VnBlendStateDesc desc{};
 };
 
+struct QueryObject {
+    VnQueryType type;
+    QueryPool pool;  // of one query
+    explicit QueryObject(VnQueryType queryType);
+};
+
 /// The most that the text about memory that ran out takes; a device's error has room for it from the start.
 inline constexpr size_t kOutOfMemoryLength = 64;
 
@@ -110,6 +117,7 @@ struct VnDevice_T {
     vernier::mini::HandleTable<vernier::mini::RasterStateObject> rasterStates{salt};
     vernier::mini::HandleTable<vernier::mini::DepthStencilStateObject> depthStencilStates{salt};
     vernier::mini::HandleTable<vernier::mini::BlendStateObject> blendStates{salt};
+    vernier::mini::HandleTable<vernier::mini::QueryObject> queries{salt};
 
     std::mutex pipelineMutex;
     std::map<vernier::mini::PipelineKey, std::shared_ptr<const vernier::GraphicsPipeline>> pipelines;

@@ -51,20 +51,24 @@ VnResult checkBound(VnContext context, const char* function, const ir::Program& 
 
 /// What an image instruction takes, or a view is, in words.
 std::string kindOf(ir::ImageDim dim, bool arrayed, bool multisampled) {
-    constexpr const char* kNames[] = {"1D", "2D", "3D", "cube", "texel buffer", "input attachment"};
+    constexpr const char* kNames[] = {"1D", "2D", "3D", "cube", "texel buffer"};
     return std::string(kNames[static_cast<size_t>(dim)]) + (arrayed ? " array" : "") +
            (multisampled ? " multisampled" : "");
 }
 
+bool isArrayed(const ImageView& view) {
+    const VkImageViewType type = view.info().type;
+    return type == VK_IMAGE_VIEW_TYPE_1D_ARRAY || type == VK_IMAGE_VIEW_TYPE_2D_ARRAY ||
+           type == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY;
+}
+
 std::string kindOf(const ImageView& view) {
     const VkImageViewType type = view.info().type;
-    const bool arrayed = type == VK_IMAGE_VIEW_TYPE_1D_ARRAY || type == VK_IMAGE_VIEW_TYPE_2D_ARRAY ||
-                         type == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY;
     const auto dim = type == VK_IMAGE_VIEW_TYPE_1D || type == VK_IMAGE_VIEW_TYPE_1D_ARRAY       ? ir::ImageDim::d1
                      : type == VK_IMAGE_VIEW_TYPE_3D                                            ? ir::ImageDim::d3
                      : type == VK_IMAGE_VIEW_TYPE_CUBE || type == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY ? ir::ImageDim::cube
                                                                                                 : ir::ImageDim::d2;
-    return kindOf(dim, arrayed, view.image().info().samples > 1);
+    return kindOf(dim, isArrayed(view), view.image().info().samples > 1);
 }
 
 /// The views that image instructions reach must be of the dimension that the instructions were made for.
@@ -73,10 +77,13 @@ VnResult checkViews(VnContext context, const char* function, const ir::Program& 
         const ir::Resource& resource = program.resources[op.imageResource];
         const auto found = context->resources.find({resource.set, resource.binding});
         if (found == context->resources.end()) continue;
-        const std::string wanted = kindOf(op.dim, op.arrayed, op.multisampled);
         for (size_t element = 0; element < found->second.size(); ++element) {
             const auto& view = found->second[element].view;
             if (!view || element >= std::max(resource.arraySize, 1u)) continue;
+            // An input attachment is a 2D image, of one layer or more.
+            const bool attachment = op.dim == ir::ImageDim::subpass;
+            const std::string wanted = kindOf(attachment ? ir::ImageDim::d2 : op.dim,
+                                              attachment ? isArrayed(view->view) : op.arrayed, op.multisampled);
             if (const std::string given = kindOf(view->view); given != wanted)
                 return wrongState(context, function,
                                   "the program reads set " + std::to_string(resource.set) + ", binding " +

@@ -57,8 +57,10 @@ VnResult resolveRegion(VnContext context, const char* function, const Image& ima
 
 /// The image of a transfer command, outside a pass, and its region.
 VnResult transferImage(VnContext context, const char* function, VnImage handle, const VnRegion* from,
-                       std::shared_ptr<ImageObject>& image, Region& region) {
+                       std::shared_ptr<ImageObject>& image, Region& region, bool mayMirror = false) {
     if (context->inPass) return wrongState(context, function, "a pass is open");
+    if (from && from->mirror > (mayMirror ? 7u : 0u))
+        return invalid(context->device, function, "mirror is " + std::to_string(from->mirror));
     image = context->device->images.find(handle.id);
     if (!image) return badHandle(context->device, function, "image");
     return resolveRegion(context, function, image->image, from, region);
@@ -242,7 +244,7 @@ VnResult vnBlitImage(VnContext context, VnImage source, const VnRegion* sourceRe
         std::shared_ptr<ImageObject> from, to;
         Region a, b;
         if (VnResult result = transferImage(context, "vnBlitImage", source, sourceRegion, from, a)) return result;
-        if (VnResult result = transferImage(context, "vnBlitImage", destination, destinationRegion, to, b))
+        if (VnResult result = transferImage(context, "vnBlitImage", destination, destinationRegion, to, b, true))
             return result;
         if (filter != VK_FILTER_NEAREST && filter != VK_FILTER_LINEAR)
             return invalid(context->device, "vnBlitImage", "filter is " + std::to_string(filter));
@@ -271,6 +273,10 @@ VnResult vnBlitImage(VnContext context, VnImage source, const VnRegion* sourceRe
         blit.srcOffsets[1] = corner(a);
         blit.dstOffsets[0] = b.offset;
         blit.dstOffsets[1] = corner(b);
+        const uint32_t mirror = destinationRegion ? destinationRegion->mirror : 0;
+        if ((mirror & 1) != 0) std::swap(blit.dstOffsets[0].x, blit.dstOffsets[1].x);
+        if ((mirror & 2) != 0) std::swap(blit.dstOffsets[0].y, blit.dstOffsets[1].y);
+        if ((mirror & 4) != 0) std::swap(blit.dstOffsets[0].z, blit.dstOffsets[1].z);
         context->recording->commands.record(command::BlitImage{
             &context->recording->keep(from).image, &context->recording->keep(to).image, one(context, blit), filter});
         return VN_SUCCESS;
@@ -361,7 +367,9 @@ VnResult vnGetStatistics(VnContext context, VnStatistics* statistics) {
                        .depthReads = s.depthReads,
                        .plans = context->plans,
                        .dispatches = context->dispatches,
-                       .computeInvocations = s.computeInvocations};
+                       .computeInvocations = s.computeInvocations,
+                       .fragmentBatches = s.batches,
+                       .clearedPixels = s.clearedPixels};
         return VN_SUCCESS;
     });
 }

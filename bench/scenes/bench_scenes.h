@@ -37,6 +37,7 @@
     /* pass_scenes.cpp */       \
     X(shadow_map)               \
     X(deferred)                 \
+    X(small_passes)             \
     X(msaa4)
 
 #define VERNIER_TRANSFER_SCENES(X) \

@@ -1,5 +1,7 @@
 // Several passes and several samples: shadow map, deferred shading, multisampling.
 #include <array>
+#include <cmath>
+#include <string>
 #include <vector>
 
 #include "bench/scenes/bench_scenes.h"
@@ -189,6 +191,60 @@ void main() {
     DrawRecorder draw = record.draw(lit, 4);
     const uint32_t sampler = record.sampler(VK_FILTER_NEAREST);
     for (uint32_t i = 0; i < targets.size(); ++i) draw.texture(i, targets[i], sampler);
+    record.output(target);
+    return record.finish();
+}
+
+Result<Scene> small_passes() {
+    constexpr VkExtent2D kSmall{64, 64};
+    constexpr uint32_t kPasses = 96;
+    SceneRecorder record("small_passes", "96 passes of one ball each to targets of 64 x 64, then all of them on one.");
+    const uint32_t target = record.colorTarget("color", kRgba8, kSpeedExtent);
+    PipelineRecorder fill = record.pipeline(record.vertex(R"(#version 450
+layout(push_constant) uniform Push { mat4 camera; };
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 0) out vec3 vNormal;
+void main() {
+    gl_Position = camera * vec4(position, 1.0);
+    vNormal = normal;
+})"),
+                                            record.fragment(R"(#version 450
+layout(location = 0) in vec3 vNormal;
+layout(location = 0) out vec4 color;
+void main() { color = vec4(normalize(vNormal) * 0.5 + 0.5, 1.0); })"));
+    meshInput(fill).cull(VK_CULL_MODE_BACK_BIT, VK_FRONT_FACE_COUNTER_CLOCKWISE).pushConstants(sizeof(glm::mat4));
+    PipelineRecorder show = record.pipeline(record.vertex(R"(#version 450
+layout(push_constant) uniform Push { vec2 place; };
+layout(location = 0) out vec2 uv;
+void main() {
+    uv = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1);
+    gl_Position = vec4(place + uv * vec2(2.0 / 12.0, 2.0 / 8.0) - 1.0, 0.5, 1.0);
+})"),
+                                            record.fragment(R"(#version 450
+layout(set = 0, binding = 0) uniform sampler2D image;
+layout(location = 0) in vec2 uv;
+layout(location = 0) out vec4 color;
+void main() { color = texture(image, uv); })"));
+    show.topology(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP).pushConstants(8);
+    const Model ball = ballModel(record);
+    std::vector<uint32_t> images;
+    for (uint32_t n = 0; n < kPasses; ++n) {
+        const float angle = static_cast<float>(n) * 0.3f;
+        images.push_back(record.colorTarget("small " + std::to_string(n), kRgba8, kSmall, VK_SAMPLE_COUNT_1_BIT,
+                                            VK_IMAGE_USAGE_SAMPLED_BIT));
+        record.pass(kSmall).color(images.back(), {0.1f, 0.1f, 0.1f, 1});
+        record.draw(fill, ball.count)
+            .vertices(ball.vertices)
+            .indices(ball.indices, VK_INDEX_TYPE_UINT16)
+            .push(cameraMatrix({std::sin(angle) * 3, 1, std::cos(angle) * 3}, {0, 0, 0}, 45, 1, 1, 10));
+    }
+    const uint32_t sampler = record.sampler(VK_FILTER_LINEAR);
+    record.pass(kSpeedExtent).color(target, {0, 0, 0, 1});
+    for (uint32_t n = 0; n < kPasses; ++n)
+        record.draw(show, 4)
+            .push(std::array<float, 2>{static_cast<float>(n % 12) / 6, static_cast<float>(n / 12) / 4})
+            .texture(0, images[n], sampler);
     record.output(target);
     return record.finish();
 }

@@ -64,6 +64,7 @@ struct PassStatistics {
     uint64_t destinationReads = 0;    // pixels whose colour was read back for blending or masks
     uint64_t depthReads = 0;          // samples whose depth or stencil was read
     uint64_t coarseDepthRejects = 0;  // blocks
+    uint64_t clearedPixels = 0;       // of all attachments, by load operations
     uint64_t vertexCycles = 0,
              rasterCycles = 0;  // time-stamp counter, all threads; for people, not for tests
 };

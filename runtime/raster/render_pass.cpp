@@ -86,7 +86,7 @@ struct RenderPass::Impl {
     void collectTileWork(const Wave& wave);
     void runTile(uint32_t index, uint32_t thread, bool mayHide);
     void runTiles(Wave& ahead);
-    void loadTile(const PixelRect& rect, uint32_t layer, bool colorsReplaced) const;
+    uint64_t loadTile(const PixelRect& rect, uint32_t layer, bool colorsReplaced) const;
     bool loads(const RenderTarget& target, uint32_t layer) const {
         return targets.viewMask == 0 || (target.loadViews >> layer & 1) != 0;
     }
@@ -228,16 +228,23 @@ void RenderPass::Impl::collectTileWork(const Wave& wave) {
         if (isDrawn(layerOf(tile))) activeTiles.push_back(tile);
 }
 
-/// `colorsReplaced`: nothing would be seen of the cleared colours.
-void RenderPass::Impl::loadTile(const PixelRect& rect, uint32_t layer, bool colorsReplaced) const {
-    for (uint32_t c = 0; c < targets.colorCount && !colorsReplaced; ++c)
-        if (targets.colors[c].loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR && loads(targets.colors[c], layer))
-            clearPixels(targets.colors[c], VK_IMAGE_ASPECT_COLOR_BIT, targets.colors[c].clear, rect, layer);
+/// `colorsReplaced`: nothing would be seen of the cleared colours. Returns how many pixels of attachments are cleared.
+uint64_t RenderPass::Impl::loadTile(const PixelRect& rect, uint32_t layer, bool colorsReplaced) const {
+    uint64_t cleared = 0;
+    for (uint32_t c = 0; c < targets.colorCount && !colorsReplaced; ++c) {
+        if (targets.colors[c].loadOp != VK_ATTACHMENT_LOAD_OP_CLEAR || !loads(targets.colors[c], layer)) continue;
+        clearPixels(targets.colors[c], VK_IMAGE_ASPECT_COLOR_BIT, targets.colors[c].clear, rect, layer);
+        ++cleared;
+    }
     const RenderTarget& depth = targets.depthStencil;
     VkImageAspectFlags aspects = 0;
     if (depth.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR) aspects |= VK_IMAGE_ASPECT_DEPTH_BIT;
     if (depth.stencilLoadOp == VK_ATTACHMENT_LOAD_OP_CLEAR) aspects |= VK_IMAGE_ASPECT_STENCIL_BIT;
-    if (aspects != 0 && loads(depth, layer)) clearPixels(depth, aspects, depth.clear, rect, layer);
+    if (aspects != 0 && loads(depth, layer)) {
+        clearPixels(depth, aspects, depth.clear, rect, layer);
+        ++cleared;
+    }
+    return cleared * static_cast<uint64_t>(rect.x1 - rect.x0) * static_cast<uint64_t>(rect.y1 - rect.y0);
 }
 
 void RenderPass::Impl::runTile(uint32_t index, uint32_t thread, bool mayHide) {
@@ -254,7 +261,7 @@ void RenderPass::Impl::runTile(uint32_t index, uint32_t thread, bool mayHide) {
                           tileWork[tile],
                           cleared};
     const VisibleStart start = mayHide ? visibleStart(targets, input) : VisibleStart{};
-    if (!loaded) loadTile(rect, layerOf(tile), start.replacesColors);
+    if (!loaded) counts[thread].sums.clearedPixels += loadTile(rect, layerOf(tile), start.replacesColors);
     if (tileWork[tile].empty()) return;
     TileRenderer& renderer = workers.enter(thread, number, targets).renderer;
     renderer.render(rect, layerOf(tile), input.tileX, input.tileY, cleared, draws, token, tileWork[tile], start.item,

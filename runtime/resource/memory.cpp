@@ -1,5 +1,7 @@
 #include "runtime/resource/memory.h"
 
+#include <sys/mman.h>
+
 #include <cstdint>
 #include <cstring>
 #include <new>
@@ -9,6 +11,8 @@ namespace vernier {
 namespace {
 
 constexpr size_t kAlignment = 64;
+/// From this size on memory comes as pages, which the system gives zeroed when they are first touched.
+constexpr size_t kPagesFrom = 1 << 20;
 
 }  // namespace
 
@@ -28,15 +32,28 @@ Result<std::unique_ptr<Memory>> Memory::create(const HostAllocator& allocator, V
     if (size > PTRDIFF_MAX - kSlack)
         return Error{ErrorCode::outOfDeviceMemory, "memory of " + std::to_string(size) + " bytes does not fit"};
     std::unique_ptr<Memory> memory(new Memory(allocator, size));
-    memory->data_ = static_cast<std::byte*>(allocator.get(size + kSlack, kAlignment));
-    if (!memory->data_)
+    memory->mapped_ = !allocator.allocate && size >= kPagesFrom;
+    void* data = nullptr;
+    if (memory->mapped_) {
+        data = mmap(nullptr, size + kSlack, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+        if (data == MAP_FAILED) data = nullptr;
+    } else {
+        data = allocator.get(size + kSlack, kAlignment);
+        if (data) std::memset(data, 0, size + kSlack);
+    }
+    if (!data)
         return Error{ErrorCode::outOfDeviceMemory, "no memory for an allocation of " + std::to_string(size) + " bytes"};
-    std::memset(memory->data_, 0, size + kSlack);
+    memory->data_ = static_cast<std::byte*>(data);
     return memory;
 }
 
 Memory::~Memory() {
-    allocator_.put(data_, size_ + kSlack);
+    if (!data_) return;
+    if (mapped_) {
+        munmap(data_, size_ + kSlack);
+    } else {
+        allocator_.put(data_, size_ + kSlack);
+    }
 }
 
 }  // namespace vernier

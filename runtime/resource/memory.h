@@ -22,7 +22,8 @@ struct HostAllocator {
 };
 
 /// One allocation of device memory, 64-byte aligned, with kMemorySlack readable bytes after its end so that a vector
-/// load of the last element stays inside. Zeroed at creation: no program sees another's data.
+/// load of the last element stays inside. It starts as zeros: no program sees another's data. Large allocations take
+/// memory only where they are touched, unless the caller brought an allocator.
 class Memory {
   public:
     static constexpr size_t kSlack = 64;
@@ -39,6 +40,7 @@ class Memory {
     HostAllocator allocator_;
     std::byte* data_ = nullptr;
     VkDeviceSize size_;
+    bool mapped_ = false;  // pages of the system's
 };
 
 /// A range of memory with a usage. Unbound until bind(): data() is nullptr then.

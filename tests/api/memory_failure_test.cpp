@@ -1,6 +1,7 @@
 // Memory runs out at every allocation of a small program, one after the other, once for a moment and once for good:
 // each time the call says so, nothing is lost, and the device can still be destroyed. This program replaces operator
 // new, so that it is one of its own.
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <functional>
@@ -14,6 +15,7 @@ std::atomic<bool> armed{false};
 std::atomic<bool> forGood{false};
 std::atomic<int64_t> countdown{0};  // allocations that still succeed
 std::atomic<int64_t> live{0};       // blocks taken and not given back, armed or not
+std::atomic<int64_t> taken{0};      // bytes, given back or not
 
 bool mayAllocate() {
     if (!armed.load()) return true;
@@ -24,7 +26,10 @@ bool mayAllocate() {
 void* take(size_t bytes, size_t alignment) {
     if (!mayAllocate()) return nullptr;
     void* memory = std::aligned_alloc(alignment, (std::max<size_t>(bytes, 1) + alignment - 1) / alignment * alignment);
-    if (memory) ++live;
+    if (memory) {
+        ++live;
+        taken += static_cast<int64_t>(bytes);
+    }
     return memory;
 }
 
@@ -270,6 +275,43 @@ TEST_P(MemoryFailure, AtEveryAllocation) {
         }
     }
     EXPECT_GT(failures, total / kStride * 9 / 10);
+}
+
+class FrameMemory : public ApiTest {};
+
+TEST_F(FrameMemory, IsKeptBetweenFrames) {
+    constexpr uint32_t kTriangles = 20000;
+    const VnImage target = image(VK_FORMAT_R8G8B8A8_UNORM, 256, 256);
+    const VnProgram many = program(R"(#version 450
+layout(location = 0) out vec4 shade;
+void main() {
+    int n = gl_VertexIndex / 3, corner = gl_VertexIndex % 3;
+    shade = vec4(n % 7, n % 5, n % 3, 1.0) / 7.0;
+    gl_Position = vec4(vec2(n % 141, n / 141) / 71.0 - 1.0 + vec2(corner & 1, corner >> 1) * 0.02, 0.5, 1.0);
+})",
+                                   R"(#version 450
+layout(location = 0) in vec4 shade;
+layout(location = 0) out vec4 color;
+void main() { color = shade; })");
+    const auto frame = [&] {
+        const int64_t before = taken.load();
+        const VnPassDesc pass = passOn(target);
+        for (int passes = 0; passes < 2; ++passes) {
+            EXPECT_EQ(vnBeginPass(context_, &pass), VN_SUCCESS) << lastError();
+            EXPECT_EQ(vnBindProgram(context_, many), VN_SUCCESS);
+            EXPECT_EQ(vnDraw(context_, kTriangles * 3, 1, 0, 0), VN_SUCCESS) << lastError();
+            EXPECT_EQ(vnEndPass(context_), VN_SUCCESS);
+        }
+        EXPECT_EQ(vnFinish(context_), VN_SUCCESS);
+        return taken.load() - before;
+    };
+    // Triangles alone take megabytes; what threads and passes keep grows until each has met its largest share.
+    constexpr int64_t kMegabyte = 1 << 20;
+    EXPECT_GT(frame(), 2 * kMegabyte);
+    for (int n = 0; n < 20; ++n) frame();
+    int64_t least = INT64_MAX;
+    for (int n = 0; n < 10; ++n) least = std::min(least, frame());
+    EXPECT_LT(least, kMegabyte / 4) << "only what is recorded is new";
 }
 
 INSTANTIATE_TEST_SUITE_P(Memory, MemoryFailure, testing::Values(false, true),

@@ -91,6 +91,7 @@ VN_HANDLE(VnVertexLayout);
 VN_HANDLE(VnRasterState);
 VN_HANDLE(VnDepthStencilState);
 VN_HANDLE(VnBlendState);
+VN_HANDLE(VnQuery);
 #undef VN_HANDLE
 
 /* ---- Accuracy ---- */
@@ -411,9 +412,12 @@ typedef struct VnPassDesc {
 
 /* Starts drawing to the attachments, which all have the same sample count. Of views with several layers all that every
  * view has are drawn to: the vertex shader chooses with Layer. Sets all viewports and scissors to the render area. A
- * program must not sample an attachment of the pass it runs in. */
+ * program must not read an attachment of the pass it runs in, unless vnPassBarrier stands between. */
 VN_API VnResult vnBeginPass(VnContext context, const VnPassDesc* desc);
 VN_API VnResult vnEndPass(VnContext context);
+/* What the draws of the pass have written so far can be read by those to come: with subpassLoad, whose input attachment
+ * is a view bound with vnBindTexture at its (set, binding), or in any other way. */
+VN_API VnResult vnPassBarrier(VnContext context);
 /* Clears a rectangle of an attachment inside a pass, in order with the draws. `rect` NULL: the render area. */
 VN_API VnResult vnClearColor(VnContext context, uint32_t attachment, const VkClearColorValue* value,
                              const VkRect2D* rect);
@@ -499,6 +503,7 @@ typedef struct VnRegion {
     uint32_t width, height;    /* texels; 0: to the edge of the level */
     uint32_t z, depth;         /* slices of a 3D image; depth 0: to the last one */
     VkImageAspectFlags aspect; /* 0: colour, or depth where there is depth */
+    uint32_t mirror;           /* of vnBlitImage's destination: bits 1, 2 and 4 turn x, y and z round; else 0 */
 } VnRegion;
 
 /* Rows of `data` are tightly packed texels in the image's format (of compressed formats: rows of blocks), slice by
@@ -545,11 +550,35 @@ typedef struct VnStatistics {
     uint64_t plans;              /* combinations of state that had to be planned */
     uint64_t dispatches;
     uint64_t computeInvocations;
+    uint64_t fragmentBatches; /* runs of fragment programs over many pixels, of any number of primitives and draws */
+    uint64_t clearedPixels;   /* of all attachments, by load operations; what is drawn over altogether is not cleared */
 } VnStatistics;
 
 /* Waits for the context's work. */
 VN_API VnResult vnGetStatistics(VnContext context, VnStatistics* statistics);
 VN_API VnResult vnResetStatistics(VnContext context);
+
+/* A query counts what the commands between vnBeginQuery and vnEndQuery do. It lies in one pass or around passes, and no
+ * submission (vnFlush, reading data) comes between. Hidden work is done all the same meanwhile. */
+typedef enum VnQueryType {
+    VN_QUERY_OCCLUSION = 0,  /* value: samples that passed all tests */
+    VN_QUERY_STATISTICS = 1, /* all but value */
+    VN_QUERY_TIMESTAMP = 2   /* value: nanoseconds of a clock that only grows; written, not begun */
+} VnQueryType;
+typedef struct VnQueryResult {
+    uint64_t value;
+    uint64_t inputVertices, inputPrimitives, vertexInvocations, clippingInvocations, clippingPrimitives;
+    uint64_t fragmentInvocations, computeInvocations;
+} VnQueryResult;
+
+VN_API VnResult vnCreateQuery(VnDevice device, VnQueryType type, VnQuery* query);
+VN_API VnResult vnDestroyQuery(VnDevice device, VnQuery query);
+VN_API VnResult vnBeginQuery(VnContext context, VnQuery query);
+VN_API VnResult vnEndQuery(VnContext context, VnQuery query);
+/* Of the moment when all commands before are done. */
+VN_API VnResult vnWriteTimestamp(VnContext context, VnQuery query);
+/* Waits for the context's work. A query that was never ended or written is VN_ERROR_INVALID_STATE. */
+VN_API VnResult vnGetQueryResult(VnContext context, VnQuery query, VnQueryResult* result);
 
 /* What the next draw with the bound state would run (outside a pass: the next dispatch), at what rate and accuracy,
  * what is left out and why: lines of text, zero-terminated, cut to `capacity` bytes. `length` (may be NULL) receives
