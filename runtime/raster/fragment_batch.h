@@ -32,8 +32,7 @@ enum class LaneOrder : uint8_t {
     quads,  // such a rectangle, quad by quad: upper left, upper right, lower left, lower right
 };
 
-/// In rows and quads, all pixels belong to one primitive. It covers all samples of all of them, or, with one sample, a
-/// part of them (`partial`).
+/// In rows and quads, all pixels belong to one primitive. It covers all samples of all of them, or a part (`partial`).
 struct FragmentBatch {
     uint32_t count = 0;
     LaneOrder order = LaneOrder::spans;

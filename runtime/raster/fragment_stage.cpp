@@ -14,7 +14,14 @@ namespace {
 constexpr uint32_t kBlockLanes = kBlockSize * kBlockSize;
 
 /// A block with so many covered pixels is run at once: what packing would gain is less than what it costs.
-constexpr uint32_t kMostOfABlock = 28;
+constexpr uint32_t kMostOfABlock = 20;
+/// Likewise of two rows, which are a batch of their own.
+constexpr uint32_t kMostOfTwoRows = 8;
+
+/// Whether the pixels lie in one pair of rows.
+bool inTwoRows(uint64_t pixels) {
+    return std::countr_zero(pixels) / 16 == (63 - std::countl_zero(pixels)) / 16;
+}
 
 /// The upper left pixels of the quads that have some of `pixels`.
 uint64_t quadsOf(uint64_t pixels) {
@@ -107,7 +114,6 @@ void FragmentStage::bind(const PreparedDraw& draw, uint64_t token) {
     readsPixels_ = plan_->smoothLines || !plan_->fragmentBuiltins.empty() || plan_->preciseInterpolation ||
                    plan_->needsCentroid || !plan_->keepsCoverage;
 
-    block_.count = std::min(capacity_, kBlockLanes);
     block_.order = plan_->usesQuads ? LaneOrder::quads : LaneOrder::rows;
     block_.segmentCount = 1;
 }
@@ -143,15 +149,10 @@ uint32_t FragmentStage::appendSpan(int32_t x, int32_t y, uint32_t lanes) {
 }
 
 void FragmentStage::add(const BlockCoverage& block) {
-    uint64_t any = 0, all = ~uint64_t{0};
-    for (uint32_t s = 0; s < samples_; ++s) {
-        any |= block.masks[s];
-        all &= block.masks[s];
-    }
+    uint64_t any = 0;
+    for (uint32_t s = 0; s < samples_; ++s) any |= block.masks[s];
     const uint32_t index = blockIndex(block);
-    // With several samples, a lane's coverage is more than a bit.
-    const bool atOnce =
-        !plan_->perSample && (all == ~uint64_t{0} || (samples_ == 1 && countBits(any) >= kMostOfABlock));
+    const bool atOnce = !plan_->perSample && countBits(any) >= (inTwoRows(any) ? kMostOfTwoRows : kMostOfABlock);
     // What waits for these pixels comes first.
     if ((plan_->ordered || atOnce) && (inBatch_[index] & any) != 0) flush();
     if (atOnce) return runBlock(block, any);
@@ -174,29 +175,44 @@ void FragmentStage::add(const BlockCoverage& block) {
 
 void FragmentStage::placeBlock() {
     placeLanes_(block_);
-    if (!block_.partial) std::fill_n(block_.store.begin(), block_.count, ~0u);
-    const uint32_t full = (1u << samples_) - 1;
-    for (uint32_t lane = 0; lane < block_.count; ++lane) block_.coverage[lane] = block_.store[lane] & full;
+    if (!block_.partial) {
+        std::fill_n(block_.store.begin(), block_.count, ~0u);
+        std::fill_n(block_.coverage.begin(), block_.count, (1u << samples_) - 1);
+        return;
+    }
+    std::fill_n(block_.coverage.begin(), block_.count, 0);
+    for (uint32_t s = 0; s < samples_; ++s) {
+        spreadPixels_(blockPixels(s), block_.order, block_.count, mask_.data());
+        for (uint32_t lane = 0; lane < block_.count; ++lane) block_.coverage[lane] |= mask_[lane] & 1u << s;
+    }
 }
 
 /// A block of which the current primitive covers `pixels`: shaded and written without being collected.
 void FragmentStage::runBlock(const BlockCoverage& block, uint64_t pixels) {
-    const uint32_t lanes = block_.count, rows = lanes / static_cast<uint32_t>(kBlockSize);
     uint64_t running = pixels;
     if (plan_->usesQuads) {
         const uint64_t quads = quadsOf(pixels);
         running = quads | quads << 1 | quads << 8 | quads << 9;
     }
-    block_.segments[0] = {&planes_[planesCount_ - 1], 0, lanes};
+    uint64_t all = ~uint64_t{0};
+    for (uint32_t s = 0; s < samples_; ++s) all &= blockMasks_[s] = block.masks[s];
     block_.originX = tileX_ + block.x;
-    for (uint32_t row = 0; row < static_cast<uint32_t>(kBlockSize); row += rows) {
+    // Pairs of rows that have something covered.
+    const uint32_t firstRow = static_cast<uint32_t>(std::countr_zero(pixels)) / 16 * 2;
+    const uint32_t endRow = (static_cast<uint32_t>(63 - std::countl_zero(pixels)) / 16 + 1) * 2;
+    const uint32_t most = std::min(capacity_, kBlockLanes) / static_cast<uint32_t>(kBlockSize);
+    for (uint32_t row = firstRow; row < endRow; row += most) {
+        const uint32_t lanes = std::min(most, endRow - row) * static_cast<uint32_t>(kBlockSize);
         block_.originY = tileY_ + block.y + static_cast<int32_t>(row);
-        const uint64_t rectangle = ~uint64_t{0} >> (64 - lanes);
-        const uint64_t stored = pixels >> (8 * row) & rectangle;
+        blockShift_ = 8 * row;
+        blockRectangle_ = ~uint64_t{0} >> (64 - lanes);
+        const uint64_t stored = pixels >> blockShift_ & blockRectangle_;
         if (stored == 0) continue;
-        block_.partial = stored != rectangle;
+        block_.count = lanes;
+        block_.segments[0] = {&planes_[planesCount_ - 1], 0, lanes};
+        block_.partial = (all >> blockShift_ & blockRectangle_) != blockRectangle_;
         if (block_.partial) {
-            const uint64_t run = running >> (8 * row) & rectangle;
+            const uint64_t run = running >> blockShift_ & blockRectangle_;
             block_.running = countBits(run);
             spreadPixels_(stored, block_.order, lanes, block_.store.data());
             spreadPixels_(run, block_.order, lanes, block_.execute.data());
@@ -300,9 +316,7 @@ void FragmentStage::run(FragmentBatch& batch) {
         reduceCoverage(batch);
         if (!plan_->depth.early && testsDepth()) testLate(batch);
     } else if (batch.partial) {
-        // One sample, and nothing dropped it.
-        statistics_.samplesPassed += stored;
-        writeColors(batch, 0, batch.store.data());
+        writePartial(batch);
         return;
     }
     if (plan_->keepsCoverage && (plan_->coverageIsFull || !masked)) {
@@ -319,6 +333,23 @@ void FragmentStage::run(FragmentBatch& batch) {
         }
         if (!countsNow) statistics_.samplesPassed += passed;
         if (passed != 0) writeColors(batch, s, mask_.data());
+    }
+}
+
+/// Of a block, what it covers: nothing was dropped.
+void FragmentStage::writePartial(const FragmentBatch& batch) {
+    for (uint32_t s = 0; s < samples_; ++s) {
+        const uint64_t pixels = blockPixels(s);
+        statistics_.samplesPassed += countBits(pixels);
+        if (pixels == 0) continue;
+        const uint32_t* mask = nullptr;
+        if (samples_ == 1) {
+            mask = batch.store.data();
+        } else if (pixels != blockRectangle_) {
+            spreadPixels_(pixels, batch.order, batch.count, mask_.data());
+            mask = mask_.data();
+        }
+        writeColors(batch, s, mask);
     }
 }
 

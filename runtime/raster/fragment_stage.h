@@ -66,6 +66,9 @@ class FragmentStage {
     void bindColors(Isa isa);
     void smoothAlpha(const FragmentBatch& batch);
     void writeColors(const FragmentBatch& batch, uint32_t sample, const uint32_t* mask);
+    void writePartial(const FragmentBatch& batch);
+    /// The pixels of block_ that a sample covers, by lane of LaneOrder::rows.
+    uint64_t blockPixels(uint32_t sample) const { return blockMasks_[sample] >> blockShift_ & blockRectangle_; }
     const float* outputPlane(uint32_t slot, uint32_t component) const;
     static void interpolateAt(void* self, uint32_t slot, uint32_t where, uint32_t lanes, const float* a, const float* b,
                               float* result);
@@ -101,9 +104,12 @@ class FragmentStage {
     bool readsPixels_ = false;  // somebody other than interpolation reads x, y, or coverage of a batch
     DepthStencilState depthState_;
 
-    FragmentBatch batch_;                     // waiting, in spans
-    FragmentBatch block_;                     // a block of which most is covered, run at once
-    const FragmentBatch* current_ = nullptr;  // the one that runs
+    FragmentBatch batch_;                             // waiting, in spans
+    FragmentBatch block_;                             // a block of which most is covered, run at once
+    std::array<uint64_t, kMaxSamples> blockMasks_{};  // its coverage
+    uint32_t blockShift_ = 0;                         // bits of it before the rows that are run
+    uint64_t blockRectangle_ = 0;                     // as many bits as block_ has lanes
+    const FragmentBatch* current_ = nullptr;          // the one that runs
     // Of the primitives in batch_; slot planesCount_ - 1 belongs to the primitive being added.
     std::array<TrianglePlanes, kMaxFragmentLanes + 1> planes_;
     uint32_t planesCount_ = 0;

@@ -165,48 +165,65 @@ HWY_INLINE void evaluate(const InterpolationInput& in, const SegmentPlanes& plan
 /// Vectors side by side: their weights stay in registers, and none waits for another.
 constexpr uint32_t kSide = 4, kSideLanes = kSide * kLanes;
 
-/// Stores the targets for kSide vectors with the weights w1, w2.
+/// Stores the targets for kCount vectors with the weights w1, w2.
+template <uint32_t kCount>
 HWY_INLINE void storeSide(const TrianglePlanes& planes, std::span<const VaryingTarget> targets, const VF* w1,
                           const VF* w2, uint32_t n) {
     for (const VaryingTarget& target : targets) {
         const AttributePlane plane(planes, target.varying);
         float* lanes = target.plane + n;
-        for (uint32_t v = 0; v < kSide; ++v) hn::StoreU(plane.at(w1[v], w2[v]), F(), lanes + v * kLanes);
+        for (uint32_t v = 0; v < kCount; ++v) hn::StoreU(plane.at(w1[v], w2[v]), F(), lanes + v * kLanes);
     }
 }
 
-/// A rectangle at pixel centres, in float: the operations of weightsAt(), those that all rows have in common done once.
-/// In either order, columns repeat every 16 lanes.
-HWY_INLINE void evaluateRectangle(const InterpolationInput& in, const SegmentPlanes& segment) {
-    constexpr uint32_t kColumns = 16 / kLanes;
+/// In either order, the columns of a rectangle repeat every 16 lanes.
+constexpr uint32_t kColumns = 16 / kLanes;
+
+/// What the columns add to the weights.
+struct ColumnWeights {
+    VF w1[kColumns], w2[kColumns];
+};
+
+/// kCount vectors of a rectangle, from lane n on.
+template <uint32_t kCount>
+HWY_INLINE void evaluateRows(const InterpolationInput& in, const SegmentPlanes& segment, const ColumnWeights& columns,
+                             uint32_t n) {
     const F f;
     const I i;
     const TrianglePlanes& p = segment.planes;
-    VF column1[kColumns], column2[kColumns];
+    VF w1[kCount], w2[kCount];
+    for (uint32_t v = 0; v < kCount; ++v) {
+        const auto y = hn::Sub(hn::LoadU(i, segment.pixels.y + n + v * kLanes), segment.anchorY);
+        const VF dy = hn::Add(hn::ConvertTo(f, y), segment.centreY);
+        w1[v] = hn::Add(columns.w1[v % kColumns], hn::Mul(hn::Set(f, p.l1y), dy));
+        w2[v] = hn::Add(columns.w2[v % kColumns], hn::Mul(hn::Set(f, p.l2y), dy));
+    }
+    storeSide<kCount>(p, in.linear, w1, w2, n);
+    if (segment.divide)
+        for (uint32_t v = 0; v < kCount; ++v) {
+            const Perspective at = perspectiveAt(p, w1[v], w2[v]);
+            w1[v] = at.weight1;
+            w2[v] = at.weight2;
+        }
+    storeSide<kCount>(p, in.smooth, w1, w2, n);
+}
+
+/// A rectangle at pixel centres, in float: the operations of weightsAt(), those that all rows have in common done once.
+HWY_INLINE void evaluateRectangle(const InterpolationInput& in, const SegmentPlanes& segment) {
+    const F f;
+    const I i;
+    const TrianglePlanes& p = segment.planes;
+    ColumnWeights columns;
     for (uint32_t part = 0; part < kColumns; ++part) {
         const auto x = hn::Sub(hn::LoadU(i, segment.pixels.x + part * kLanes), segment.anchorX);
         const VF dx = hn::Add(hn::ConvertTo(f, x), segment.centreX);
-        column1[part] = hn::Mul(hn::Set(f, p.l1x), dx);
-        column2[part] = hn::Mul(hn::Set(f, p.l2x), dx);
+        columns.w1[part] = hn::Mul(hn::Set(f, p.l1x), dx);
+        columns.w2[part] = hn::Mul(hn::Set(f, p.l2x), dx);
     }
-    const VF slope1 = hn::Set(f, p.l1y), slope2 = hn::Set(f, p.l2y);
-    for (uint32_t n = 0; n < in.batch->count; n += kSideLanes) {
-        VF w1[kSide], w2[kSide];
-        for (uint32_t v = 0; v < kSide; ++v) {
-            const auto y = hn::Sub(hn::LoadU(i, segment.pixels.y + n + v * kLanes), segment.anchorY);
-            const VF dy = hn::Add(hn::ConvertTo(f, y), segment.centreY);
-            w1[v] = hn::Add(column1[v % kColumns], hn::Mul(slope1, dy));
-            w2[v] = hn::Add(column2[v % kColumns], hn::Mul(slope2, dy));
-        }
-        storeSide(p, in.linear, w1, w2, n);
-        if (segment.divide)
-            for (uint32_t v = 0; v < kSide; ++v) {
-                const Perspective at = perspectiveAt(p, w1[v], w2[v]);
-                w1[v] = at.weight1;
-                w2[v] = at.weight2;
-            }
-        storeSide(p, in.smooth, w1, w2, n);
-    }
+    const uint32_t count = in.batch->count;  // a multiple of 16
+    uint32_t n = 0;
+    for (; n + kSideLanes <= count; n += kSideLanes) evaluateRows<kSide>(in, segment, columns, n);
+    for (; n < count; n += 16) evaluateRows<kColumns>(in, segment, columns, n);
 }
 
 /// kSide vectors.
@@ -219,8 +236,8 @@ HWY_INLINE void evaluateSide(const InterpolationInput& in, const SegmentPlanes& 
         perspective1[v] = w.perspective1;
         perspective2[v] = w.perspective2;
     }
-    storeSide(segment.planes, in.smooth, perspective1, perspective2, n);
-    storeSide(segment.planes, in.linear, linear1, linear2, n);
+    storeSide<kSide>(segment.planes, in.smooth, perspective1, perspective2, n);
+    storeSide<kSide>(segment.planes, in.linear, linear1, linear2, n);
 }
 
 /// The bits of the provoking vertex: an integer, perhaps, which no float operation may touch.
@@ -237,8 +254,8 @@ HWY_INLINE void copyFlat(const InterpolationInput& in, const FragmentSegment& se
 uint32_t interpolate(const InterpolationInput& in) {
     uint32_t divides = 0;
     const PixelSource pixels(*in.batch);
-    const bool plain = in.batch->order != LaneOrder::spans && in.batch->count % kSideLanes == 0 &&
-                       in.offsetX == nullptr && in.fragZ == nullptr && in.fragInverseW == nullptr;
+    const bool plain = in.batch->order != LaneOrder::spans && in.offsetX == nullptr && in.fragZ == nullptr &&
+                       in.fragInverseW == nullptr;
     const bool weighted = !in.smooth.empty() || !in.linear.empty() || in.fragZ != nullptr;
     for (uint32_t s = 0; s < in.batch->segmentCount; ++s) {
         const FragmentSegment& segment = in.batch->segments[s];
