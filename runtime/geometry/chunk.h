@@ -32,7 +32,7 @@ struct Shape {
         bresenham,  // a row of pixels (diamond exit)
     };
     Kind kind = Kind::square;
-    std::array<double, 4> sides{};           // square: left, top, right, bottom, in pixels
+    std::array<int64_t, 4> sides{};          // square: left, top, right, bottom
     int32_t ax = 0, ay = 0, bx = 0, by = 0;  // the segment
     // rectangle, smooth: |2 cross(p - a, b - a)| <= reach, the greatest integer not above width * length. `sharp`: it
     // is exactly that, and points on the long sides are ties.

@@ -62,8 +62,11 @@ int cut(const Point* from, int count, double nx, double ny, double d, Point* to)
 }  // namespace
 
 Shape squareShape(double x, double y, double size, uint32_t subPixelBits) {
+    // A double of this magnitude has its last bit worth 1: adding it rounds to the nearest, ties to even. A side is a
+    // pixel below 2^16 with at most 16 bits behind the point.
+    constexpr double kMagic = 0x1.8p52;
     const auto units = static_cast<double>(1u << subPixelBits);
-    const auto snap = [units](double side) { return std::nearbyint(side * units) / units; };
+    const auto snap = [units](double side) { return static_cast<int64_t>(side * units + kMagic - kMagic); };
     Shape shape;
     shape.sides = {snap(x - 0.5 * size), snap(y - 0.5 * size), snap(x + 0.5 * size), snap(y + 0.5 * size)};
     return shape;
@@ -145,10 +148,10 @@ int32_t bresenhamMinor(const Shape& shape, int32_t major, uint32_t bits) {
 
 std::array<int32_t, 4> shapeBounds(const Shape& shape, uint32_t bits) {
     if (shape.kind == Shape::Kind::square) {
-        const auto floorOf = [](double value) {
-            return static_cast<int32_t>(std::floor(std::clamp(value, double{kGuardBandMin}, double{kGuardBandMax})));
+        const auto pixelOf = [bits](int64_t side) {
+            return static_cast<int32_t>(std::clamp<int64_t>(side >> bits, kGuardBandMin, kGuardBandMax));
         };
-        return {floorOf(shape.sides[0]), floorOf(shape.sides[1]), floorOf(shape.sides[2]), floorOf(shape.sides[3])};
+        return {pixelOf(shape.sides[0]), pixelOf(shape.sides[1]), pixelOf(shape.sides[2]), pixelOf(shape.sides[3])};
     }
     if (shape.kind == Shape::Kind::bresenham) {
         const int32_t last = shape.first + (shape.count - 1) * shape.step;

@@ -16,16 +16,16 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// The edges that still matter over a rectangle of pixels, in one integer width.
-template <class T>
+template <class T, int kEdges>
 struct Edges {
-    T a[3], b[3];
-    T c[3][kMaxSamples];
+    T a[kEdges], b[kEdges];
+    T c[kEdges][kMaxSamples];
 };
 
 /// Drops edges that have all of the rectangle inside; returns false when one has all of it outside.
-template <class T>
-bool selectEdges(const TileEdges& in, Edges<T>& out) {
-    for (int e = 0; e < 3; ++e) {
+template <class T, int kEdges>
+bool selectEdges(const TileEdges& in, Edges<T, kEdges>& out) {
+    for (size_t e = 0; e < kEdges; ++e) {
         int64_t low = in.c[e][0], high = low;
         for (uint32_t s = 1; s < in.samples; ++s) {
             low = std::min(low, in.c[e][s]);
@@ -61,32 +61,34 @@ HWY_INLINE hn::Vec<D> rowOfEdge(D d, int64_t first,
 }
 
 /// Pixels [.., y0..y1] of a block whose first pixel has the edge values `c`.
-template <class T>
-uint64_t blockMask(const T c[3], const T a[3], const T b[3], int32_t y0, int32_t y1) {
+template <class T, int kEdges>
+uint64_t blockMask(const T* c, const T* a, const T* b, int32_t y0, int32_t y1) {
     const hn::CappedTag<T, 8> d;
     using V = hn::Vec<decltype(d)>;
     constexpr uint32_t kLanes = hn::MaxLanes(hn::CappedTag<T, 8>());
     uint64_t outside = 0;  // the sign bit of any edge
     for (uint32_t x = 0; x < 8; x += kLanes) {
-        V edge[3], step[3];
-        for (int e = 0; e < 3; ++e) {
+        V edge[kEdges], step[kEdges];
+        for (int e = 0; e < kEdges; ++e) {
             edge[e] = rowOfEdge(d, static_cast<T>(c[e] + b[e] * y0 + a[e] * static_cast<T>(x)), a[e]);
             step[e] = hn::Set(d, b[e]);
         }
         for (int32_t y = y0; y <= y1; ++y) {
-            const V sign = hn::Or(hn::Or(edge[0], edge[1]), edge[2]);
+            V sign = hn::Or(hn::Or(edge[0], edge[1]), edge[2]);
+            if constexpr (kEdges == 4) sign = hn::Or(sign, edge[3]);
             uint8_t bits[8] = {};
             hn::StoreMaskBits(d, hn::Lt(sign, hn::Zero(d)), bits);
             outside |= static_cast<uint64_t>(bits[0]) << (8 * y + x);
-            for (int e = 0; e < 3; ++e) edge[e] = hn::Add(edge[e], step[e]);
+            for (int e = 0; e < kEdges; ++e) edge[e] = hn::Add(edge[e], step[e]);
         }
     }
     return ~outside;
 }
 
-template <class T>
+template <class T, int kEdges>
 uint32_t cover(const TileEdges& in, BlockCoverage* blocks) {
-    Edges<T> edges;
+    static_assert(kEdges == 3 || kEdges == 4);
+    Edges<T, kEdges> edges;
     if (!selectEdges(in, edges)) return 0;
     const int32_t bx0 = in.x0 & ~7, bx1 = in.x1 & ~7, by0 = in.y0 & ~7, by1 = in.y1 & ~7;
     // Whole-block tests pay when there are many blocks.
@@ -100,9 +102,9 @@ uint32_t cover(const TileEdges& in, BlockCoverage* blocks) {
             BlockCoverage& block = blocks[count];
             uint64_t any = 0;
             for (uint32_t s = 0; s < in.samples; ++s) {
-                T c[3];
+                T c[kEdges];
                 bool outside = false, inside = true;
-                for (int e = 0; e < 3; ++e) {
+                for (int e = 0; e < kEdges; ++e) {
                     c[e] = static_cast<T>(edges.c[e][s] + edges.a[e] * bx + edges.b[e] * by);
                     if (!classify) continue;
                     const T a7 = edges.a[e] * 7, b7 = edges.b[e] * 7;
@@ -113,7 +115,7 @@ uint32_t cover(const TileEdges& in, BlockCoverage* blocks) {
                 if (classify && inside) {
                     mask = rectangle;
                 } else if (!outside) {
-                    mask = blockMask(c, edges.a, edges.b, y0, y1) & rectangle;
+                    mask = blockMask<T, kEdges>(c, edges.a, edges.b, y0, y1) & rectangle;
                 }
                 block.masks[s] = mask;
                 any |= mask;
@@ -128,7 +130,8 @@ uint32_t cover(const TileEdges& in, BlockCoverage* blocks) {
 }
 
 uint32_t coverTile(const TileEdges& edges, BlockCoverage* blocks) {
-    return edges.smallEdges ? cover<int32_t>(edges, blocks) : cover<int64_t>(edges, blocks);
+    if (edges.fourEdges) return edges.smallEdges ? cover<int32_t, 4>(edges, blocks) : cover<int64_t, 4>(edges, blocks);
+    return edges.smallEdges ? cover<int32_t, 3>(edges, blocks) : cover<int64_t, 3>(edges, blocks);
 }
 
 // --- Tiny primitives: few blocks, all in 32 bits

@@ -44,11 +44,13 @@ uint32_t coverSquare(const PreparedDraw& draw, const Window& window, const Shape
                      BlockCoverage* blocks) {
     // By sample: the pixels whose samples lie in [left, right) x [top, bottom).
     std::array<std::array<int32_t, 4>, kMaxSamples> pixels;
-    const auto first = [](double side, float place, int32_t origin) {
-        return static_cast<int32_t>(std::clamp(std::ceil(side - double{place}) - origin, -1.0, kTileSize + 1.0));
+    const uint32_t bits = draw.subPixelBits;
+    const auto first = [bits](int64_t side, uint32_t place16, int32_t origin) {
+        const int64_t place = int64_t{place16} << (bits - 4), pixel = (side - place + (int64_t{1} << bits) - 1) >> bits;
+        return static_cast<int32_t>(std::clamp<int64_t>(pixel - origin, -1, kTileSize + 1));
     };
     for (uint32_t s = 0; s < draw.plan->samples; ++s) {
-        const float x = draw.positions[s].x(), y = draw.positions[s].y();
+        const uint32_t x = draw.positions[s].x16, y = draw.positions[s].y16;
         pixels[s] = {first(shape.sides[0], x, tileX), first(shape.sides[1], y, tileY), first(shape.sides[2], x, tileX),
                      first(shape.sides[3], y, tileY)};
     }
@@ -103,20 +105,21 @@ class RectangleStipple {
     double unit_, length_, ux_, uy_;
 };
 
-/// Sides [first, first + count) of a rectangle as the edges of a triangle; those that are missing have all inside.
-TileEdges edgesOf(const PreparedDraw& draw, const Window& window, const std::array<HalfPlane, 4>& sides, size_t first,
-                  size_t count, int32_t tileX, int32_t tileY) {
+/// The sides of a rectangle as the edges of a tile.
+TileEdges edgesOf(const PreparedDraw& draw, const Window& window, const std::array<HalfPlane, 4>& sides, int32_t tileX,
+                  int32_t tileY) {
     __extension__ using Wide = __int128;
     const uint32_t bits = draw.subPixelBits, samples = draw.plan->samples;
-    TileEdges edges{};
+    TileEdges edges;
     edges.samples = samples;
     edges.x0 = window.x0;
     edges.y0 = window.y0;
     edges.x1 = window.x1;
     edges.y1 = window.y1;
+    edges.fourEdges = true;
     edges.smallEdges = true;
-    for (size_t e = 0; e < count; ++e) {
-        const HalfPlane& side = sides[first + e];
+    for (size_t e = 0; e < 4; ++e) {
+        const HalfPlane& side = sides[e];
         edges.a[e] = side.a;
         edges.b[e] = side.b;
         edges.smallEdges &= std::max(std::abs(side.a), std::abs(side.b)) <= int64_t{1} << kSmallEdgeBits;
@@ -132,27 +135,17 @@ TileEdges edgesOf(const PreparedDraw& draw, const Window& window, const std::arr
 uint32_t coverRectangle(const PreparedDraw& draw, const Window& window, const Shape& shape, int32_t tileX,
                         int32_t tileY, BlockCoverage* blocks) {
     const CoverTileFn cover = coverTileFunction(draw.call.pipeline->isa());
-    const std::array<HalfPlane, 4> sides = rectangleSides(shape);
-    std::array<BlockCoverage, kBlocksPerTile> rest;
-    const uint32_t count = cover(edgesOf(draw, window, sides, 0, 3, tileX, tileY), blocks);
-    const uint32_t restCount = cover(edgesOf(draw, window, sides, 3, 1, tileX, tileY), rest.data());
-    // What both have: the blocks of each lie in the same order.
+    const uint32_t count = cover(edgesOf(draw, window, rectangleSides(shape), tileX, tileY), blocks);
+    if (!draw.state->stippledLine) return count;
     const uint32_t samples = draw.plan->samples;
     const RectangleStipple stipple(draw, shape);
-    uint32_t kept = 0, other = 0;
-    const auto before = [](const BlockCoverage& a, const BlockCoverage& b) {
-        return a.y != b.y ? a.y < b.y : a.x < b.x;
-    };
+    uint32_t kept = 0;
     for (uint32_t n = 0; n < count; ++n) {
-        while (other < restCount && before(rest[other], blocks[n])) ++other;
-        if (other == restCount || before(blocks[n], rest[other])) continue;
         uint64_t any = 0;
         for (uint32_t s = 0; s < samples; ++s) {
             uint64_t& mask = blocks[n].masks[s];
-            mask &= rest[other].masks[s];
-            if (draw.state->stippledLine)
-                mask = stipple.keep(mask, tileX + blocks[n].x, tileY + blocks[n].y, draw.positions[s].x(),
-                                    draw.positions[s].y());
+            mask = stipple.keep(mask, tileX + blocks[n].x, tileY + blocks[n].y, draw.positions[s].x(),
+                                draw.positions[s].y());
             any |= mask;
         }
         if (any != 0) moveBlock(blocks, n, kept++, samples);

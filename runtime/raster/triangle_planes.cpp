@@ -52,14 +52,15 @@ TileEdges tileEdges(const Primitive& p, int32_t tileX, int32_t tileY, uint32_t s
     TileEdges edges;
     edges.samples = samples;
     edges.smallEdges = p.smallEdges;
+    edges.fourEdges = false;
     edges.x0 = std::max(p.bounds[0] - tileX, 0);
     edges.y0 = std::max(p.bounds[1] - tileY, 0);
     edges.x1 = std::min(p.bounds[2] - tileX, kTileSize - 1);
     edges.y1 = std::min(p.bounds[3] - tileY, kTileSize - 1);
     const int64_t originX = int64_t{tileX} << subPixelBits, originY = int64_t{tileY} << subPixelBits;
     const uint32_t sixteenth = subPixelBits - 4;
-    for (int e = 0; e < 3; ++e) {
-        const int next = e == 2 ? 0 : e + 1;
+    for (size_t e = 0; e < 3; ++e) {
+        const size_t next = e == 2 ? 0 : e + 1;
         const int64_t dx = int64_t{p.x[next]} - p.x[e], dy = int64_t{p.y[next]} - p.y[e];
         edges.a[e] = -dy;
         edges.b[e] = dx;

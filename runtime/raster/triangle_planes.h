@@ -14,12 +14,14 @@ namespace vernier {
 /// y) of the tile is inside edge e at sample s when c[e][s] + a[e] * x + b[e] * y >= 0. Nothing is lost: from
 /// pixel to pixel the edge function changes by whole multiples of that scale, so the low bits dropped are the
 /// same everywhere in the tile, and floor(v) >= 0 exactly when v >= 0. The top-left rule is in c.
+/// A triangle has three, the rectangle of a line four.
 struct TileEdges {
-    std::array<int64_t, 3> a, b;
-    std::array<std::array<int64_t, kMaxSamples>, 3> c;
+    std::array<int64_t, 4> a, b;
+    std::array<std::array<int64_t, kMaxSamples>, 4> c;
     int32_t x0, y0, x1, y1;  // pixels to look at, inclusive, relative to the tile
     uint32_t samples;
     bool smallEdges;  // a and b below 2^kSmallEdgeBits
+    bool fourEdges;
 };
 
 TileEdges tileEdges(const Primitive& primitive, int32_t tileX, int32_t tileY, uint32_t subPixelBits, uint32_t samples,
