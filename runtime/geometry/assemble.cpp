@@ -29,6 +29,14 @@ bool projectVertex(const PreparedDraw& draw, const ViewportTransform& viewport, 
 
 }  // namespace
 
+void Assembler::startReuse() {
+    refs_.clear();
+    if (++epoch_ == 0) {  // wrapped: old stamps would look new
+        std::fill(reuse_.begin(), reuse_.end(), ReuseSlot{});
+        epoch_ = 1;
+    }
+}
+
 uint32_t Assembler::localVertex(const VertexRef& ref) {
     uint32_t slot = (ref.index * 0x9E3779B1u ^ ref.instance * 0x85EBCA6Bu) >> 19;  // 13 bits: kReuseSlots
     while (true) {
@@ -43,27 +51,42 @@ uint32_t Assembler::localVertex(const VertexRef& ref) {
     }
 }
 
-void Assembler::number(const PreparedDraw& draw, const PrimitiveRange& range) {
-    refs_.clear();
-    primitives_.clear();
-    if (++epoch_ == 0) {  // wrapped: old stamps would look new
-        std::fill(reuse_.begin(), reuse_.end(), ReuseSlot{});
-        epoch_ = 1;
+/// Vertices of one instance whose indices lie close together: a slot for each index.
+void Assembler::reuseByIndex(uint32_t least, uint32_t instance, uint32_t vertexCount) {
+    for (LocalPrimitive& primitive : primitives_) {
+        for (uint32_t v = 0; v < vertexCount; ++v) {
+            const uint32_t index = primitive.vertex[v];
+            ReuseSlot& entry = reuse_[index - least];
+            if (entry.epoch != epoch_) {
+                entry.local = static_cast<uint32_t>(refs_.size());
+                entry.epoch = epoch_;
+                refs_.push_back({index, instance});
+            }
+            primitive.vertex[v] = entry.local;
+        }
     }
+}
+
+void Assembler::number(const PreparedDraw& draw, const PrimitiveRange& range) {
+    primitives_.clear();
+    startReuse();
     const VkPrimitiveTopology topology = draw.state->topology;
     const uint32_t vertexCount = verticesPerPrimitive(topology);
     const bool indexed = draw.call.indices.data != nullptr;
     const bool isLineStrip =
         topology == VK_PRIMITIVE_TOPOLOGY_LINE_STRIP || topology == VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY;
     const bool shared = indexed || topology != VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-    auto instance = static_cast<uint32_t>(range.first / draw.primitivesPerInstance);
+    const auto firstInstance = static_cast<uint32_t>(range.first / draw.primitivesPerInstance);
+    auto instance = firstInstance;
     auto primitive = static_cast<uint32_t>(range.first % draw.primitivesPerInstance);
+    const bool oneInstance = primitive + uint64_t{range.count} <= draw.primitivesPerInstance;
     const auto runAt = [&](uint32_t p) {
         return std::upper_bound(draw.runs.begin(), draw.runs.end(), p,
                                 [](uint32_t value, const VertexRun& run) { return value < run.firstPrimitive; }) -
                1;
     };
     auto run = runAt(primitive);
+    uint32_t least = ~0u, greatest = 0;
     for (uint32_t n = 0; n < range.count; ++n) {
         const PrimitiveVertices numbers = primitiveVertices(topology, primitive - run->firstPrimitive);
         LocalPrimitive local{};
@@ -75,11 +98,15 @@ void Assembler::number(const PreparedDraw& draw, const PrimitiveRange& range) {
             const uint32_t index = indexed
                                        ? fetchIndex(draw.call, number) + static_cast<uint32_t>(draw.call.vertexOffset)
                                        : draw.call.first + number;
-            if (shared) {
-                local.vertex[v] = localVertex({index, instance});
-            } else {
+            if (!shared) {
                 local.vertex[v] = static_cast<uint32_t>(refs_.size());
                 refs_.push_back({index, instance});
+            } else if (oneInstance) {
+                local.vertex[v] = index;  // its place among the references comes below
+                least = std::min(least, index);
+                greatest = std::max(greatest, index);
+            } else {
+                local.vertex[v] = localVertex({index, instance});
             }
         }
         primitives_.push_back(local);
@@ -91,6 +118,10 @@ void Assembler::number(const PreparedDraw& draw, const PrimitiveRange& range) {
             ++run;
         }
     }
+    if (!shared || !oneInstance) return;
+    if (greatest - least < kReuseSlots) return reuseByIndex(least, firstInstance, vertexCount);
+    for (LocalPrimitive& local : primitives_)
+        for (uint32_t v = 0; v < vertexCount; ++v) local.vertex[v] = localVertex({local.vertex[v], firstInstance});
 }
 
 WindowVertex Assembler::windowVertex(uint32_t v) const {
@@ -183,7 +214,7 @@ void Assembler::assemble(const PreparedDraw& draw, uint32_t drawIndex, Chunk& ch
             const std::array<WindowVertex, 3> triangle{windowVertex(primitive.vertex[0]),
                                                        windowVertex(primitive.vertex[1]),
                                                        windowVertex(primitive.vertex[2])};
-            setup_.addPolygon(draw, info, triangle);
+            setup_.addTriangle(draw, info, triangle);
         }
     }
 }

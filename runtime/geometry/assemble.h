@@ -42,7 +42,9 @@ class Assembler {
         bool startsStrip;
     };
     void number(const PreparedDraw& draw, const PrimitiveRange& range);
+    void startReuse();
     uint32_t localVertex(const VertexRef& ref);
+    void reuseByIndex(uint32_t least, uint32_t instance, uint32_t vertexCount);
     void assemble(const PreparedDraw& draw, uint32_t drawIndex, Chunk& chunk);
     void clipAndAdd(const PreparedDraw& draw, const PrimitiveInfo& info, const LocalPrimitive& primitive,
                     uint32_t vertexCount, Chunk& chunk);
@@ -53,7 +55,8 @@ class Assembler {
         return vertices_.firstAttribute + vertex * vertices_.attributeStride;
     }
 
-    // Reuse of vertices inside a range: open addressing, twice as many places as a range can have vertices.
+    // Reuse of vertices inside a range: by index where these lie close together; else open addressing, twice as many
+    // places as a range can have vertices.
     struct ReuseSlot {
         VertexRef ref{};
         uint32_t local = 0;

@@ -95,9 +95,23 @@ void PrimitiveSetup::addPolygon(const PreparedDraw& draw, const PrimitiveInfo& i
             break;
     }
     for (size_t n = 2; n < polygon.size(); ++n) {
-        if ((doubleArea(polygon[0], polygon[n - 1], polygon[n]) > 0) != (area > 0)) continue;
-        addTriangle(draw, info, style, polygon[0], polygon[n - 1], polygon[n]);
+        const int64_t part = doubleArea(polygon[0], polygon[n - 1], polygon[n]);
+        if (part != 0 && (part > 0) == (area > 0))
+            addFilled(draw, info, style, polygon[0], polygon[n - 1], polygon[n], part);
     }
+}
+
+void PrimitiveSetup::addTriangle(const PreparedDraw& draw, const PrimitiveInfo& info,
+                                 const std::array<WindowVertex, 3>& vertices) {
+    if (draw.state->polygonMode != VK_POLYGON_MODE_FILL || draw.state->depthBiasEnable)
+        return addPolygon(draw, info, vertices);
+    const int64_t area = doubleArea(vertices[0], vertices[1], vertices[2]);
+    if (area == 0) return;
+    Style style;
+    style.front = (area > 0) == (draw.state->frontFace == VK_FRONT_FACE_CLOCKWISE);
+    if (culled(draw.state->cullMode, style.front)) return;
+    style.area = &draw.viewport(info.viewport).triangleArea;
+    addFilled(draw, info, style, vertices[0], vertices[1], vertices[2], area);
 }
 
 void PrimitiveSetup::addLine(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& a,
@@ -174,7 +188,7 @@ Primitive& PrimitiveSetup::addPrimitive(const PrimitiveInfo& info, const Style& 
         p.attributes[n] = vertex.attributes;
         inverseW[n] = vertex.inverseW;
     }
-    p.wExponent = exponentOf(std::max({inverseW[0], inverseW[1], inverseW[2]}));
+    p.wExponent = exponentOf(std::max(std::max(inverseW[0], inverseW[1]), inverseW[2]));
     const double scale = powerOfTwo(-p.wExponent);
     for (size_t n = 0; n < 3; ++n) p.w[n] = static_cast<float>(inverseW[n] * scale);
     p.affine = p.w[0] == p.w[1] && p.w[1] == p.w[2];
@@ -189,10 +203,9 @@ Primitive& PrimitiveSetup::addPrimitive(const PrimitiveInfo& info, const Style& 
     return p;
 }
 
-void PrimitiveSetup::addTriangle(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style,
-                                 const WindowVertex& a, const WindowVertex& b, const WindowVertex& c) {
-    const int64_t area = doubleArea(a, b, c);
-    if (area == 0) return;
+/// `area`: twice the signed area, not 0.
+void PrimitiveSetup::addFilled(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style,
+                               const WindowVertex& a, const WindowVertex& b, const WindowVertex& c, int64_t area) {
     const uint32_t bits = draw.subPixelBits;
     int32_t x0, x1, y0, y1;
     pixelBounds(std::min({a.x, b.x, c.x}), std::max({a.x, b.x, c.x}), bits, !draw.samplesAtCentre, x0, x1);

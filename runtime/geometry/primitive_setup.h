@@ -52,6 +52,8 @@ class PrimitiveSetup {
     /// `hiddenEdges`: the edge from vertex n to the next is no edge of the primitive.
     void addPolygon(const PreparedDraw& draw, const PrimitiveInfo& info, std::span<const WindowVertex> polygon,
                     uint32_t hiddenEdges = 0);
+    /// addPolygon() of a triangle that was not clipped.
+    void addTriangle(const PreparedDraw& draw, const PrimitiveInfo& info, const std::array<WindowVertex, 3>& vertices);
     /// A segment of a line list or strip.
     void addLine(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& a, const WindowVertex& b);
     /// Line stipple starts anew: before every segment of a list, and before a strip.
@@ -71,8 +73,8 @@ class PrimitiveSetup {
         float depthBias = 0;
         const PixelRect* area = nullptr;
     };
-    void addTriangle(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style, const WindowVertex& a,
-                     const WindowVertex& b, const WindowVertex& c);
+    void addFilled(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style, const WindowVertex& a,
+                   const WindowVertex& b, const WindowVertex& c, int64_t area);
     void addSegment(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style, const WindowVertex& a,
                     const WindowVertex& b);
     void addSquare(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style, const WindowVertex& vertex,
