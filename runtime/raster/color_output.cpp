@@ -136,7 +136,7 @@ uint32_t outputColors(const ColorOutputInput& in, ColorScratch& scratch) {
         plan.ops.unpack(scratch.before.data(), count, destination);
         in.blend(blend);
     }
-    plan.ops.pack(planes, count, scratch.after.data());
+    if (!in.packed) plan.ops.pack(planes, count, scratch.after.data());
     if (plan.path == ColorPath::logic)
         applyLogicOp(plan.logicOp, scratch.before.data(), scratch.after.data(), count * plan.texelBytes);
     if (plan.partialMask) keepMasked(plan, scratch.before.data(), scratch.after.data(), count);

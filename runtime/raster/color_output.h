@@ -28,6 +28,8 @@ struct ColorOutputInput {
     const float* second[4];  // nullptr: no second source
     const uint32_t* mask;    // per lane: written; nullptr: all are
     uint32_t sample;
+    bool packed;  // the scratch memory has the texels of the batch from another sample; only where texels are stored as
+                  // they are
 };
 
 /// The texel of a pixel in the sample that is written.

@@ -295,6 +295,7 @@ void FragmentStage::run(FragmentBatch& batch) {
     const uint32_t count = batch.count, lanes = (count + 3) / 4 * 4;
     const bool masked = batch.order == LaneOrder::spans || batch.partial;
     current_ = &batch;
+    texelsPacked_ = false;
     fillInputs(batch);
     const uint32_t* execute = masked ? batch.execute.data() : nullptr;
     const uint32_t* store = masked ? batch.store.data() : nullptr;
@@ -443,7 +444,11 @@ void FragmentStage::writeColors(const FragmentBatch& batch, uint32_t sample, con
         color.general.mask = color.block.mask = mask;
         color.general.sample = sample;
         if (color.blockRoutine == nullptr || batch.order == LaneOrder::spans) {
+            const ColorPlan& plan = *color.general.plan;
+            color.general.packed = texelsPacked_;
             statistics_.destinationReads += outputColors(color.general, colors_);
+            // The samples of a pixel have one colour.
+            texelsPacked_ = boundColorCount_ == 1 && plan.path == ColorPath::store && !plan.partialMask;
             continue;
         }
         color.block.texels = texelAddress(color.general, batch.originX, batch.originY);

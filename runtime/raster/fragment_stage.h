@@ -114,6 +114,7 @@ class FragmentStage {
     std::array<TrianglePlanes, kMaxFragmentLanes + 1> planes_;
     uint32_t planesCount_ = 0;
     ColorScratch colors_;
+    bool texelsPacked_ = false;  // colors_ has the texels of the batch that runs, the same for all its samples
     alignas(64) std::array<float, kLaneRoom> fragZ_, fragInverseW_;
     alignas(64) std::array<float, kLaneRoom> centroidX_, centroidY_;
     alignas(64) std::array<uint32_t, kLaneRoom> mask_;
