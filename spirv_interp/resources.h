@@ -10,9 +10,12 @@
 
 namespace vernier {
 
+/// What lies further behind in a buffer is outside.
+inline constexpr uint32_t kMaxBufferBytes = 1u << 30;
+
 struct BufferBinding {
     std::byte* data = nullptr;  // 4-byte aligned (8 for 64-bit atomics); nullptr with size 0 for an unbound descriptor
-    uint32_t size = 0;          // bytes; every access is checked against it
+    uint32_t size = 0;          // bytes, at most kMaxBufferBytes; every access is checked against it
 };
 
 /// One image instruction over a batch. Lane arrays hold `lanes` 32-bit values (a multiple of 4, quads in order); absent

@@ -22,7 +22,7 @@ constexpr uint32_t kMaxDescriptors = 1u << 16;
 void setDescriptorLimits(VkPhysicalDeviceLimits& limits) {
     limits.maxTexelBufferElements = kMaxTexelBufferElements;
     limits.maxUniformBufferRange = 1u << 16;
-    limits.maxStorageBufferRange = 1u << 30;
+    limits.maxStorageBufferRange = kMaxBufferBytes;
     limits.maxPushConstantsSize = kMaxPushConstantBytes;
     limits.maxBoundDescriptorSets = kMaxDescriptorSets;
     limits.maxPerStageDescriptorSamplers = kMaxDescriptors;

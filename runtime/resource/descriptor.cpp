@@ -10,7 +10,7 @@ bool isDynamic(VkDescriptorType type) {
 }
 
 uint32_t clampSize(VkDeviceSize size) {
-    return static_cast<uint32_t>(std::min<VkDeviceSize>(size, UINT32_MAX));
+    return static_cast<uint32_t>(std::min<VkDeviceSize>(size, kMaxBufferBytes));
 }
 
 enum class Table : uint8_t { buffers, images, samplers };

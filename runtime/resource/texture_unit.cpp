@@ -31,6 +31,12 @@ void placeCoordinates(const ImageCall& call, Target (&coord)[4], Convert convert
     if (call.op->arrayed) coord[3] = convert(call.coord[spatial]);
 }
 
+/// Likewise of the instructions that name texels: the face of a cube is a layer.
+void placeTexel(const ImageCall& call, const int32_t* (&coord)[4]) {
+    placeCoordinates(call, coord, [](const uint32_t* lanes) { return asInt(lanes); });
+    if (call.op->dim == ir::ImageDim::cube && !call.op->arrayed) coord[3] = asInt(call.coord[2]);
+}
+
 using TexelOffset = std::array<int32_t, 3>;
 
 TexelOffset offsetOf(const ImageCall& call, uint32_t lane) {
@@ -117,6 +123,12 @@ void runFetch(const TextureUnit& unit, const ImageCall& call) {
     if (!call.offset[0]) return unit.fetch(*unit.view, request);
     forEachOffset(call, [&](const uint32_t* mask, const TexelOffset& offset) {
         request.mask = mask;
+<<<<<<< HEAD
+=======
+        placeTexel(call, request.coord);
+        request.lod = call.lodOrBias ? asInt(call.lodOrBias) : nullptr;
+        request.sample = call.sample ? asInt(call.sample) : nullptr;
+>>>>>>> 64daab2 (Places in buffers do not wrap around 32 bits, wide values are inside as a whole, storage images of cube arrays)
         std::copy(offset.begin(), offset.end(), request.offset);
         unit.fetch(*unit.view, request);
     });
@@ -135,12 +147,11 @@ void runQuerySize(const TextureUnit& unit, const ImageCall& call) {
 /// The address of the texel a lane of a storage-image instruction names; nullptr outside the image.
 std::byte* storageTexel(const TextureView& view, const ImageCall& call, uint32_t lane) {
     const int32_t* coord[4] = {};
-    placeCoordinates(call, coord, [](const uint32_t* lanes) { return asInt(lanes); });
+    placeTexel(call, coord);
     const auto at = [&](size_t i) { return coord[i] ? static_cast<uint32_t>(coord[i][lane]) : 0u; };
     if (view.block != nullptr) return nullptr;  // blocks are read, never written
     const TextureLevel& level = view.levels[0];
-    const bool volume = view.type == VK_IMAGE_VIEW_TYPE_3D || call.op->dim == ir::ImageDim::cube;
-    const uint32_t slice = volume ? at(2) : at(3);
+    const uint32_t slice = call.op->dim == ir::ImageDim::d3 ? at(2) : at(3);
     const uint32_t slices = view.type == VK_IMAGE_VIEW_TYPE_3D ? level.depth : view.layerCount;
     if (at(0) >= level.width || at(1) >= level.height || slice >= slices) return nullptr;
     // Storage images are writable memory of the device; views keep read-only pointers for all the others.

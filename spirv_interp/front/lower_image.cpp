@@ -118,7 +118,10 @@ ir::ImageOp Lowering::imageOpOf(const Handle& handle, ir::ImageKind kind) const 
     op.dim = dimOf(image.dim);
     op.arrayed = image.arrayed;
     op.multisampled = image.multisampled;
-    op.coords = static_cast<uint8_t>(spatialCoords(op.dim) + (image.arrayed ? 1 : 0));
+    const bool texels = kind == ir::ImageKind::read || kind == ir::ImageKind::store || kind == ir::ImageKind::atomic;
+    // Texels of a cube are named by column, row and face; of an array of cubes the last counts on through the layers.
+    const uint32_t spatial = texels && op.dim == ir::ImageDim::cube && op.arrayed ? 2 : spatialCoords(op.dim);
+    op.coords = static_cast<uint8_t>(spatial + (image.arrayed ? 1 : 0));
     return op;
 }
 

@@ -16,128 +16,6 @@ bool isWritable(ir::ResourceKind kind) {
 
 }  // namespace
 
-// --- access chains
-// ------------------------------------------------------------------------------------------------------
-
-void Lowering::lowerAccessChain(const Instruction& inst) {
-    Pointer pointer = pointerOf(inst[3]);
-    for (uint32_t word = 4; word < inst.count; ++word) pointer = stepInto(pointer, inst[word], inst);
-    setPointer(inst[2], pointer);
-}
-
-/// An access chain whose first index, Element, counts the pointer on in an array it points into.
-void Lowering::lowerPtrAccessChain(const Instruction& inst) {
-    Pointer pointer = pointerOf(inst[3]);
-    if (!pointer.inBytes()) refuse(inst, "the base does not point into a buffer");
-    advance(pointer, inst[4], 0, strideOfPointer(inst[3], pointer));
-    for (uint32_t word = 5; word < inst.count; ++word) pointer = stepInto(pointer, inst[word], inst);
-    setPointer(inst[2], pointer);
-}
-
-/// Moves by `index` steps of `stride` units; an index that is constant is kept inside `count` (0: no bound).
-void Lowering::advance(Pointer& pointer, uint32_t indexId, uint32_t count, uint32_t stride) {
-    if (pointer.base == Base::address) {
-        const ir::ValueId wide =
-            convertInteger(true, {ir::Type::i64, 64, true}, scalarOf(indexId), scalarOfId(indexId));
-        pointer.dynamic =
-            binary(ir::Op::iadd, pointer.dynamic, binary(ir::Op::imul, wide, emitter_.constant(ir::Type::i64, stride)));
-        return;
-    }
-    const ir::ValueId index = indexOf(indexId);
-    if (const std::optional<uint64_t> bits = emitter_.constantBits(index)) {
-        const auto fixed = static_cast<uint32_t>(*bits);
-        pointer.offset += (count != 0 ? std::min(fixed, count - 1) : fixed) * stride;
-        return;
-    }
-    if (pointer.base == Base::ssa) {
-        if (pointer.dynamic != ir::kNoValue) refuseId(indexId, "is a second index that is not constant");
-        pointer.dynamic = index;
-        pointer.choices = count;
-        pointer.choiceStride = stride;
-        return;
-    }
-    const ir::ValueId distance = binary(ir::Op::imul, index, emitter_.constantI32(stride));
-    pointer.dynamic = pointer.dynamic == ir::kNoValue
-                          ? distance
-                          : emitter_.emit(ir::Op::iadd, ir::Type::i32, {pointer.dynamic, distance});
-}
-
-void Lowering::stepDescriptor(Pointer& pointer, const SpirvType& type, uint32_t indexId) {
-    const ir::ValueId index = indexOf(indexId);
-    if (pointer.descriptor == ir::kNoValue) {
-        pointer.descriptor = index;
-    } else {
-        const ir::ValueId row =
-            emitter_.emit(ir::Op::imul, ir::Type::i32, {pointer.descriptor, emitter_.constantI32(type.count)});
-        pointer.descriptor = emitter_.emit(ir::Op::iadd, ir::Type::i32, {row, index});
-    }
-    pointer.type = type.element;
-    const SpirvType::Kind next = typeInfo(type.element).kind;
-    pointer.descriptorArray = next == SpirvType::Kind::array || next == SpirvType::Kind::runtimeArray;
-}
-
-Pointer Lowering::stepInto(const Pointer& from, uint32_t indexId, const Instruction& inst) {
-    Pointer pointer = from;
-    const uint32_t typeId = from.type;
-    const SpirvType& type = typeInfo(typeId);
-    if (pointer.descriptorArray) {
-        stepDescriptor(pointer, type, indexId);
-        return pointer;
-    }
-    const bool buffer = pointer.inBytes() && !pointer.wordLayout;
-    const auto unitsOf = [&](const SpirvType& part) {
-        return pointer.base == Base::ssa ? part.leaves : pointer.wordLayout ? part.words * 4 : part.words;
-    };
-    switch (type.kind) {
-        case SpirvType::Kind::structure: {
-            const std::optional<uint32_t> index = constantOf(indexId);
-            if (!index || *index >= type.members.size()) refuse(inst, "a member index that is not a constant in range");
-            pointer.type = type.members[*index];
-            if (!buffer) {
-                pointer.offset += pointer.base == Base::ssa ? type.memberLeaf[*index]
-                                  : pointer.wordLayout      ? type.memberWord[*index] * 4
-                                                            : type.memberWord[*index];
-                return pointer;
-            }
-            pointer.offset += module_.decorationOr(typeId, spv::Decoration::Offset, *index, 0);
-            if (const Decoration* d = module_.findDecoration(typeId, spv::Decoration::MatrixStride, *index)) {
-                pointer.matrixStride = d->value;
-                pointer.rowMajor = module_.hasDecoration(typeId, spv::Decoration::RowMajor, *index);
-            }
-            return pointer;
-        }
-        case SpirvType::Kind::array:
-        case SpirvType::Kind::runtimeArray: {
-            const uint32_t stride =
-                buffer ? module_.decorationOr(typeId, spv::Decoration::ArrayStride, Decoration::kNoMember, 0)
-                       : unitsOf(typeInfo(type.element));
-            advance(pointer, indexId, pointer.inBytes() ? 0 : type.count, stride);
-            break;
-        }
-        case SpirvType::Kind::matrix: {
-            const SpirvType& column = typeInfo(type.element);
-            const uint32_t stride = !buffer            ? unitsOf(column)
-                                    : pointer.rowMajor ? column.scalar.bytes()
-                                                       : pointer.matrixStride;
-            pointer.elementStride = buffer && pointer.rowMajor ? pointer.matrixStride : 0;
-            advance(pointer, indexId, type.count, stride);
-            break;
-        }
-        case SpirvType::Kind::vector: {
-            const SpirvType& scalar = typeInfo(type.element);
-            uint32_t stride = buffer ? scalar.scalar.bytes() : unitsOf(scalar);
-            if (pointer.elementStride != 0) stride = pointer.elementStride;
-            pointer.elementStride = 0;
-            advance(pointer, indexId, type.count, stride);
-            break;
-        }
-        default:
-            refuse(inst, "an index into something that has no parts");
-    }
-    pointer.type = type.element;
-    return pointer;
-}
-
 // --- scalars in memory
 // --------------------------------------------------------------------------------------------------
 
@@ -148,7 +26,8 @@ ir::ValueId Lowering::place(const Pointer& pointer, uint32_t more) {
     }
     const bool fromVariable = pointer.base == Base::buffer && !pointer.fromResource;
     const uint32_t first = fromVariable ? bufferOffsetOf(pointer.root) : 0;
-    const ir::ValueId fixed = emitter_.constantI32(first + pointer.offset + more);
+    const auto fixedBytes = std::min<uint64_t>(uint64_t{first} + pointer.offset + more, kFarOutside);
+    const ir::ValueId fixed = emitter_.constantI32(static_cast<uint32_t>(fixedBytes));
     return pointer.dynamic == ir::kNoValue ? fixed
                                            : emitter_.emit(ir::Op::iadd, ir::Type::i32, {pointer.dynamic, fixed});
 }
@@ -179,11 +58,28 @@ ir::ValueId Lowering::loadWord(const Pointer& pointer, uint32_t at, ir::Type typ
     return emitter_.emit(ir::Op::input, program_.inputs[slot].type, {}, slot);
 }
 
+/// A pointer to access the two words at `at` by: into the buffer if it holds both, else outside.
+Pointer Lowering::wholly(const Pointer& pointer, uint32_t at) {
+    if (pointer.base != Base::buffer || isWorkgroupMemory(pointer)) return pointer;
+    const ir::ValueId first = place(pointer, at);
+    const ir::ValueId size =
+        emitter_.emit(ir::Op::bufferSize, ir::Type::i32, {descriptorOf(pointer)}, resourceOrAny(pointer));
+    const ir::ValueId last = binary(ir::Op::iadd, first, emitter_.constantI32(7));
+    Pointer whole = pointer;
+    whole.dynamic = emitter_.emit(ir::Op::select, ir::Type::i32,
+                                  {compare(ir::Op::ult, last, size), binary(ir::Op::isub, first, emitter_.constantI32(at)),
+                                   emitter_.constantI32(kFarOutside)});
+    whole.offset = 0;
+    whole.fromResource = true;
+    return whole;
+}
+
 ir::ValueId Lowering::loadScalar(const Pointer& pointer, uint32_t at, const LeafType& type) {
     if (ir::isWide(type)) {
         const uint32_t word = pointer.inBytes() ? 4 : 1;
-        const ir::ValueId low = loadWord(pointer, at, ir::Type::i32);
-        return emitter_.emit(ir::Op::makeWide, type, {low, loadWord(pointer, at + word, ir::Type::i32)});
+        const Pointer whole = wholly(pointer, at);
+        const ir::ValueId low = loadWord(whole, at, ir::Type::i32);
+        return emitter_.emit(ir::Op::makeWide, type, {low, loadWord(whole, at + word, ir::Type::i32)});
     }
     if (type.type == ir::Type::b1 && pointer.base != Base::input) {
         return compare(ir::Op::ine, loadWord(pointer, at, ir::Type::i32), emitter_.constantI32(0));
@@ -199,8 +95,9 @@ ir::ValueId Lowering::loadScalar(const Pointer& pointer, uint32_t at, const Leaf
 void Lowering::storeScalar(const Pointer& pointer, uint32_t at, ir::ValueId value, const LeafType& type) {
     if (ir::isWide(type)) {
         const uint32_t word = pointer.inBytes() ? 4 : 1;
-        storeWord(pointer, at, emitter_.emit(ir::Op::lowWord, ir::Type::i32, {value}));
-        storeWord(pointer, at + word, emitter_.emit(ir::Op::highWord, ir::Type::i32, {value}));
+        const Pointer whole = wholly(pointer, at);
+        storeWord(whole, at, emitter_.emit(ir::Op::lowWord, ir::Type::i32, {value}));
+        storeWord(whole, at + word, emitter_.emit(ir::Op::highWord, ir::Type::i32, {value}));
     } else if (type.type == ir::Type::b1) {
         storeWord(pointer, at, convert(ir::Op::zext, ir::Type::i32, value));
     } else if (type.bits < 32 && pointer.inBytes()) {

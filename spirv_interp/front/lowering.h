@@ -21,6 +21,10 @@ struct LoweringError {
     Error error;
 };
 
+/// Bytes. As far as that nothing lies in a buffer, and two such distances can be added in 32 bits.
+inline constexpr uint32_t kFarOutside = 0x7FFFFFFF;
+static_assert(kFarOutside - kMaxBufferBytes >= kMaxBufferBytes - 1);
+
 /// Where a pointer points, known while lowering: a variable and a path into it.
 struct Pointer {
     enum class Base : uint8_t {
@@ -215,6 +219,11 @@ class Lowering {
     Pointer stepInto(const Pointer& pointer, uint32_t indexId, const Instruction& inst);
     void stepDescriptor(Pointer& pointer, const SpirvType& type, uint32_t indexId);
     void advance(Pointer& pointer, uint32_t indexId, uint32_t count, uint32_t stride);
+    void advanceElement(Pointer& pointer, uint32_t indexId, uint32_t stride);
+    void addDistance(Pointer& pointer, ir::ValueId index, uint32_t stride);
+    ir::ValueId notFarther(ir::ValueId distance);
+    bool isWorkgroupMemory(const Pointer& pointer);
+    Pointer wholly(const Pointer& pointer, uint32_t at);
     void lowerAccessChain(const Instruction& inst);
     void lowerPtrAccessChain(const Instruction& inst);
     Leaves load(const Pointer& pointer);

@@ -230,6 +230,9 @@ class Folder {
             case Op::udiv:
                 if (power) return shiftBy(inst, Op::lshr, a, *each[1]);
                 return;
+            case Op::umin:
+                if (each[1] && mostOf(a) <= *each[1] && inst.type == Type::i32) return replace(inst, a);
+                return;
             case Op::umod:
                 if (power) return rewrite(inst, Op::iand, {a, constant(inst.type, *each[1] - 1)});
                 return;
@@ -266,22 +269,52 @@ class Folder {
         }
     }
 
-    /// Whether the top bit of a 32-bit integer is known to be 0.
-    bool isNotNegative(ValueId value) const {
+    /// No more than this is a 32-bit integer, without a sign.
+    uint64_t mostOf(ValueId value, uint32_t depth = 0) const {
+        constexpr uint64_t kAll = UINT32_MAX;
+        constexpr uint32_t kDeepest = 6;
         const Inst* inst = definition(value);
-        if (inst == nullptr || inst->type != Type::i32) return false;
+        if (inst == nullptr) return bits(value).value_or(kAll);
+        if (inst->type != Type::i32 || depth == kDeepest) return kAll;
+        const auto most = [&](uint32_t k) { return mostOf(operand(*inst, k), depth + 1); };
         const auto known = [&](uint32_t k) { return bits(operand(*inst, k)); };
+        const auto unlessWrapped = [](uint64_t sum) { return sum <= kAll ? sum : kAll; };
         switch (inst->op) {
+            case Op::constant:
+                return inst->imm;
+            case Op::input:
+                return mostOfInput(program_.inputs[inst->imm]);
             case Op::iand:
-                return known(0).value_or(~0u) <= INT32_MAX || known(1).value_or(~0u) <= INT32_MAX;
+            case Op::umin:
+                return std::min(most(0), most(1));
+            case Op::umax:
+            case Op::select:
+                return std::max(most(inst->op == Op::select ? 2 : 0), most(1));
+            case Op::iadd:
+                return unlessWrapped(most(0) + most(1));
+            case Op::imul:
+                return unlessWrapped(most(0) * most(1));
+            case Op::shl:
+                return known(1) ? unlessWrapped(most(0) << (*known(1) % 32)) : kAll;
             case Op::lshr:
-                return known(1).value_or(0) % 32 != 0;
+                return known(1) ? most(0) >> (*known(1) % 32) : kAll;
             case Op::umod:
-                return known(1).value_or(~0u) <= INT32_MAX;
+                return known(1).value_or(0) != 0 ? *known(1) - 1 : kAll;
             case Op::zext:
-                return true;  // from b1
+                return 1;  // from b1
             default:
-                return false;
+                return kAll;
+        }
+    }
+
+    uint64_t mostOfInput(const InterfaceSlot& slot) const {
+        switch (slot.builtin) {
+            case Builtin::localInvocationId:
+                return program_.localSize[slot.component] - 1;
+            case Builtin::localInvocationIndex:
+                return uint64_t{program_.localSize[0]} * program_.localSize[1] * program_.localSize[2] - 1;
+            default:
+                return UINT32_MAX;
         }
     }
 
@@ -338,7 +371,7 @@ class Folder {
                 return;
             case Op::utof:
                 // Conversions of signed integers are one machine instruction on every instruction set.
-                if (static_cast<Type>(inst.imm) == Type::i32 && isNotNegative(a)) {
+                if (static_cast<Type>(inst.imm) == Type::i32 && mostOf(a) <= INT32_MAX) {
                     return rewrite(inst, Op::stof, {a}, inst.imm);
                 }
                 return;

@@ -205,7 +205,7 @@ Pointer<Number> Machine<Number>::index(Pointer<Number> p, Id indexId) const {
     const auto move = [&p, i](uint64_t stride) {
         __extension__ using Wide = __int128;
         const Wide offset = Wide(i) * static_cast<int64_t>(stride) + static_cast<int64_t>(p.offset);
-        p.outside = p.outside || offset < 0 || offset > kMaxOffset;
+        p.outside = p.outside || i < 0 || offset > kMaxOffset;
         p.offset = p.outside ? 0 : static_cast<uint64_t>(offset);
     };
     if (type.kind == TypeKind::structure) {

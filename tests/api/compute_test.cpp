@@ -98,6 +98,53 @@ void main() { color = texelFetch(picture, ivec2(gl_FragCoord.xy), 0).yxzw; })");
     for (uint32_t i = 0; i < pixels.size(); ++i) ASSERT_EQ(pixels[i], 0xFF000000u | i % 32 << 8 | i / 32) << i;
 }
 
+// Faces and layers of storage images, one texel behind the other, each with the number of its own.
+TEST_F(Compute, StorageImagesOfAllKindsFindTheirSlices) {
+    struct Kind {
+        const char *type, *place;
+        uint32_t dimensions, layers, depth;
+        int cube, array;
+    };
+    constexpr Kind kKinds[] = {
+        {"imageCubeArray", "ivec3(at.xy, at.z)", 2, 12, 0, 1, 0}, {"imageCube", "ivec3(at.xy, at.z)", 2, 6, 0, 1, 0},
+        {"image2DArray", "ivec3(at.xy, at.z)", 2, 12, 0, 0, 1},   {"image3D", "ivec3(at.xy, at.z)", 3, 0, 12, 0, 0},
+        {"image1DArray", "ivec2(at.x, at.z)", 1, 12, 0, 0, 1},
+    };
+    for (const Kind& kind : kKinds) {
+        const uint32_t slices = std::max(kind.layers, kind.depth), rows = kind.dimensions == 1 ? 1 : 4;
+        VnImageDesc desc{};
+        desc.format = VK_FORMAT_R32_UINT;
+        desc.dimensions = kind.dimensions;
+        desc.width = 4;
+        desc.height = rows;
+        desc.layers = kind.layers;
+        desc.depth = kind.depth;
+        desc.cube = kind.cube;
+        VnImage picture{};
+        ASSERT_EQ(vnCreateImage(device_, &desc, &picture), VN_SUCCESS) << lastError();
+        const std::string head = "#version 450\nlayout(local_size_x = 4, local_size_y = " + std::to_string(rows) +
+                                 ") in;\nlayout(set = 0, binding = 1, r32ui) uniform u" + kind.type +
+                                 " picture;\nlayout(set = 0, binding = 0) buffer R { uint seen[]; };\n"
+                                 "void main() { ivec3 at = ivec3(gl_GlobalInvocationID);"
+                                 "uint n = uint(at.x + at.y * 4 + at.z * 16);";
+        const std::string place = kind.place;
+        const std::string write = head + "imageStore(picture, " + place + ", uvec4(n)); imageAtomicAdd(picture, " +
+                                  place + ", 5u); }";
+        const std::string look = head + "seen[n] = imageLoad(picture, " + place + ").x; }";
+        const std::vector<uint32_t> nothing(16 * slices, 0);
+        const VnBuffer seen = buffer(nothing.data(), nothing.size() * 4);
+        for (const std::string* source : {&write, &look}) {
+            ASSERT_EQ(vnBindProgram(context_, computeProgram(source->c_str())), VN_SUCCESS) << lastError();
+            ASSERT_EQ(vnBindTexture(context_, 0, 1, 0, view(picture), VnSampler{}), VN_SUCCESS) << lastError();
+            ASSERT_EQ(vnBindBuffer(context_, 0, 0, 0, seen, 0, 0), VN_SUCCESS) << lastError();
+            ASSERT_EQ(vnDispatch(context_, 1, 1, slices), VN_SUCCESS) << lastError();
+        }
+        const std::vector<uint32_t> found = readWords(seen, 16 * slices);
+        for (uint32_t n = 0; n < found.size(); ++n)
+            ASSERT_EQ(found[n], n % 16 / 4 < rows ? n + 5 : 0) << kind.type << " " << n;
+    }
+}
+
 TEST_F(Compute, BoundBesideTheProgramForDraws) {
     std::vector<uint32_t> numbers(64, 1);
     const VnBuffer in = buffer(numbers.data(), 256), out = buffer(nullptr, 256);

@@ -57,8 +57,9 @@ ExpressionPtr Generator::constant(ValueType type) {
 ExpressionPtr Generator::index(uint32_t n, bool robust) {
     if (robust && indices_ == 0 && chance(10)) {
         ++indices_;
-        // Mostly outside, but not so far that offsets in bytes wrap around: where those lead is left open.
-        ExpressionPtr e = masked(expression({Base::u32, 1, 1}, 1), 1u << 24);
+        // Mostly outside, or so far that offsets in bytes do not fit 32 bits.
+        ExpressionPtr e = expression({Base::u32, 1, 1}, 1);
+        if (chance(50)) e = masked(std::move(e), 1u << 24);
         --indices_;
         return e;
     }

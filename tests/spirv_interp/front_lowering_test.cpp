@@ -89,33 +89,35 @@ b0:
   %1 f32 = constant 0x41100000
   %2 i32 = constant 0x1
   %3 i32 = constant 0x0
-  %4 i32 = constant 0x14
-  %5 f32 = input #0
-  %6 i32 = loadBuffer #0 %3 %3
+  %4 i32 = constant 0x3ffffff
+  %5 i32 = constant 0x14
+  %6 f32 = input #0
+  %7 i32 = loadBuffer #0 %3 %3
   jump b1
 b1 loop b5 <- b0 b4:
-  %7 i32 = phi %3 %18
-  %8 f32 = phi %5 %17
-  %9 b1 = slt.i32 %7 %6
-  branch %9 b2 b5
+  %8 i32 = phi %3 %20
+  %9 f32 = phi %6 %19
+  %10 b1 = slt.i32 %8 %7
+  branch %10 b2 b5
 b2 <- b1:
-  %10 i32 = shl %7 %0
-  %11 i32 = iadd %10 %4
-  %12 f32 = loadBuffer #0 %3 %11
-  %13 b1 = folt.f32 %1 %12
-  branch %13 b4 b3
+  %11 i32 = umin %8 %4
+  %12 i32 = shl %11 %0
+  %13 i32 = iadd %12 %5
+  %14 f32 = loadBuffer #0 %3 %13
+  %15 b1 = folt.f32 %1 %14
+  branch %15 b4 b3
 b3 <- b2:
-  %14 f32 = fsin %12
-  %15 f32 = fadd %8 %14
-  %16 f32 = fmul %12 %15
+  %16 f32 = fsin %14
+  %17 f32 = fadd %9 %16
+  %18 f32 = fmul %14 %17
   jump b4
 b4 <- b3 b2:
-  %17 f32 = phi %16 %8
-  %18 i32 = iadd %2 %7
+  %19 f32 = phi %18 %9
+  %20 i32 = iadd %2 %8
   jump b1
 b5 <- b1:
-  %19 f32 = phi %8
-  storeOutput #0 %19
+  %21 f32 = phi %9
+  storeOutput #0 %21
   ret
 )");
 }
