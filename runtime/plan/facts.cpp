@@ -150,9 +150,12 @@ void collectFacts(const GraphicsState& state, const ShaderProgram& program, Plan
     FactWriter facts(plan);
     geometryFacts(state, plan, program.accuracy(), facts);
     rateFacts("vertex program", "vertex", program.vertexIr(), program.vertex()->statistics(), facts);
-    if (program.liftedOperations() > 0)
-        facts.runs(count(program.liftedOperations(), "operation") + " of the fragment shader, once per vertex",
+    if (program.lifted().flat > 0)
+        facts.runs(count(program.lifted().flat, "operation") + " of the fragment shader, once per vertex",
                    "they depend on flat inputs alone");
+    if (program.lifted().linear > 0)
+        facts.runs(count(program.lifted().linear, "operation") + " of the fragment shader, once per vertex",
+                   "they are linear across a primitive; fast maths allows what interpolation then rounds otherwise");
     if (program.removedVaryings() > 0)
         facts.leftOut(count(program.removedVaryings(), "vertex output"), "nobody reads them");
     if (state.rasterizerDiscard) return;

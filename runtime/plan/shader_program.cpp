@@ -34,9 +34,11 @@ Result<std::shared_ptr<const ShaderProgram>> ShaderProgram::create(const ShaderP
     ir::Program vertexIr = *desc.vertex, fragmentIr = hasFragment ? *desc.fragment : emptyFragment();
     if (hasFragment) dropColors(fragmentIr, desc.keptColors);
     ir::LinkFacts facts;
-    if (Status status = ir::linkStages(vertexIr, fragmentIr, &facts); !status) return status.error();
+    ir::LinkOptions linking;
+    linking.liftLinear = desc.accuracy.math == MathTier::fast;
+    if (Status status = ir::linkStages(vertexIr, fragmentIr, &facts, linking); !status) return status.error();
     program->removedVaryings_ = facts.removedOutputs;
-    program->liftedOperations_ = facts.liftedOperations;
+    program->lifted_ = facts.lifted;
 
     BatchOptions options{desc.isa, desc.accuracy.math};
     options.verified = true;

@@ -7,6 +7,7 @@
 #include "base/result.h"
 #include "base/simd.h"
 #include "runtime/accuracy.h"
+#include "spirv_interp/ir/lift.h"
 #include "spirv_interp/program.h"
 
 namespace vernier {
@@ -37,14 +38,15 @@ class ShaderProgram {
     /// Vertex outputs that linking removed because nobody reads them, for explain().
     uint32_t removedVaryings() const { return removedVaryings_; }
     /// Operations of the fragment shader that linking moved into the vertex program, for explain().
-    uint32_t liftedOperations() const { return liftedOperations_; }
+    const ir::LiftFacts& lifted() const { return lifted_; }
 
   private:
     ShaderProgram() = default;
     Accuracy accuracy_;
     Isa isa_ = Isa::sse4;
     std::shared_ptr<const BatchProgram> vertex_, fragment_;
-    uint32_t removedVaryings_ = 0, liftedOperations_ = 0;
+    uint32_t removedVaryings_ = 0;
+    ir::LiftFacts lifted_;
 };
 
 }  // namespace vernier

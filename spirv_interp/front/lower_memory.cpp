@@ -66,9 +66,10 @@ Pointer Lowering::wholly(const Pointer& pointer, uint32_t at) {
         emitter_.emit(ir::Op::bufferSize, ir::Type::i32, {descriptorOf(pointer)}, resourceOrAny(pointer));
     const ir::ValueId last = binary(ir::Op::iadd, first, emitter_.constantI32(7));
     Pointer whole = pointer;
-    whole.dynamic = emitter_.emit(ir::Op::select, ir::Type::i32,
-                                  {compare(ir::Op::ult, last, size), binary(ir::Op::isub, first, emitter_.constantI32(at)),
-                                   emitter_.constantI32(kFarOutside)});
+    whole.dynamic =
+        emitter_.emit(ir::Op::select, ir::Type::i32,
+                      {compare(ir::Op::ult, last, size), binary(ir::Op::isub, first, emitter_.constantI32(at)),
+                       emitter_.constantI32(kFarOutside)});
     whole.offset = 0;
     whole.fromResource = true;
     return whole;

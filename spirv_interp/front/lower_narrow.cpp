@@ -197,13 +197,15 @@ ir::ValueId Lowering::ofPiece(ir::ValueId piece, const LeafType& type) {
     return ir::isFloat(type) ? convert(Op::bitcast, type, piece) : piece;
 }
 
-/// An index of any integer type as i32. One that does not fit becomes the last or the first there is: out of range either
-/// way.
+/// An index of any integer type as i32. One that does not fit becomes the last or the first there is: out of range
+/// either way.
 ir::ValueId Lowering::indexOf(uint32_t id) {
     const LeafType& type = scalarOfId(id);
     ir::ValueId index = type.isSigned ? signExtended(scalarOf(id), type) : scalarOf(id);
     if (ir::isWide(emitter_.typeOf(index))) {
-        const auto limit = [&](int64_t value) { return emitter_.constant(ir::Type::i64, static_cast<uint64_t>(value)); };
+        const auto limit = [&](int64_t value) {
+            return emitter_.constant(ir::Type::i64, static_cast<uint64_t>(value));
+        };
         index = binary(Op::smax, binary(Op::smin, index, limit(INT32_MAX)), limit(INT32_MIN));
     }
     return toI32(index);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "spirv_interp/ir/lift_flat.h"
 #include "spirv_interp/ir/ops.h"
 #include "spirv_interp/ir/optimise.h"
 
@@ -80,7 +79,7 @@ void writeZero(Program& vertex, const InterfaceSlot& slot) {
 
 }  // namespace
 
-Status linkStages(Program& vertex, Program& fragment, LinkFacts* facts) {
+Status linkStages(Program& vertex, Program& fragment, LinkFacts* facts, const LinkOptions& options) {
     if (vertex.stage != Stage::vertex || fragment.stage != Stage::fragment) {
         return invalidArgument("linkStages: the programs are not a vertex and a fragment program, in this order");
     }
@@ -105,11 +104,12 @@ Status linkStages(Program& vertex, Program& fragment, LinkFacts* facts) {
         writeZero(vertex, input);
         vertexChanged = true;
     }
-    const uint32_t lifted = liftFlat(vertex, fragment);
-    if (lifted != 0) optimise(fragment);
+    const LiftFacts lifted = options.lift ? lift(vertex, fragment, options.liftLinear) : LiftFacts{};
+    const bool changed = lifted.flat + lifted.linear != 0;
+    if (changed) optimise(fragment);
     const uint32_t removed = dropUnreadOutputs(vertex, fragment);
     if (facts != nullptr) *facts = {removed, lifted};
-    if (vertexChanged || lifted != 0 || removed != 0) optimise(vertex);
+    if (vertexChanged || changed || removed != 0) optimise(vertex);
     return {};
 }
 

@@ -3,12 +3,18 @@
 
 #include "base/result.h"
 #include "spirv_interp/ir/ir.h"
+#include "spirv_interp/ir/lift.h"
 
 namespace vernier::ir {
 
+struct LinkOptions {
+    bool lift = true;         // work moves from `fragment` to `vertex` where that pays (ir/lift.h)
+    bool liftLinear = false;  // also where the result differs in its last bits
+};
+
 struct LinkFacts {
-    uint32_t removedOutputs = 0;    // of the vertex program, because nobody reads them
-    uint32_t liftedOperations = 0;  // of the fragment program, now done per vertex
+    uint32_t removedOutputs = 0;  // of the vertex program, because nobody reads them
+    LiftFacts lifted;             // from the fragment program, now done per vertex
 };
 
 /// Outputs of `vertex` that `fragment` does not read are removed with the code behind them (built-in ones stay). Inputs
@@ -16,8 +22,7 @@ struct LinkFacts {
 /// gets an output that is 0 instead, so that afterwards every user input of `fragment` has the output of the same
 /// location, component and type. Both programs come as optimise() leaves them, go so, and verify. An invalidArgument
 /// Error when an output and the input of the same place differ in type ("Interface Matching" in the Vulkan
-/// specification); the programs are then unchanged. Work on flat inputs moves from `fragment` to `vertex` where that
-/// pays (ir/lift_flat.h).
-Status linkStages(Program& vertex, Program& fragment, LinkFacts* facts = nullptr);
+/// specification); the programs are then unchanged.
+Status linkStages(Program& vertex, Program& fragment, LinkFacts* facts = nullptr, const LinkOptions& options = {});
 
 }  // namespace vernier::ir

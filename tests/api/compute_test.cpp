@@ -128,8 +128,8 @@ TEST_F(Compute, StorageImagesOfAllKindsFindTheirSlices) {
                                  "void main() { ivec3 at = ivec3(gl_GlobalInvocationID);"
                                  "uint n = uint(at.x + at.y * 4 + at.z * 16);";
         const std::string place = kind.place;
-        const std::string write = head + "imageStore(picture, " + place + ", uvec4(n)); imageAtomicAdd(picture, " +
-                                  place + ", 5u); }";
+        const std::string write =
+            head + "imageStore(picture, " + place + ", uvec4(n)); imageAtomicAdd(picture, " + place + ", 5u); }";
         const std::string look = head + "seen[n] = imageLoad(picture, " + place + ").x; }";
         const std::vector<uint32_t> nothing(16 * slices, 0);
         const VnBuffer seen = buffer(nothing.data(), nothing.size() * 4);

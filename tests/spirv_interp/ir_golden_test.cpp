@@ -36,7 +36,7 @@ TEST_P(IrGolden, PassesPrintWhatTheyDid) {
     EXPECT_EQ(prints, contentsOf(path + ".passes"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Programs, IrGolden, testing::Values("branch", "light", "scale"),
+INSTANTIATE_TEST_SUITE_P(Programs, IrGolden, testing::Values("branch", "hoist", "light", "scale"),
                          [](const testing::TestParamInfo<const char*>& tested) { return std::string(tested.param); });
 
 }  // namespace

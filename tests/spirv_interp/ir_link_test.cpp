@@ -145,7 +145,7 @@ b0:
 )");
     LinkFacts facts;
     ASSERT_TRUE(linkStages(vertex, fragment, &facts).ok());
-    EXPECT_EQ(facts.liftedOperations, 4u);
+    EXPECT_EQ(facts.lifted.flat, 4u);
     EXPECT_EQ(facts.removedOutputs, 1u);
     EXPECT_TRUE(verify(vertex).ok()) << verify(vertex).error().message;
     EXPECT_TRUE(verify(fragment).ok()) << verify(fragment).error().message;
@@ -214,7 +214,7 @@ b0:
     const std::string before = print(fragment);
     LinkFacts facts;
     ASSERT_TRUE(linkStages(vertex, fragment, &facts).ok());
-    EXPECT_EQ(facts.liftedOperations, 0u);
+    EXPECT_EQ(facts.lifted.flat, 0u);
     EXPECT_EQ(print(fragment), before);
 }
 
