@@ -116,19 +116,13 @@ void runFetch(const TextureUnit& unit, const ImageCall& call) {
     FetchRequest request;
     request.lanes = call.lanes;
     request.mask = call.mask;
-    placeCoordinates(call, request.coord, [](const uint32_t* lanes) { return asInt(lanes); });
+    placeTexel(call, request.coord);
     request.lod = asInt(call.lodOrBias);
     request.sample = asInt(call.sample);
     for (size_t i = 0; i < 4; ++i) request.out[i] = asFloat(call.result[i]);
     if (!call.offset[0]) return unit.fetch(*unit.view, request);
     forEachOffset(call, [&](const uint32_t* mask, const TexelOffset& offset) {
         request.mask = mask;
-<<<<<<< HEAD
-=======
-        placeTexel(call, request.coord);
-        request.lod = call.lodOrBias ? asInt(call.lodOrBias) : nullptr;
-        request.sample = call.sample ? asInt(call.sample) : nullptr;
->>>>>>> 64daab2 (Places in buffers do not wrap around 32 bits, wide values are inside as a whole, storage images of cube arrays)
         std::copy(offset.begin(), offset.end(), request.offset);
         unit.fetch(*unit.view, request);
     });
