@@ -128,11 +128,11 @@ VnResult vnBindVertexBuffer(VnContext context, uint32_t binding, VnBuffer buffer
 
 VnResult vnBindIndexBuffer(VnContext context, VnBuffer buffer, uint64_t offset, VkIndexType type) {
     return guardedContext(context, __func__, [&] {
-        if (type != VK_INDEX_TYPE_UINT16 && type != VK_INDEX_TYPE_UINT32)
+        if (type != VK_INDEX_TYPE_UINT8_EXT && type != VK_INDEX_TYPE_UINT16 && type != VK_INDEX_TYPE_UINT32)
             return invalid(context->device, "vnBindIndexBuffer", "type is " + std::to_string(type));
         const auto object = context->device->buffers.find(buffer.id);
         if (buffer.id && !object) return badHandle(context->device, "vnBindIndexBuffer", "buffer");
-        const uint64_t size = type == VK_INDEX_TYPE_UINT16 ? 2 : 4;
+        const uint64_t size = type == VK_INDEX_TYPE_UINT8_EXT ? 1 : type == VK_INDEX_TYPE_UINT16 ? 2 : 4;
         if (object && (offset > object->buffer.size() || offset % size != 0))
             return invalid(
                 context->device, "vnBindIndexBuffer",

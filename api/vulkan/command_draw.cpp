@@ -19,6 +19,12 @@ void recordDraw(VkCommandBuffer handle, const char* name, const Command& command
     });
 }
 
+/// Element `index` of an array whose elements are `stride` bytes apart.
+template <class Element>
+const Element* elementAt(const Element* first, uint32_t index, uint32_t stride) {
+    return reinterpret_cast<const Element*>(reinterpret_cast<const std::byte*>(first) + size_t{index} * stride);
+}
+
 /// Whether the attachment that a clear names exists in the subpass.
 bool clears(const SubpassFormats& formats, const VkClearAttachment& attachment) {
     if (attachment.aspectMask == VK_IMAGE_ASPECT_COLOR_BIT) {
@@ -52,6 +58,46 @@ VKAPI_ATTR void VKAPI_CALL CmdDrawIndexedIndirect(VkCommandBuffer commandBuffer,
                                                   uint32_t drawCount, uint32_t stride) {
     recordDraw(commandBuffer, "vkCmdDrawIndexedIndirect",
                command::DrawIndirect{true, {object(buffer), offset}, drawCount, stride, {}});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdDrawIndirectCount(VkCommandBuffer commandBuffer, VkBuffer buffer, VkDeviceSize offset,
+                                                VkBuffer countBuffer, VkDeviceSize countBufferOffset,
+                                                uint32_t maxDrawCount, uint32_t stride) {
+    recordDraw(commandBuffer, "vkCmdDrawIndirectCount",
+               command::DrawIndirect{
+                   false, {object(buffer), offset}, maxDrawCount, stride, {object(countBuffer), countBufferOffset}});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdDrawIndexedIndirectCount(VkCommandBuffer commandBuffer, VkBuffer buffer,
+                                                       VkDeviceSize offset, VkBuffer countBuffer,
+                                                       VkDeviceSize countBufferOffset, uint32_t maxDrawCount,
+                                                       uint32_t stride) {
+    recordDraw(commandBuffer, "vkCmdDrawIndexedIndirectCount",
+               command::DrawIndirect{
+                   true, {object(buffer), offset}, maxDrawCount, stride, {object(countBuffer), countBufferOffset}});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdDrawMultiEXT(VkCommandBuffer commandBuffer, uint32_t drawCount,
+                                           const VkMultiDrawInfoEXT* pVertexInfo, uint32_t instanceCount,
+                                           uint32_t firstInstance, uint32_t stride) {
+    for (uint32_t i = 0; i < drawCount; ++i) {
+        const VkMultiDrawInfoEXT& draw = *elementAt(pVertexInfo, i, stride);
+        recordDraw(commandBuffer, "vkCmdDrawMultiEXT",
+                   command::Draw{false, draw.vertexCount, instanceCount, draw.firstVertex, firstInstance, 0, i});
+    }
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdDrawMultiIndexedEXT(VkCommandBuffer commandBuffer, uint32_t drawCount,
+                                                  const VkMultiDrawIndexedInfoEXT* pIndexInfo, uint32_t instanceCount,
+                                                  uint32_t firstInstance, uint32_t stride,
+                                                  const int32_t* pVertexOffset) {
+    for (uint32_t i = 0; i < drawCount; ++i) {
+        const VkMultiDrawIndexedInfoEXT& draw = *elementAt(pIndexInfo, i, stride);
+        const int32_t vertexOffset = pVertexOffset != nullptr ? *pVertexOffset : draw.vertexOffset;
+        recordDraw(
+            commandBuffer, "vkCmdDrawMultiIndexedEXT",
+            command::Draw{true, draw.indexCount, instanceCount, draw.firstIndex, firstInstance, vertexOffset, i});
+    }
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdClearAttachments(VkCommandBuffer commandBuffer, uint32_t attachmentCount,

@@ -99,8 +99,9 @@ VKAPI_ATTR void VKAPI_CALL CmdBindVertexBuffers(VkCommandBuffer commandBuffer, u
 VKAPI_ATTR void VKAPI_CALL CmdBindIndexBuffer(VkCommandBuffer commandBuffer, VkBuffer buffer, VkDeviceSize offset,
                                               VkIndexType indexType) {
     recording(commandBuffer, [&](CommandBuffer& into) {
-        if (indexType != VK_INDEX_TYPE_UINT16 && indexType != VK_INDEX_TYPE_UINT32) {
-            return into.fail("vkCmdBindIndexBuffer", "indexType must be UINT16 or UINT32");
+        if (indexType != VK_INDEX_TYPE_UINT16 && indexType != VK_INDEX_TYPE_UINT32 &&
+            indexType != VK_INDEX_TYPE_UINT8_EXT) {
+            return into.fail("vkCmdBindIndexBuffer", "indexType must be UINT8, UINT16 or UINT32");
         }
         into.stream.record(command::BindIndexBuffer{{object(buffer), offset}, indexType});
     });
@@ -137,6 +138,15 @@ VKAPI_ATTR void VKAPI_CALL CmdSetDepthBias(VkCommandBuffer commandBuffer, float 
 VKAPI_ATTR void VKAPI_CALL CmdSetBlendConstants(VkCommandBuffer commandBuffer, const float blendConstants[4]) {
     record(commandBuffer,
            command::SetBlendConstants{{blendConstants[0], blendConstants[1], blendConstants[2], blendConstants[3]}});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetColorWriteEnableEXT(VkCommandBuffer commandBuffer, uint32_t attachmentCount,
+                                                     const VkBool32* pColorWriteEnables) {
+    uint32_t mask = ~0u;
+    for (uint32_t i = 0; i < std::min(attachmentCount, kMaxColorAttachments); ++i) {
+        if (pColorWriteEnables[i] == VK_FALSE) mask &= ~(1u << i);
+    }
+    record(commandBuffer, command::SetColorWrites{mask});
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdSetDepthBounds(VkCommandBuffer commandBuffer, float minDepthBounds,

@@ -61,6 +61,8 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateImage(VkDevice device, const VkImageCreateI
         info.samples = static_cast<uint32_t>(pCreateInfo->samples);
         info.tiling = pCreateInfo->tiling;
         info.usage = pCreateInfo->usage;
+        if (const auto* stencil = findInChain<VkImageStencilUsageCreateInfo>(pCreateInfo->pNext))
+            info.usage |= stencil->stencilUsage;
         info.flags = pCreateInfo->flags;
         Result<Image> image = Image::create(info);
         if (!image) return owner.report("vkCreateImage", image.error());

@@ -192,6 +192,10 @@ void fillPropertyChain(const Accuracy& accuracy, void* chain) {
         p->sampleLocationSubPixelBits = kSampleLocationBits;
         p->variableSampleLocations = VK_TRUE;
     }
+    if (auto* p = findInChain<VkPhysicalDeviceVertexAttributeDivisorPropertiesEXT>(chain)) {
+        p->maxVertexAttribDivisor = UINT32_MAX;
+    }
+    if (auto* p = findInChain<VkPhysicalDeviceMultiDrawPropertiesEXT>(chain)) p->maxMultiDrawCount = UINT32_MAX;
     if (auto* p = findInChain<VkPhysicalDeviceCustomBorderColorPropertiesEXT>(chain)) {
         p->maxCustomBorderColorSamplers = UINT32_MAX;
     }

@@ -47,6 +47,14 @@ Status readVertexInput(const VkGraphicsPipelineCreateInfo& info, GraphicsState& 
         }
         state.vertexBindings.push_back(binding);
     }
+    if (const auto* divisors = findInChain<VkPipelineVertexInputDivisorStateCreateInfoEXT>(input->pNext)) {
+        for (uint32_t i = 0; i < divisors->vertexBindingDivisorCount; ++i) {
+            const VkVertexInputBindingDivisorDescriptionEXT& divisor = divisors->pVertexBindingDivisors[i];
+            if (divisor.binding >= kMaxVertexBindings)
+                return aboveLimit("vertex binding with a divisor", divisor.binding, kMaxVertexBindings - 1);
+            state.instanceDivisors[divisor.binding] = divisor.divisor;
+        }
+    }
     for (uint32_t i = 0; i < input->vertexAttributeDescriptionCount; ++i) {
         const VkVertexInputAttributeDescription& attribute = input->pVertexAttributeDescriptions[i];
         if (attribute.location >= kMaxVertexAttributes) {
@@ -156,6 +164,13 @@ Status readBlend(const VkPipelineColorBlendStateCreateInfo* info, const SubpassF
     result.state.logicOpEnable = info->logicOpEnable != VK_FALSE;
     result.state.logicOp = info->logicOp;
     std::copy_n(info->pAttachments, info->attachmentCount, result.state.blend.begin());
+    const auto* writes = findInChain<VkPipelineColorWriteCreateInfoEXT>(info->pNext);
+    if (writes != nullptr && !isDynamic(result, VK_DYNAMIC_STATE_COLOR_WRITE_ENABLE_EXT)) {
+        const uint32_t count = std::min(writes->attachmentCount, info->attachmentCount);
+        for (uint32_t i = 0; i < count; ++i) {
+            if (writes->pColorWriteEnables[i] == VK_FALSE) result.state.blend[i].colorWriteMask = 0;
+        }
+    }
     std::copy_n(info->blendConstants, result.fixed.blendConstants.size(), result.fixed.blendConstants.begin());
     return {};
 }

@@ -38,6 +38,10 @@ VKAPI_ATTR void VKAPI_CALL DestroyQueryPool(VkDevice, VkQueryPool queryPool, con
     destroyHandle(pAllocator, queryPool);
 }
 
+VKAPI_ATTR void VKAPI_CALL ResetQueryPool(VkDevice, VkQueryPool queryPool, uint32_t firstQuery, uint32_t queryCount) {
+    object(queryPool)->reset(firstQuery, queryCount);
+}
+
 VKAPI_ATTR VkResult VKAPI_CALL GetQueryPoolResults(VkDevice device, VkQueryPool queryPool, uint32_t firstQuery,
                                                    uint32_t queryCount, size_t dataSize, void* pData,
                                                    VkDeviceSize stride, VkQueryResultFlags flags) {

@@ -110,6 +110,9 @@ struct SetDepthBias {
 struct SetBlendConstants {
     std::array<float, 4> constants{};
 };
+struct SetColorWrites {
+    uint32_t mask = ~0u;
+};
 struct SetDepthBounds {
     float min = 0, max = 1;
 };
@@ -125,6 +128,7 @@ struct Draw {
     bool indexed = false;
     uint32_t count = 0, instances = 1, first = 0, firstInstance = 0;
     int32_t vertexOffset = 0;
+    uint32_t drawIndex = 0;
 };
 struct DrawIndirect {
     bool indexed = false;

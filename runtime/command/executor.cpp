@@ -31,6 +31,7 @@ void applyFixedState(const DynamicState& fixed, uint32_t dynamicMask, DynamicSta
         state.depthBiasSlope = fixed.depthBiasSlope;
     }
     if (isFixed(VK_DYNAMIC_STATE_BLEND_CONSTANTS)) state.blendConstants = fixed.blendConstants;
+    if (isFixed(VK_DYNAMIC_STATE_COLOR_WRITE_ENABLE_EXT)) state.colorWrites = fixed.colorWrites;
     if (isFixed(VK_DYNAMIC_STATE_DEPTH_BOUNDS)) {
         state.minDepthBounds = fixed.minDepthBounds;
         state.maxDepthBounds = fixed.maxDepthBounds;
@@ -189,6 +190,11 @@ void Executor::run(const command::SetBlendConstants& command) {
     dynamicSnapshot_ = nullptr;
 }
 
+void Executor::run(const command::SetColorWrites& command) {
+    dynamic_.colorWrites = command.mask;
+    dynamicSnapshot_ = nullptr;
+}
+
 void Executor::run(const command::SetDepthBounds& command) {
     dynamic_.minDepthBounds = command.min;
     dynamic_.maxDepthBounds = command.max;
@@ -234,7 +240,7 @@ void Executor::addStreams() {
     pass_->geometry.read(indices_.data, indices_.size);
 }
 
-void Executor::draw(const command::Draw& command, uint32_t drawIndex) {
+void Executor::draw(const command::Draw& command) {
     if (!pipeline_ || pass_ == nullptr || command.count == 0 || command.instances == 0) return;
     if (command.indexed && !indices_.data) return;
     refreshDrawBindings();
@@ -252,13 +258,13 @@ void Executor::draw(const command::Draw& command, uint32_t drawIndex) {
     call.first = command.first;
     call.vertexOffset = command.vertexOffset;
     call.firstInstance = command.firstInstance;
-    call.drawIndex = drawIndex;
+    call.drawIndex = command.drawIndex;
     pass_->pass.draw(call);
     if (pass_->pass.recordedDraws() >= kDrawsPerFlush) catchUp();
 }
 
 void Executor::run(const command::Draw& command) {
-    draw(command, 0);
+    draw(command);
 }
 
 void Executor::run(const command::DrawIndirect& command) {
@@ -279,11 +285,11 @@ void Executor::run(const command::DrawIndirect& command) {
         if (command.indexed) {
             const auto a = argumentsAt<VkDrawIndexedIndirectCommand>(command.arguments, offset);
             if (!a) return;
-            draw({true, a->indexCount, a->instanceCount, a->firstIndex, a->firstInstance, a->vertexOffset}, i);
+            draw({true, a->indexCount, a->instanceCount, a->firstIndex, a->firstInstance, a->vertexOffset, i});
         } else {
             const auto a = argumentsAt<VkDrawIndirectCommand>(command.arguments, offset);
             if (!a) return;
-            draw({false, a->vertexCount, a->instanceCount, a->firstVertex, a->firstInstance, 0}, i);
+            draw({false, a->vertexCount, a->instanceCount, a->firstVertex, a->firstInstance, 0, i});
         }
     }
 }

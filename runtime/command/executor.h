@@ -57,7 +57,7 @@ class Executor {
     void catchUp();
     void addStreams();
 
-    void draw(const command::Draw& command, uint32_t drawIndex);
+    void draw(const command::Draw& command);
     void refreshDrawBindings();
     void dispatch(const DispatchWork& work);
     void runDispatch(const DispatchWork& work);

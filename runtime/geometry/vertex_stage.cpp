@@ -25,7 +25,9 @@ void fetchAttribute(const PreparedDraw& draw, const AttributeFetch& fetch, const
     const std::byte* texels[kMaxBatchLanes];
     for (uint32_t n = 0; n < count; ++n)
         texels[n] = locate(stream, fetch,
-                           fetch.perInstance ? uint64_t{draw.call.firstInstance} + refs[n].instance : refs[n].index);
+                           fetch.perInstance ? uint64_t{draw.call.firstInstance} +
+                                                   (fetch.divisor == 0 ? 0 : refs[n].instance / fetch.divisor)
+                                             : refs[n].index);
     void* planes[4];
     for (uint32_t c = 0; c < 4; ++c) planes[c] = fetch.slots[c] == kNoSlot ? nullptr : context.input(fetch.slots[c]);
     if (!fetch.words) {

@@ -88,10 +88,8 @@ Status checkAttachments(const GraphicsState& state) {
     return {};
 }
 
-Status refuseBuiltins(const ir::Program& program) {
+Status checkDistances(const ir::Program& program) {
     for (const ir::InterfaceSlot& slot : program.outputs) {
-        if (slot.builtin == ir::Builtin::fragStencilRef)
-            return unsupported("fragment shader: writing gl_FragStencilRefARB is not supported");
         const bool distance = slot.builtin == ir::Builtin::clipDistance || slot.builtin == ir::Builtin::cullDistance;
         if (distance && slot.component >= kMaxClipDistances)
             return unsupported("vertex shader: more than " + number(kMaxClipDistances) + " clip or cull distances");
@@ -110,8 +108,8 @@ Status checkGraphicsState(const GraphicsState& state, const Accuracy& accuracy) 
     return {};
 }
 
-Status checkInterfaces(const GraphicsState& state, const ir::Program& vertex, const ir::Program* fragment) {
-    if (Status status = refuseBuiltins(vertex); !status) return status;
+Status checkInterfaces(const GraphicsState& state, const ir::Program& vertex) {
+    if (Status status = checkDistances(vertex); !status) return status;
     for (const ir::InterfaceSlot& slot : vertex.inputs) {
         if (slot.builtin != ir::Builtin::user) continue;
         const bool found = std::any_of(state.vertexAttributes.begin(), state.vertexAttributes.end(),
@@ -120,8 +118,7 @@ Status checkInterfaces(const GraphicsState& state, const ir::Program& vertex, co
             return invalidArgument("vertex shader: input location " + number(slot.location) +
                                    " has no vertex attribute");
     }
-    if (fragment == nullptr) return {};
-    return refuseBuiltins(*fragment);
+    return {};
 }
 
 }  // namespace vernier

@@ -10,6 +10,6 @@ namespace vernier {
 Status checkGraphicsState(const GraphicsState& state, const Accuracy& accuracy);
 
 /// Checks the shaders against the state and each other.
-Status checkInterfaces(const GraphicsState& state, const ir::Program& vertex, const ir::Program* fragment);
+Status checkInterfaces(const GraphicsState& state, const ir::Program& vertex);
 
 }  // namespace vernier

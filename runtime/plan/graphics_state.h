@@ -15,6 +15,7 @@ namespace vernier {
 /// Everything fixed when a pipeline is created, shaders aside. Values that a draw takes from DynamicState are not here.
 struct GraphicsState {
     std::vector<VkVertexInputBindingDescription> vertexBindings;
+    std::array<uint32_t, kMaxVertexBindings> instanceDivisors = allOnes();  // by binding
     std::vector<VkVertexInputAttributeDescription> vertexAttributes;
     VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
     bool primitiveRestart = false;
@@ -53,6 +54,13 @@ struct GraphicsState {
     uint32_t colorCount = 0;
     std::array<VkFormat, kMaxColorAttachments> colorFormats{};  // VK_FORMAT_UNDEFINED: unused
     VkFormat depthStencilFormat = VK_FORMAT_UNDEFINED;
+
+  private:
+    static constexpr std::array<uint32_t, kMaxVertexBindings> allOnes() {
+        std::array<uint32_t, kMaxVertexBindings> ones{};
+        ones.fill(1);
+        return ones;
+    }
 };
 
 /// A bit for each VkDynamicState that is supported; 0 for the others.
@@ -63,6 +71,8 @@ constexpr uint32_t dynamicStateBit(VkDynamicState state) {
             return 1u << 9;
         case VK_DYNAMIC_STATE_LINE_STIPPLE_EXT:
             return 1u << 10;
+        case VK_DYNAMIC_STATE_COLOR_WRITE_ENABLE_EXT:
+            return 1u << 11;
         default:
             return 0;
     }
@@ -78,6 +88,7 @@ struct DynamicState {
     uint16_t lineStipplePattern = 0xFFFF;
     float depthBiasConstant = 0, depthBiasClamp = 0, depthBiasSlope = 0;
     std::array<float, 4> blendConstants{};
+    uint32_t colorWrites = ~0u;  // a bit per attachment: 0 leaves it as it is
     float minDepthBounds = 0, maxDepthBounds = 1;
     std::array<SamplePosition, kMaxSamples> sampleLocations{};  // where GraphicsState::sampleLocations asks for them
     struct StencilFace {

@@ -12,8 +12,7 @@ Result<std::shared_ptr<const GraphicsPipeline>> GraphicsPipeline::create(const G
     if (desc.program == nullptr) return invalidArgument("GraphicsPipelineDesc::program is null");
     const ShaderProgram& program = *desc.program;
     if (Status status = checkGraphicsState(desc.state, program.accuracy()); !status) return status.error();
-    if (Status status = checkInterfaces(desc.state, program.vertexIr(), program.fragmentIr()); !status)
-        return status.error();
+    if (Status status = checkInterfaces(desc.state, program.vertexIr()); !status) return status.error();
     std::shared_ptr<GraphicsPipeline> pipeline(new GraphicsPipeline());
     pipeline->state_ = desc.state;
     pipeline->program_ = desc.program;

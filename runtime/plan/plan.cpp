@@ -48,6 +48,7 @@ void planAttributes(const GraphicsState& state, const ir::Program& vertex, Isa i
             if (binding.binding != description.binding) continue;
             fetch.stride = binding.stride;
             fetch.perInstance = binding.inputRate == VK_VERTEX_INPUT_RATE_INSTANCE;
+            fetch.divisor = state.instanceDivisors[binding.binding];
         }
         plan.attributes.push_back(fetch);
     }
@@ -147,6 +148,11 @@ bool isIdle(const VkStencilOpState& face) {
            face.depthFailOp == VK_STENCIL_OP_KEEP;
 }
 
+bool writesStencilRef(const ir::Program& fragment) {
+    return std::any_of(fragment.outputs.begin(), fragment.outputs.end(),
+                       [](const ir::InterfaceSlot& output) { return output.builtin == ir::Builtin::fragStencilRef; });
+}
+
 void planDepth(const GraphicsState& state, const ir::Program* fragment, Plan& plan) {
     DepthPlan& depth = plan.depth;
     const FormatInfo* info = findFormat(state.depthStencilFormat);
@@ -166,7 +172,8 @@ void planDepth(const GraphicsState& state, const ir::Program* fragment, Plan& pl
     const bool writes =
         depth.write || (depth.stencil && (changesStencil(state.stencilFront) || changesStencil(state.stencilBack)));
     const bool dropsFragments = fragment->canDiscard || fragment->writesSampleMask || state.alphaToCoverage;
-    depth.early = !fragment->writesDepth && !fragment->hasSideEffects && !(writes && dropsFragments);
+    const bool exportsStencil = depth.stencil && writesStencilRef(*fragment);
+    depth.early = !fragment->writesDepth && !exportsStencil && !fragment->hasSideEffects && !(writes && dropsFragments);
 }
 
 /// src * 1 + dst * 0: the source itself.
@@ -222,6 +229,7 @@ void planFragments(const GraphicsState& state, const ir::Program& fragment, Isa 
     for (uint32_t n = 0; n < state.colorCount; ++n) planColor(state, fragment, n, isa, plan);
     for (uint32_t slot = 0; slot < fragment.outputs.size(); ++slot) {
         if (fragment.outputs[slot].builtin == ir::Builtin::fragDepth) plan.fragDepthSlot = slot;
+        if (fragment.outputs[slot].builtin == ir::Builtin::fragStencilRef) plan.stencilRefSlot = slot;
         if (fragment.outputs[slot].builtin == ir::Builtin::sampleMask && fragment.outputs[slot].component == 0)
             plan.sampleMaskSlot = slot;
         if (fragment.outputs[slot].builtin == ir::Builtin::user && fragment.outputs[slot].location == 0 &&
@@ -274,6 +282,7 @@ Plan makePlan(const GraphicsState& state, const ShaderProgram& program) {
     plan.alphaToOne = state.alphaToOne;
     plan.smoothLines = state.lineMode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT && drawsLines(state);
     plan.preciseInterpolation = accuracy.interpolation == InterpolationArithmetic::doubleFloat;
+    // minSampleShading asks for "a minimum number" of shaded samples: all of them are shaded where more than one is.
     plan.perSample = state.samples > 1 && fragment != nullptr &&
                      (fragment->perSample ||
                       (state.sampleShading && state.minSampleShading * static_cast<float>(state.samples) > 1));

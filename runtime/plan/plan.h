@@ -36,6 +36,7 @@ struct AttributeFetch {
     uint32_t texelBytes = 0;
     uint32_t binding = 0, offset = 0, stride = 0;
     bool perInstance = false;
+    uint32_t divisor = 1;    // instances that read the same texel; 0: all
     uint32_t alphaBits = 0;  // what A is when the format has none: 1 as float or integer
     std::array<uint32_t, 4> slots{kNoSlot, kNoSlot, kNoSlot, kNoSlot};
 };
@@ -122,7 +123,7 @@ struct Plan {
     bool alphaToCoverage = false, alphaToOne = false;
     bool smoothLines = false;  // alpha of colour 0 is multiplied with what a line covers of the pixel
     std::vector<BuiltinSlot> fragmentBuiltins;
-    uint32_t fragDepthSlot = kNoSlot, sampleMaskSlot = kNoSlot, alphaSlot = kNoSlot;
+    uint32_t fragDepthSlot = kNoSlot, stencilRefSlot = kNoSlot, sampleMaskSlot = kNoSlot, alphaSlot = kNoSlot;
     DepthPlan depth;
     std::vector<ColorPlan> colors;  // the attachments that change
 

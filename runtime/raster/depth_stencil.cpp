@@ -108,7 +108,8 @@ size_t stencilOffset(DepthStorage storage) {
     }
 }
 
-bool testSample(const DepthStencilState& state, std::byte* texel, float z, bool front) {
+bool testSample(const DepthStencilState& state, std::byte* texel, float z, bool front,
+                const uint32_t* stencilReference) {
     const DepthPlan& plan = *state.plan;
     if (plan.bounds) {
         const float stored = storedDepth(plan.storage, texel);
@@ -123,7 +124,7 @@ bool testSample(const DepthStencilState& state, std::byte* texel, float z, bool 
     const DepthStencilState::Face& face = front ? state.front : state.back;
     std::byte* byte = texel + stencilOffset(plan.storage);
     const auto stored = static_cast<uint8_t>(*byte);
-    const auto reference = static_cast<uint8_t>(face.values.reference);
+    const auto reference = static_cast<uint8_t>(stencilReference ? *stencilReference : face.values.reference);
     const uint32_t mask = face.values.compareMask & 0xFF;
     const bool stencilPass = passes<uint32_t>(face.ops.compareOp, reference & mask, stored & mask);
     const bool depthPass = stencilPass && depthTest();

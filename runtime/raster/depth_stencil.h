@@ -36,6 +36,8 @@ struct DepthStencilState {
 size_t stencilOffset(DepthStorage storage);
 
 /// Bounds test, stencil test, depth test, and the writes they lead to. Returns whether the sample lives.
-bool testSample(const DepthStencilState& state, std::byte* texel, float z, bool front);
+/// `stencilReference`: replaces that of the face (FragStencilRefEXT); nullptr: the face's.
+bool testSample(const DepthStencilState& state, std::byte* texel, float z, bool front,
+                const uint32_t* stencilReference = nullptr);
 
 }  // namespace vernier

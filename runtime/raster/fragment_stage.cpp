@@ -387,12 +387,14 @@ void FragmentStage::reduceCoverage(FragmentBatch& batch) {
 
 void FragmentStage::testLate(FragmentBatch& batch) {
     const float* fragDepth = plan_->fragDepthSlot != kNoSlot ? context_->output(plan_->fragDepthSlot) : nullptr;
+    const float* stencilRef = plan_->stencilRefSlot != kNoSlot ? context_->output(plan_->stencilRefSlot) : nullptr;
     for (uint32_t s = 0; s < batch.segmentCount; ++s) {
         const FragmentSegment& part = batch.segments[s];
         const TrianglePlanes& planes = *part.planes;
         for (uint32_t lane = part.first; lane < part.first + part.count; ++lane) {
             const uint32_t covered = batch.coverage[lane];
-            uint32_t passed = 0;
+            uint32_t passed = 0, reference = 0;
+            if (stencilRef != nullptr) reference = std::bit_cast<uint32_t>(stencilRef[lane]);
             for (uint32_t rest = covered; rest != 0; rest &= rest - 1) {
                 const auto sample = static_cast<uint32_t>(std::countr_zero(rest));
                 const float z =
@@ -401,7 +403,9 @@ void FragmentStage::testLate(FragmentBatch& batch) {
                         : depthAt(planes, batch.x[lane], batch.y[lane], positions_[sample].x(), positions_[sample].y());
                 std::byte* texel = depthState_.target.texel(batch.x[lane], batch.y[lane], sample);
                 ++statistics_.depthReads;
-                if (testSample(depthState_, texel, z, planes.primitive->front)) passed |= 1u << sample;
+                if (testSample(depthState_, texel, z, planes.primitive->front,
+                               stencilRef != nullptr ? &reference : nullptr))
+                    passed |= 1u << sample;
             }
             batch.coverage[lane] = passed;
         }
@@ -419,6 +423,7 @@ void FragmentStage::bindColors(Isa isa) {
     for (const ColorPlan& plan : plan_->colors) {
         const RenderTarget& target = targets_->colors[plan.attachment];
         if (target.data == nullptr) continue;  // VK_ATTACHMENT_UNUSED
+        if ((draw_->call.dynamic->colorWrites >> plan.attachment & 1) == 0) continue;
         BoundColor& color = boundColors_[boundColorCount_++];
         color = {};
         color.general.plan = color.block.plan = &plan;

@@ -35,6 +35,7 @@ bool replacesColors(const PassTargets& targets, const PreparedDraw& draw) {
         return false;
     for (uint32_t attachment = 0; attachment < targets.colorCount; ++attachment) {
         if (targets.colors[attachment].data == nullptr) continue;
+        if ((draw.call.dynamic->colorWrites >> attachment & 1) == 0) return false;
         const auto color = std::find_if(plan.colors.begin(), plan.colors.end(),
                                         [&](const ColorPlan& each) { return each.attachment == attachment; });
         if (color == plan.colors.end() || color->path != ColorPath::store || color->readsDestination ||

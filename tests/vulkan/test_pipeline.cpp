@@ -126,7 +126,7 @@ VkPipeline DrawTest::makePipeline(VkRenderPass pass, const PipelineDesc& desc, V
     auto dynamic = make<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
     dynamic.dynamicStateCount = static_cast<uint32_t>(desc.dynamic.size());
     dynamic.pDynamicStates = desc.dynamic.data();
-    if (desc.change) desc.change({assembly, viewports, raster, multisample, depth, colors, blends});
+    if (desc.change) desc.change({input, assembly, viewports, raster, multisample, depth, colors, blends});
 
     auto info = make<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
     info.stageCount = static_cast<uint32_t>(stages.size());

@@ -23,6 +23,7 @@ class DrawTest : public VulkanTest {
 
     /// What a test may change before the pipeline is made of it.
     struct PipelineStates {
+        VkPipelineVertexInputStateCreateInfo& input;
         VkPipelineInputAssemblyStateCreateInfo& assembly;
         VkPipelineViewportStateCreateInfo& viewport;
         VkPipelineRasterizationStateCreateInfo& raster;

@@ -436,7 +436,7 @@ VN_API VnResult vnBindBlendState(VnContext context, VnBlendState state);
 
 /* Vertex buffer for vertex binding `binding` (0 .. 31); `offset` in bytes. {0} unbinds. Fetches outside give 0. */
 VN_API VnResult vnBindVertexBuffer(VnContext context, uint32_t binding, VnBuffer buffer, uint64_t offset);
-/* `type`: VK_INDEX_TYPE_UINT16 or VK_INDEX_TYPE_UINT32; `offset` in bytes, a multiple of the index size. */
+/* `type`: VK_INDEX_TYPE_UINT8_EXT, _UINT16 or _UINT32; `offset` in bytes, a multiple of the index size. */
 VN_API VnResult vnBindIndexBuffer(VnContext context, VnBuffer buffer, uint64_t offset, VkIndexType type);
 /* Uniform or storage buffer at (set, binding, element); set 0 .. 7, binding 0 .. 255, element 0 .. 255. `offset` is a
  * multiple of 4 bytes; `size` 0: to the end. {0} unbinds. Accesses outside read 0 and drop writes (64
