@@ -92,6 +92,33 @@ void fetch(const TextureView& view, const FetchRequest& request) {
     deliver(view, request, [&](void* const(&planes)[4]) { view.ops.unpackEach(texels, request.lanes, planes); });
 }
 
+/// The level that all lanes read, if it is one that exists and may be read.
+const TextureLevel* commonLevel(const TextureView& view, const FetchRequest& request) {
+    const uint32_t first = at(request.lod, 0);
+    uint32_t differences = 0;
+    for (uint32_t i = 0; request.lod != nullptr && i < request.lanes; ++i) differences |= at(request.lod, i) ^ first;
+    const bool exists = first < view.levelCount && first >= static_cast<uint32_t>(view.minLod);
+    return differences == 0 && exists ? &view.levels[first] : nullptr;
+}
+
+/// Of 2D images with one sample and texels of kBytes, with or without layers. As fetch(), in one pass: all lanes read,
+/// those outside the image the texel of zero bits.
+template <uint32_t kBytes>
+void fetchPlain(const TextureView& view, const FetchRequest& request) {
+    const TextureLevel* const level = commonLevel(view, request);
+    if (level == nullptr || request.sample != nullptr) return fetch(view, request);
+    const bool layered = view.type == VK_IMAGE_VIEW_TYPE_2D_ARRAY;
+    alignas(16) std::byte texels[kMaxSampleLanes * kBytes];
+    for (uint32_t i = 0; i < request.lanes; ++i) {
+        const uint32_t x = at(request.coord[0], i, request.offset[0]), y = at(request.coord[1], i, request.offset[1]);
+        const uint32_t layer = layered ? at(request.coord[3], i) : 0;
+        const bool inside = x < level->width && y < level->height && layer < view.layerCount;
+        const uint64_t place = layer * level->slicePitch + uint64_t{y} * level->rowPitch + uint64_t{x} * kBytes;
+        std::memcpy(texels + i * kBytes, inside ? level->data + place : kZeroTexel, kBytes);
+    }
+    deliver(view, request, [&](void* const(&planes)[4]) { view.ops.unpack(texels, request.lanes, planes); });
+}
+
 void fetchBlocks(const TextureView& view, const FetchRequest& request) {
     alignas(16) std::byte texels[kMaxSampleLanes * kMaxDecodedBytes];
     const uint32_t bytes = view.ops.layout.bytes;
@@ -107,7 +134,19 @@ void fetchBlocks(const TextureView& view, const FetchRequest& request) {
 
 // The conversion in view.ops is the part that depends on the instruction set.
 FetchFn selectFetch(const TextureView& view, Isa) {
-    return view.block != nullptr ? fetchBlocks : fetch;
+    if (view.block != nullptr) return fetchBlocks;
+    const bool flat = view.type == VK_IMAGE_VIEW_TYPE_2D || view.type == VK_IMAGE_VIEW_TYPE_2D_ARRAY;
+    if (!flat || view.samples != 1 || view.texelPitch != view.ops.layout.bytes) return fetch;
+    switch (view.texelPitch) {
+        case 4:
+            return fetchPlain<4>;
+        case 8:
+            return fetchPlain<8>;
+        case 16:
+            return fetchPlain<16>;
+        default:
+            return fetch;
+    }
 }
 
 }  // namespace vernier

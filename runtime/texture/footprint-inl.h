@@ -40,17 +40,20 @@ struct SampleCall {
         return hn::NearestInt(
             clampOrLowV(coordinate(3, first, count), hn::Zero(F32()), splatFloat(static_cast<float>(layers - 1))));
     }
+    /// The first lane of the vector from `first` on that has an active lane; request.lanes or more if there is none.
+    HWY_INLINE uint32_t activeVector(uint32_t first) const {
+        if (HWY_LIKELY(request.mask == nullptr)) return first;
+        for (; first < request.lanes; first += kVectorLanes) {
+            const VU active = loadLanes(request.mask, first, request.lanes - first);
+            if (!hn::AllTrue(U32(), hn::Eq(active, hn::Zero(U32())))) break;
+        }
+        return first;
+    }
     /// step(first, lanes left) for every vector that has an active lane.
     template <class Step>
     HWY_INLINE void forEachVector(Step step) const {
-        for (uint32_t first = 0; first < request.lanes; first += kVectorLanes) {
-            const uint32_t count = request.lanes - first;
-            if (request.mask != nullptr) {
-                const VU active = loadLanes(request.mask, first, count);
-                if (hn::AllTrue(U32(), hn::Eq(active, hn::Zero(U32())))) continue;
-            }
-            step(first, count);
-        }
+        for (uint32_t first = activeVector(0); first < request.lanes; first = activeVector(first + kVectorLanes))
+            step(first, request.lanes - first);
     }
 };
 

@@ -107,7 +107,7 @@ struct SampleRequest {
     int32_t offset[3] = {};  // texels
     uint32_t component = 0;  // gather: 0..3, after the view's swizzle has its say
     // Receives floats, or the bits of uint32/int32 values for integer formats; null = not wanted. A
-    // comparison gives its result in out[0] alone (gather: in all four).
+    // comparison gives its result in out[0] alone (gather: in all four). May be the arrays of coordinates or of dref.
     float* out[4] = {};
 };
 

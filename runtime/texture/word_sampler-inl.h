@@ -128,16 +128,27 @@ class WordSampler {
   public:
     explicit WordSampler(const SampleCall& call)
         : call_(call), words_(call), border_(splatBits(call.sampler.borderColor.uint32[0])) {
-        for (uint32_t c = 0; c < Words::kOutputs; ++c) {
-            out_[c] = call.request.out[c];
-            const std::optional<uint32_t> constant = words_.constant(c);
-            if (out_[c] == nullptr || !constant) continue;
-            std::fill_n(out_[c], call.request.lanes, std::bit_cast<float>(*constant));
-            out_[c] = nullptr;
-        }
+        for (uint32_t c = 0; c < Words::kOutputs; ++c) out_[c] = words_.constant(c) ? nullptr : call.request.out[c];
     }
 
     HWY_INLINE void sample() {
+        sampleTexels();
+        // Last, for outputs may take the place of coordinates.
+        for (uint32_t c = 0; c < Words::kOutputs; ++c) {
+            const std::optional<uint32_t> constant = words_.constant(c);
+            if (!constant || call_.request.out[c] == nullptr) continue;
+            std::fill_n(call_.request.out[c], call_.request.lanes, std::bit_cast<float>(*constant));
+        }
+    }
+
+  private:
+    using Taps = WordTaps<kLinear>;
+    struct Point {
+        VF s, t;
+        VI slice;
+    };
+
+    HWY_INLINE void sampleTexels() {
         const TextureView& view = call_.view;
         if constexpr (kLevels) {
             alignas(64) float lambdas[kLambdaLanes];
@@ -162,28 +173,31 @@ class WordSampler {
         } else {
             const TextureLevel& level = view.levels[onlyLevel(view, call_.sampler).value_or(0)];
             const WordLevel whole(level, hn::Zero(I32()));
-            call_.forEachVector([&](uint32_t first, uint32_t count) VERNIER_INLINE_LAMBDA {
-                const Point at = point(first, count);
-                Taps taps;
+            const auto read = [&](uint32_t first, Taps& taps) VERNIER_INLINE_LAMBDA {
+                const Point at = point(first, call_.request.lanes - first);
                 if (HWY_LIKELY(view.layerCount == 1)) {
                     readTaps<kWrap>(whole, at.s, at.t, border_, taps);
                 } else {
                     readLevel(level, at, taps);
                 }
-                write(first, count, [&](uint32_t c) VERNIER_INLINE_LAMBDA { return filtered(taps, c); });
-            });
+            };
+            // The texels of the next vector are on their way while this one is filtered.
+            uint32_t first = call_.activeVector(0);
+            if (first >= call_.request.lanes) return;
+            Taps next;
+            read(first, next);
+            while (first < call_.request.lanes) {
+                const Taps taps = next;
+                const uint32_t after = call_.activeVector(first + kVectorLanes);
+                if (after < call_.request.lanes) read(after, next);
+                write(first, call_.request.lanes - first,
+                      [&](uint32_t c) VERNIER_INLINE_LAMBDA { return filtered(taps, c); });
+                first = after;
+            }
         }
     }
 
-  private:
-    using Taps = WordTaps<kLinear>;
-    struct Point {
-        VF s, t;
-        VI slice;
-    };
-
-    HWY_INLINE Point point(uint32_t first, uint32_t count) {
-        words_.beginVector(first, count);
+    HWY_INLINE Point point(uint32_t first, uint32_t count) const {
         // A 1D image is one row, met in the middle.
         const VF t = call_.isOneDimensional() ? splatFloat(0.5f) : call_.coordinate(1, first, count);
         return {call_.coordinate(0, first, count), t, call_.layer(call_.view.layerCount, first, count)};
@@ -229,7 +243,8 @@ class WordSampler {
     }
 
     template <class Value>
-    HWY_INLINE void write(uint32_t first, uint32_t count, Value value) const {
+    HWY_INLINE void write(uint32_t first, uint32_t count, Value value) {
+        words_.beginVector(first, count);
         unrolled<Words::kOutputs>([&](auto c) VERNIER_INLINE_LAMBDA {
             if (out_[c] != nullptr) storeLanes(bitsOf(words_.finish(value(c))), out_[c], first, count);
         });
@@ -237,7 +252,7 @@ class WordSampler {
 
     const SampleCall& call_;
     Words words_;
-    float* out_[Words::kOutputs] = {};  // null: not wanted, or written
+    float* out_[Words::kOutputs] = {};  // null: not wanted, or constant
     const VU border_;                   // of one component
 };
 
