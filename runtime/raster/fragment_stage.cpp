@@ -253,18 +253,19 @@ void FragmentStage::addSamples(const BlockCoverage& block, uint32_t sample) {
 
 /// Quads with a covered pixel, four lanes each: upper left, upper right, lower left, lower right.
 void FragmentStage::addQuads(const BlockCoverage& block, uint64_t any, uint32_t samples, uint32_t sample) {
-    uint64_t quads = quadsOf(any);
     const SamplePosition position = positions_[sample];
     const uint32_t wanted = ((1u << samples) - 1) << sample;
-    for (; quads != 0; quads &= quads - 1) {
+    for (uint64_t quads = quadsOf(any); quads != 0; quads &= quads - 1) {
         reserve(4);
         const auto origin = static_cast<uint32_t>(std::countr_zero(quads));
         for (const uint32_t bit : {origin, origin + 8}) {
             const uint32_t first = appendSpan(tileX_ + block.x + static_cast<int32_t>(bit & 7),
                                               tileY_ + block.y + static_cast<int32_t>(bit >> 3), 2);
             for (uint32_t n = 0; n < 2; ++n) {
-                batch_.coverage[first + n] = coverageOf(block, bit + n, samples_) & wanted;
-                batch_.store[first + n] = batch_.coverage[first + n] != 0 ? ~0u : 0u;
+                const uint32_t coverage = samples_ == 1 ? static_cast<uint32_t>(any >> (bit + n) & 1)
+                                                        : coverageOf(block, bit + n, samples_) & wanted;
+                batch_.coverage[first + n] = coverage;
+                batch_.store[first + n] = coverage != 0 ? ~0u : 0u;
                 batch_.sample[first + n] = sample;
                 batch_.offsetX[first + n] = position.x();
                 batch_.offsetY[first + n] = position.y();

@@ -143,6 +143,9 @@ uint32_t TileRenderer::testEarly(const PreparedDraw& draw, const TrianglePlanes&
 
 void TileRenderer::draw(const Primitive& primitive, const Chunk& chunk, const PreparedDraw& draw, bool coversTile) {
     const Plan& plan = *draw.plan;
+    // What interpolation reads comes while coverage and depth are worked out.
+    if (!plan.varyings.empty())
+        for (const uint32_t vertex : primitive.attributes) __builtin_prefetch(chunk.attributes.data() + vertex);
     uint32_t count = 0;
     const Shape* shape = primitive.shape == kNoShape ? nullptr : &chunk.shapes[primitive.shape];
     if (shape != nullptr) {
