@@ -23,6 +23,54 @@ constexpr std::array<Position, 5> kDial{{
 }};
 static_assert(kDial.size() == std::size(kProfiles));
 
+constexpr const char* kSubPixelPositions[] = {"4", "8", "12", "16"};
+constexpr const char* kInterpolationPositions[] = {"float", "double"};
+constexpr const char* kMathPositions[] = {"fast", "standard", "fine", "reference"};
+
+template <class Field, Field Accuracy::*kField>
+constexpr Axis enumAxis(const char* name, const char* meaning, std::span<const char* const> positions,
+                        size_t lowestForVulkan) {
+    return {name,
+            meaning,
+            positions,
+            lowestForVulkan,
+            [](const Accuracy& accuracy) { return static_cast<size_t>(accuracy.*kField); },
+            [](Accuracy& accuracy, size_t position) { accuracy.*kField = static_cast<Field>(position); }};
+}
+
+constexpr Axis kAxes[] = {
+    {"subpixel", "bits of a pixel that vertices are snapped to; Vulkan asks for 4", kSubPixelPositions, 0,
+     [](const Accuracy& accuracy) -> size_t { return accuracy.subPixelBits / 4 - 1; },
+     [](Accuracy& accuracy, size_t position) { accuracy.subPixelBits = static_cast<uint32_t>(position + 1) * 4; }},
+    enumAxis<Interpolation, &Accuracy::interpolation>("interpolation", "arithmetic of attributes between vertices",
+                                                      kInterpolationPositions, 0),
+    enumAxis<MathTier, &Accuracy::math>("math", "tier of the elementary functions of shaders: docs/precision.md",
+                                        kMathPositions, 1),
+};
+
+std::string list(std::span<const char* const> names) {
+    std::string text;
+    for (const char* const name : names) text += (text.empty() ? "" : ", ") + std::string(name);
+    return text;
+}
+
+Status setAxis(Accuracy& accuracy, std::string_view name, std::string_view position) {
+    const Axis* const axis =
+        std::find_if(std::begin(kAxes), std::end(kAxes), [&](const Axis& a) { return a.name == name; });
+    if (axis == std::end(kAxes)) {
+        std::array<const char*, std::size(kAxes)> names;
+        std::transform(std::begin(kAxes), std::end(kAxes), names.begin(), [](const Axis& a) { return a.name; });
+        return invalidArgument("\"" + std::string(name) + "\" is no axis of accuracy; there are: " + list(names));
+    }
+    const auto found = std::find_if(axis->positions.begin(), axis->positions.end(),
+                                    [&](std::string_view allowed) { return allowed == position; });
+    if (found == axis->positions.end())
+        return invalidArgument("axis \"" + std::string(name) + "\" is \"" + std::string(position) +
+                               "\"; allowed: " + list(axis->positions));
+    axis->set(accuracy, static_cast<size_t>(found - axis->positions.begin()));
+    return {};
+}
+
 }  // namespace
 
 Accuracy accuracyOf(Profile profile) {
@@ -37,6 +85,37 @@ std::optional<Profile> profileFromName(std::string_view name) {
     const auto found = std::find_if(kDial.begin(), kDial.end(), [&](const Position& p) { return p.name == name; });
     if (found == kDial.end()) return std::nullopt;
     return static_cast<Profile>(found - kDial.begin());
+}
+
+std::span<const Axis> axes() {
+    return kAxes;
+}
+
+Status setAxes(Accuracy& accuracy, std::string_view text) {
+    constexpr std::string_view kSeparators = " ,";
+    Accuracy result = accuracy;
+    while (true) {
+        const size_t start = text.find_first_not_of(kSeparators);
+        if (start == std::string_view::npos) break;
+        text.remove_prefix(start);
+        const std::string_view setting = text.substr(0, text.find_first_of(kSeparators));
+        const size_t equals = setting.find('=');
+        if (equals == std::string_view::npos)
+            return invalidArgument("\"" + std::string(setting) + "\" is not of the form axis=position");
+        if (Status status = setAxis(result, setting.substr(0, equals), setting.substr(equals + 1)); !status)
+            return status;
+        text.remove_prefix(setting.size());
+    }
+    accuracy = result;
+    return {};
+}
+
+std::string axesText(const Accuracy& accuracy) {
+    std::string text;
+    for (const Axis& axis : kAxes)
+        text +=
+            (text.empty() ? "" : " ") + std::string(axis.name) + "=" + std::string(axis.positions[axis.get(accuracy)]);
+    return text;
 }
 
 }  // namespace vernier

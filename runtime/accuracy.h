@@ -4,8 +4,11 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 
+#include "base/result.h"
 #include "spirv_interp/program.h"
 
 namespace vernier {
@@ -31,5 +34,23 @@ Accuracy accuracyOf(Profile profile);
 
 std::string_view profileName(Profile profile);
 std::optional<Profile> profileFromName(std::string_view name);
+
+/// One axis, which can be set apart from the others.
+struct Axis {
+    const char* name;                        // "subpixel"
+    const char* meaning;                     // a sentence
+    std::span<const char* const> positions;  // from cheap to exact: "4", "8", "12", "16"
+    size_t lowestForVulkan;                  // index of the first position that meets what Vulkan asks for
+    size_t (*get)(const Accuracy&);          // index into positions
+    void (*set)(Accuracy&, size_t position);
+};
+std::span<const Axis> axes();
+
+/// Sets axes of `accuracy` as `text` says: "axis=position" once or several times, with spaces or commas between, e.g.
+/// "subpixel=12 math=fine". The error names what is unknown and what is allowed; `accuracy` is then as before.
+Status setAxes(Accuracy& accuracy, std::string_view text);
+
+/// All axes, in the form that setAxes() reads.
+std::string axesText(const Accuracy& accuracy);
 
 }  // namespace vernier

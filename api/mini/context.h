@@ -10,7 +10,9 @@
 
 namespace vernier::mini {
 
-Profile profileOf(VnProfile profile, Profile whenDefault);
+/// The axes of `profile` (VN_PROFILE_DEFAULT: `whenDefault`), changed as `axes` says ("axis=position ..."; may be
+/// null).
+Result<Accuracy> accuracyFrom(VnProfile profile, const char* axes, const Accuracy& whenDefault);
 
 /// Copies a text for the user, zero-terminated and cut to `capacity`; returns its full length.
 size_t copyText(const std::string& source, char* text, size_t capacity);

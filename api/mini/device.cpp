@@ -31,14 +31,13 @@ VnResult createDevice(const VnDeviceDesc& desc, VnDevice* device) {
     if (desc._start != 0 || desc._end != 0)
         return report(desc._start != 0 ? VnDeviceDesc{} : desc, VN_ERROR_INVALID_ARGUMENT,
                       "desc is not initialised (_start and _end must be 0)");
-    if (desc.profile < VN_PROFILE_DEFAULT || desc.profile > VN_PROFILE_REFERENCE)
-        return report(desc, VN_ERROR_INVALID_ARGUMENT, "profile is " + std::to_string(desc.profile));
     if (!desc.allocator.allocate != !desc.allocator.release)
         return report(desc, VN_ERROR_INVALID_ARGUMENT, "allocator has only one of allocate and release");
     DeviceDesc runtime;
     runtime.threads = desc.threads;
-    const Profile profile = profileOf(desc.profile, Profile::standard);
-    runtime.accuracy = accuracyOf(profile);
+    const Result<Accuracy> accuracy = accuracyFrom(desc.profile, desc.axes, accuracyOf(Profile::standard));
+    if (!accuracy) return report(desc, VN_ERROR_INVALID_ARGUMENT, accuracy.error().message);
+    runtime.accuracy = *accuracy;
     runtime.allocator = {desc.allocator.user, desc.allocator.allocate, desc.allocator.release};
     if (desc.maxIsa) {
         const auto isa = isaFromName(desc.maxIsa);
@@ -51,18 +50,14 @@ VnResult createDevice(const VnDeviceDesc& desc, VnDevice* device) {
             desc,
             created.error().code == ErrorCode::invalidArgument ? VN_ERROR_INVALID_ARGUMENT : VN_ERROR_OUT_OF_MEMORY,
             created.error().message);
-    *device = new VnDevice_T(std::move(created).value(), desc, profile);
+    *device = new VnDevice_T(std::move(created).value(), desc);
     return VN_SUCCESS;
 }
 
 }  // namespace
 
-VnDevice_T::VnDevice_T(std::unique_ptr<Device> runtimeDevice, const VnDeviceDesc& desc, Profile deviceProfile)
-    : runtime(std::move(runtimeDevice)),
-      profile(deviceProfile),
-      message(desc.message),
-      messageUser(desc.messageUser),
-      salt(saltOf(this)) {
+VnDevice_T::VnDevice_T(std::unique_ptr<Device> runtimeDevice, const VnDeviceDesc& desc)
+    : runtime(std::move(runtimeDevice)), message(desc.message), messageUser(desc.messageUser), salt(saltOf(this)) {
     error.reserve(kOutOfMemoryLength);
 }
 
@@ -109,6 +104,22 @@ VnResult vnGetDeviceInfo(VnDevice device, VnDeviceInfo* info) {
     });
 }
 
+VnResult vnGetAxis(uint32_t index, VnAxisInfo* info) {
+    if (!info || index >= axes().size()) return VN_ERROR_INVALID_ARGUMENT;
+    const Axis& axis = axes()[index];
+    *info = {axis.name, axis.meaning, axis.positions.data(), static_cast<uint32_t>(axis.positions.size()),
+             static_cast<uint32_t>(axis.lowestForVulkan)};
+    return VN_SUCCESS;
+}
+
+VnResult vnGetAxisPosition(uint32_t index, VnProfile profile, uint32_t* position) {
+    if (!position || index >= axes().size()) return VN_ERROR_INVALID_ARGUMENT;
+    const Result<Accuracy> accuracy = accuracyFrom(profile, nullptr, accuracyOf(Profile::standard));
+    if (!accuracy) return VN_ERROR_INVALID_ARGUMENT;
+    *position = static_cast<uint32_t>(axes()[index].get(*accuracy));
+    return VN_SUCCESS;
+}
+
 VkFormatFeatureFlags vnGetFormatFeatures(VnDevice, VkFormat format) {
     const FormatInfo* info = findFormat(format);
     return info ? info->optimalTilingFeatures | info->bufferFeatures : 0;
@@ -116,8 +127,12 @@ VkFormatFeatureFlags vnGetFormatFeatures(VnDevice, VkFormat format) {
 
 namespace vernier::mini {
 
-Profile profileOf(VnProfile profile, Profile whenDefault) {
-    return profile == VN_PROFILE_DEFAULT ? whenDefault : kProfiles[profile - VN_PROFILE_DRAFT];
+Result<Accuracy> accuracyFrom(VnProfile profile, const char* axes, const Accuracy& whenDefault) {
+    if (profile < VN_PROFILE_DEFAULT || profile > VN_PROFILE_REFERENCE)
+        return invalidArgument("profile is " + std::to_string(profile));
+    Accuracy accuracy = profile == VN_PROFILE_DEFAULT ? whenDefault : accuracyOf(kProfiles[profile - VN_PROFILE_DRAFT]);
+    if (Status status = setAxes(accuracy, axes ? axes : ""); !status) return status.error();
+    return accuracy;
 }
 
 size_t copyText(const std::string& source, char* text, size_t capacity) {

@@ -94,12 +94,10 @@ struct PipelineKey {
 
 /// The device of vernier.h. Its tables are thread-safe.
 struct VnDevice_T {
-    VnDevice_T(std::unique_ptr<vernier::Device> runtimeDevice, const VnDeviceDesc& desc,
-               vernier::Profile deviceProfile);
+    VnDevice_T(std::unique_ptr<vernier::Device> runtimeDevice, const VnDeviceDesc& desc);
     ~VnDevice_T();
 
     std::unique_ptr<vernier::Device> runtime;
-    vernier::Profile profile;
     VnMessageCallback message;
     void* messageUser;
 

@@ -73,10 +73,9 @@ VnResult vnCreateProgram(VnDevice device, const VnProgramDesc* desc, VnProgram* 
     return guarded(device, __func__, [&] {
         if (VnResult result = checkDesc(device, "vnCreateProgram", desc, program)) return result;
         program->id = 0;
-        if (desc->profile < VN_PROFILE_DEFAULT || desc->profile > VN_PROFILE_REFERENCE)
-            return invalid(device, "vnCreateProgram", "profile is " + std::to_string(desc->profile));
-        const Accuracy accuracy = accuracyOf(profileOf(desc->profile, device->profile));
-        if (desc->compute.id) return createComputeProgram(device, *desc, accuracy, program);
+        const Result<Accuracy> accuracy = accuracyFrom(desc->profile, desc->axes, device->runtime->desc().accuracy);
+        if (!accuracy) return fail(device, "vnCreateProgram", accuracy.error());
+        if (desc->compute.id) return createComputeProgram(device, *desc, *accuracy, program);
         const auto vertex = device->shaders.find(desc->vertex.id);
         if (!vertex || vertex->program.stage != ir::Stage::vertex)
             return badHandle(device, "vnCreateProgram", "vertex shader");
@@ -86,7 +85,7 @@ VnResult vnCreateProgram(VnDevice device, const VnProgramDesc* desc, VnProgram* 
         ShaderProgramDesc linked;
         linked.vertex = &vertex->program;
         linked.fragment = fragment ? &fragment->program : nullptr;
-        linked.accuracy = accuracy;
+        linked.accuracy = *accuracy;
         linked.isa = device->runtime->isa();
         auto made = ShaderProgram::create(linked);
         if (!made) return failShader(device, "vnCreateProgram", made.error());

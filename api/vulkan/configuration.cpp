@@ -1,5 +1,6 @@
 #include "api/vulkan/configuration.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
@@ -19,6 +20,39 @@ Error badValue(const char* name, std::string_view value, const char* allowed) {
     return invalidArgument(std::string(name) + " is \"" + std::string(value) + "\"; allowed: " + allowed);
 }
 
+/// "VERNIER_AXIS_SUBPIXEL" of the axis "subpixel".
+std::string axisVariable(const Axis& axis) {
+    std::string name = axis.name;
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
+    return "VERNIER_AXIS_" + name;
+}
+
+Status readAccuracies(std::vector<DeviceAccuracy>& accuracies) {
+    std::string changes;
+    Accuracy scratch;
+    for (const Axis& axis : axes()) {
+        const std::string name = axisVariable(axis);
+        const auto text = variable(name.c_str());
+        if (text.empty()) continue;
+        const std::string change = std::string(axis.name) + "=" + std::string(text);
+        if (Status status = setAxes(scratch, change); !status)
+            return invalidArgument(name + ": " + status.error().message);
+        changes += ", " + change;
+    }
+    std::string_view names = variable("VERNIER_PROFILE");
+    if (names.empty()) names = profileName(Profile::standard);
+    while (true) {
+        const std::string_view name = names.substr(0, names.find(','));
+        const auto profile = profileFromName(name);
+        if (!profile) return badValue("VERNIER_PROFILE", name, "draft, fast, standard, fine, reference");
+        DeviceAccuracy& made = accuracies.emplace_back(std::string(name) + changes, accuracyOf(*profile));
+        if (Status status = setAxes(made.accuracy, changes); !status) return status.error();
+        if (name.size() == names.size()) return {};
+        names.remove_prefix(name.size() + 1);
+    }
+}
+
 struct DeviceTypeName {
     std::string_view name;
     VkPhysicalDeviceType type;
@@ -36,11 +70,7 @@ constexpr uint32_t kMaxThreads = 1024;
 
 Result<Configuration> readConfiguration() {
     Configuration result;
-    if (const auto text = variable("VERNIER_PROFILE"); !text.empty()) {
-        const auto profile = profileFromName(text);
-        if (!profile) return badValue("VERNIER_PROFILE", text, "draft, fast, standard, fine, reference");
-        result.profile = *profile;
-    }
+    if (Status status = readAccuracies(result.accuracies); !status) return status.error();
     if (const auto text = variable("VERNIER_DEVICE_TYPE"); !text.empty()) {
         bool known = false;
         for (const auto& entry : kDeviceTypes) {

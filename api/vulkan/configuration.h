@@ -1,17 +1,20 @@
 // What the environment says about the driver:
 //
-//   VERNIER_PROFILE      draft, fast, standard (default), fine, reference: the accuracy of everything the
-//   device computes.
-//                        draft and fast are below what Vulkan asks for and are never chosen unasked.
-//   VERNIER_DEVICE_TYPE  cpu (default), integrated, discrete, virtual, other: some programs refuse a CPU
-//   device. VERNIER_THREADS      a number of threads; default: as many as there are usable CPUs. VERNIER_ISA
-//   sse4, avx2, avx512: the best instruction set to use. The pictures are the same. VERNIER_LOG          set
-//   and not 0: messages go to stderr, too.
+//   VERNIER_PROFILE      draft, fast, standard (default), fine, reference: the accuracy of everything the device
+//                        computes. draft and fast are below what Vulkan asks for and are never chosen unasked.
+//                        Several, with commas between: a physical device each, in that order
+//   VERNIER_AXIS_<NAME>  one axis of accuracy alone, e.g. VERNIER_AXIS_SUBPIXEL=12: see runtime/accuracy.h
+//   VERNIER_DEVICE_TYPE  cpu (default), integrated, discrete, virtual, other: some programs refuse a CPU device
+//   VERNIER_THREADS      a number of threads; default: as many as there are usable CPUs
+//   VERNIER_ISA          sse4, avx2, avx512: the best instruction set to use. The pictures are the same
+//   VERNIER_LOG          set and not 0: messages go to stderr, too
 #pragma once
 
 #include <vulkan/vulkan_core.h>
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "base/result.h"
 #include "base/simd.h"
@@ -19,8 +22,14 @@
 
 namespace vernier::vulkan {
 
+struct DeviceAccuracy {
+    std::string name;  // "standard", "fine, subpixel=16"
+    Accuracy accuracy;
+};
+
 struct Configuration {
-    Profile profile = Profile::standard;
+    /// A physical device each.
+    std::vector<DeviceAccuracy> accuracies;
     VkPhysicalDeviceType deviceType = VK_PHYSICAL_DEVICE_TYPE_CPU;
     uint32_t threads = 0;
     Isa maxIsa = Isa::avx512;

@@ -1,4 +1,4 @@
-// Device groups (VK_KHR_device_group, VK_KHR_device_group_creation): there is one, of one device.
+// Device groups (VK_KHR_device_group, VK_KHR_device_group_creation): each is of one device.
 #include "api/vulkan/entry_points.h"
 #include "api/vulkan/enumerate.h"
 #include "api/vulkan/instance.h"
@@ -9,9 +9,11 @@ VKAPI_ATTR VkResult VKAPI_CALL
 EnumeratePhysicalDeviceGroups(VkInstance instance, uint32_t* pPhysicalDeviceGroupCount,
                               VkPhysicalDeviceGroupProperties* pPhysicalDeviceGroupProperties) {
     OutputArray<VkPhysicalDeviceGroupProperties> output(pPhysicalDeviceGroupCount, pPhysicalDeviceGroupProperties);
-    if (VkPhysicalDeviceGroupProperties* group = output.next()) {
+    for (const auto& device : object(instance)->physicalDevices) {
+        VkPhysicalDeviceGroupProperties* group = output.next();
+        if (group == nullptr) continue;
         group->physicalDeviceCount = 1;
-        group->physicalDevices[0] = handleOf<VkPhysicalDevice>(&object(instance)->physicalDevice);
+        group->physicalDevices[0] = handleOf<VkPhysicalDevice>(device.get());
         group->subsetAllocation = VK_FALSE;
     }
     return output.result();

@@ -54,7 +54,7 @@ VKAPI_ATTR void VKAPI_CALL DestroyInstance(VkInstance instance, const VkAllocati
 VKAPI_ATTR VkResult VKAPI_CALL EnumeratePhysicalDevices(VkInstance instance, uint32_t* pPhysicalDeviceCount,
                                                         VkPhysicalDevice* pPhysicalDevices) {
     OutputArray<VkPhysicalDevice> output(pPhysicalDeviceCount, pPhysicalDevices);
-    output.add(handleOf<VkPhysicalDevice>(&object(instance)->physicalDevice));
+    for (const auto& device : object(instance)->physicalDevices) output.add(handleOf<VkPhysicalDevice>(device.get()));
     return output.result();
 }
 

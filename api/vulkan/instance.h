@@ -1,5 +1,8 @@
-// The instance and its one physical device.
+// The instance and its physical devices: one, unless several accuracies are asked for.
 #pragma once
+
+#include <memory>
+#include <vector>
 
 #include "api/vulkan/configuration.h"
 #include "api/vulkan/extension.h"
@@ -10,12 +13,15 @@
 namespace vernier::vulkan {
 
 struct Instance : Dispatchable {
-    explicit Instance(const Configuration& settings) : configuration(settings), physicalDevice(*this, settings) {}
+    explicit Instance(const Configuration& settings) : configuration(settings) {
+        for (const DeviceAccuracy& accuracy : settings.accuracies)
+            physicalDevices.push_back(std::make_unique<PhysicalDevice>(*this, settings, accuracy));
+    }
 
     Configuration configuration;
     ExtensionSet extensions = 0;
     Messages messages;
-    PhysicalDevice physicalDevice;
+    std::vector<std::unique_ptr<PhysicalDevice>> physicalDevices;
 };
 
 }  // namespace vernier::vulkan

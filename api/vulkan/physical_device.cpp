@@ -23,8 +23,10 @@ void fillCacheUuid(const PhysicalDevice& device, uint8_t (&uuid)[VK_UUID_SIZE]) 
     std::memcpy(uuid, name, VK_UUID_SIZE);
     const uint32_t version = device.properties.driverVersion;
     std::memcpy(uuid + 8, &version, sizeof version);
-    uuid[12] = static_cast<uint8_t>(device.configuration.profile);
-    uuid[13] = static_cast<uint8_t>(device.isa);
+    uint16_t axisBits = 0;  // two bits an axis
+    for (const Axis& axis : axes()) axisBits = static_cast<uint16_t>(axisBits << 2 | axis.get(device.accuracy));
+    std::memcpy(uuid + 12, &axisBits, sizeof axisBits);
+    uuid[14] = static_cast<uint8_t>(device.isa);
 }
 
 VkPhysicalDeviceMemoryProperties oneHeap(VkDeviceSize size) {
@@ -44,11 +46,11 @@ constexpr VkQueueFamilyProperties kQueueFamily{
 
 }  // namespace
 
-PhysicalDevice::PhysicalDevice(Instance& owner, const Configuration& settings)
+PhysicalDevice::PhysicalDevice(Instance& owner, const Configuration& settings, const DeviceAccuracy& chosen)
     : instance(owner),
       configuration(settings),
       isa(bestIsaUpTo(settings.maxIsa)),
-      accuracy(accuracyOf(settings.profile)),
+      accuracy(chosen.accuracy),
       features(supportedFeatures()),
       properties{},
       memory(oneHeap(heapSize())) {
@@ -58,8 +60,9 @@ PhysicalDevice::PhysicalDevice(Instance& owner, const Configuration& settings)
     properties.vendorID = kVendorId;
     properties.deviceID = 1;
     properties.deviceType = settings.deviceType;
-    std::snprintf(properties.deviceName, sizeof properties.deviceName, "Vernier (software, %s)",
-                  std::string(isaName(isa)).c_str());
+    const std::string accuracyText = accuracy == accuracyOf(Profile::standard) ? "" : ", " + chosen.name;
+    std::snprintf(properties.deviceName, sizeof properties.deviceName, "Vernier (software, %s%s)",
+                  std::string(isaName(isa)).c_str(), accuracyText.c_str());
     fillCacheUuid(*this, properties.pipelineCacheUUID);
     properties.limits = deviceLimits(features, accuracy);
 }

@@ -14,7 +14,7 @@ namespace vernier::vulkan {
 inline constexpr uint32_t kVendorId = 0x56524E;
 
 struct PhysicalDevice : Dispatchable {
-    PhysicalDevice(Instance& owner, const Configuration& settings);
+    PhysicalDevice(Instance& owner, const Configuration& settings, const DeviceAccuracy& chosen);
 
     Instance& instance;
     Configuration configuration;

@@ -1,16 +1,18 @@
-// vernier-accuracy: the price of accuracy. For each profile, and for lavapipe and SwiftShader beside, the error against
-// the exact oracle and the time per frame, in scenes that are each sensitive to one axis.
+// vernier-accuracy: the price of accuracy. For each profile, each axis alone, and other drivers beside: the error
+// against the exact oracle and the time per frame, in scenes that are each sensitive to one axis.
+#include <unistd.h>
+
 #include <algorithm>
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
-#include "bench/scenes/bench_scenes.h"
-#include "bench/scenes/render_bench_scene.h"
-#include "conformance/scene/scene_format.h"
+#include "bench/accuracy/accuracy_scene.h"
+#include "bench/accuracy/chart.h"
+#include "bench/accuracy/choose.h"
+#include "bench/accuracy/measure.h"
+#include "bench/accuracy/page.h"
+#include "conformance/drivers/try.h"
 #include "conformance/tool/render_scene.h"
 
 namespace vernier::bench {
@@ -18,112 +20,144 @@ namespace {
 
 using namespace conformance;
 
+struct Options {
+    DriverPaths paths;
+    std::string driver, scene;  // of render
+    std::vector<std::string> scenes;
+    std::filesystem::path out = "out/accuracy";
+    bool all = false, fresh = false;
+    double milliseconds = 0, error = 0;  // of the budget; 0: not asked for
+};
+
 int fail(const Error& error) {
     std::fprintf(stderr, "vernier-accuracy: %s\n", error.message.c_str());
     return 2;
 }
 
-struct ErrorFigures {
-    double worst = 0, mean = 0;  // absolute, in units of 1/255 of the full range
-    uint64_t outside = 0;        // pixels outside what the specification permits
-    uint64_t judged = 0, undecided = 0;
-};
-
-/// Edge pixels, whose coverage may legally differ, are left out of the error: it is the values that are measured.
-ErrorFigures compare(const RenderedImage& image, const OracleImage& oracle) {
-    const SceneFormat& format = *sceneFormat(image.format);
-    ErrorFigures figures;
-    double sum = 0;
-    uint64_t values = 0;
-    for (size_t i = 0; i < oracle.pixels.size(); ++i) {
-        const OraclePixel& pixel = oracle.pixels[i];
-        if (pixel.flags & kOracleUnknown) ++figures.undecided;
-        if (pixel.flags) continue;
-        ++figures.judged;
-        const std::span<const std::byte> texel(image.texels.data() + i * format.texelBytes, format.texelBytes);
-        bool inside = true;
-        for (size_t c = 0; c < format.componentCount; ++c) {
-            const double value = decodeComponent(format.components[c], componentCode(format.components[c], texel));
-            const double error = std::isnan(value) ? INFINITY : std::abs(value - pixel.value[c]) * 255;
-            figures.worst = std::max(figures.worst, error);
-            sum += error;
-            ++values;
-            inside = inside && value >= pixel.low[c] && value <= pixel.high[c];
-        }
-        if (!inside) ++figures.outside;
-    }
-    figures.mean = values ? sum / static_cast<double>(values) : 0;
-    return figures;
+void showProgress(size_t done, size_t all, const std::string& next) {
+    constexpr size_t kWidth = 30;
+    if (!isatty(STDERR_FILENO)) return;
+    const size_t filled = all ? done * kWidth / all : kWidth;
+    std::fprintf(stderr, "\r[%s%s] %zu/%zu %-50.50s%s", std::string(filled, '#').c_str(),
+                 std::string(kWidth - filled, ' ').c_str(), done, all, next.c_str(), done == all ? "\n" : "");
 }
 
-struct Position {
-    std::string label, driver, profile;
-};
+Result<std::vector<const AccuracyScene*>> chosenScenes(const Options& options) {
+    std::vector<const AccuracyScene*> chosen;
+    if (options.all || options.scenes.empty())
+        for (const AccuracyScene& scene : accuracySceneTable()) chosen.push_back(&scene);
+    else
+        for (const std::string& name : options.scenes) {
+            const auto table = accuracySceneTable();
+            const auto found = std::find_if(table.begin(), table.end(),
+                                            [&](const AccuracyScene& scene) { return scene.name == name; });
+            if (found == table.end()) return invalidArgument("--scene: there is no scene '" + name + "'; see list");
+            chosen.push_back(&*found);
+        }
+    return chosen;
+}
 
-std::vector<Position> positions(const std::vector<DriverChoice>& choices) {
-    std::vector<Position> result;
-    for (const DriverChoice& choice : choices) {
-        if (!choice.present() || choice.name == "icd") continue;  // the driver runs the same backend as the API
-        if (choice.name != "api") {
-            result.push_back({choice.name, choice.name, "standard"});
+void printScene(const AccuracyRun& run, const MeasuredScene& scene) {
+    std::printf("\n%s: %s\n", scene.scene->name, scene.scene->description);
+    std::printf("  %-22s %10s %12s %12s %8s %10s %6s %8s\n", "position", "ms/frame", "worst /255", "mean /255",
+                "outside", "misplaced", "holes", "doubles");
+    for (const AccuracyPosition& position : run.positions) {
+        const AccuracyFigures& f = scene.figures.at(position.label);
+        if (!f.failure.empty()) {
+            std::printf("  %-22s failed: %s\n", position.label.c_str(), f.failure.c_str());
             continue;
         }
-        for (const char* profile : {"draft", "fast", "standard", "fine", "reference"})
-            result.push_back({profile, "api", profile});
+        std::printf("  %-22s %10.3f %12.3g %12.3g %8llu %10llu %6llu %8llu\n", position.label.c_str(), f.frame, f.worst,
+                    f.mean, static_cast<unsigned long long>(f.outside), static_cast<unsigned long long>(f.misplaced),
+                    static_cast<unsigned long long>(f.holes), static_cast<unsigned long long>(f.doubles));
     }
-    return result;
 }
 
-int run(const DriverPaths& paths, const std::filesystem::path& out, const std::string& json) {
-    nlohmann::json report;
-    bool complete = true;
-    for (const SceneEntry& entry : accuracyScenes()) {
-        const Result<Scene> scene = entry.build();
-        if (!scene) return fail(scene.error());
-        const Result<std::vector<OracleImage>> oracle = judgeScene(*scene);
-        if (!oracle) return fail(oracle.error());
-        std::printf("\n%s: %s\n", scene->name.c_str(), scene->description.c_str());
-        std::printf("  %-12s %10s %14s %14s %10s %10s\n", "position", "ms/frame", "worst /255", "mean /255", "outside",
-                    "judged");
-        for (const Position& position : positions(driverChoices(paths))) {
-            DriverPaths positionPaths = paths;
-            positionPaths.profile = position.profile;
-            const Result<Rendering> rendering =
-                renderInChild(positionPaths, position.driver, scene->name, out / position.label, 120);
-            if (!rendering) {
-                std::printf("  %-12s failed: %s\n", position.label.c_str(), rendering.error().message.c_str());
-                complete = complete && position.driver != "api";
-                continue;
-            }
-            const ErrorFigures figures = compare(rendering->images[0], (*oracle)[0]);
-            std::printf("  %-12s %10.3f %14.3g %14.3g %10llu %10llu\n", position.label.c_str(), rendering->timing.frame,
-                        figures.worst, figures.mean, static_cast<unsigned long long>(figures.outside),
-                        static_cast<unsigned long long>(figures.judged));
-            report[scene->name][position.label] = {
-                {"frame_ms", rendering->timing.frame}, {"worst_255", figures.worst}, {"mean_255", figures.mean},
-                {"outside", figures.outside},          {"judged", figures.judged},   {"undecided", figures.undecided}};
-        }
+void printBudget(const AccuracyRun& run, const Options& options) {
+    const auto shown = [](const std::string& label) { return label.empty() ? "none" : label.c_str(); };
+    for (const MeasuredScene& scene : run.scenes) {
+        if (options.milliseconds > 0)
+            std::printf("%s: the most exact setting within %g ms: %s\n", scene.scene->name, options.milliseconds,
+                        shown(mostExactWithin(run, scene, options.milliseconds)));
+        if (options.error > 0)
+            std::printf("%s: the fastest setting whose worst error is at most %g/255: %s\n", scene.scene->name,
+                        options.error, shown(fastestWithin(run, scene, options.error)));
     }
-    if (!json.empty()) std::ofstream(json) << report.dump(2) << '\n';
-    return complete ? 0 : 1;
+}
+
+Status save(const AccuracyRun& run, const std::filesystem::path& out) {
+    const auto store = [&](const std::string& name, const std::string& text) {
+        return writeFile(out / name, text.data(), text.size());
+    };
+    const Result<std::string> html = accuracyPage(run);
+    if (!html) return html.error();
+    VERNIER_TRY(store("accuracy.html", *html));
+    VERNIER_TRY(store("accuracy.json", runJson(run)));
+    VERNIER_TRY(store("accuracy.csv", runCsv(run)));
+    for (const MeasuredScene& scene : run.scenes)
+        VERNIER_TRY(store(std::string(scene.scene->name) + ".svg", paretoSvg(run, scene)));
+    return {};
+}
+
+/// Robustness is no axis: a hole, a double or a failure of ours at any position is an error.
+bool isSound(const AccuracyRun& run) {
+    for (const MeasuredScene& scene : run.scenes)
+        for (const AccuracyPosition& position : run.positions) {
+            const AccuracyFigures& f = scene.figures.at(position.label);
+            if (position.driver == "api" && (!f.failure.empty() || f.holes || f.doubles)) return false;
+        }
+    return true;
+}
+
+int run(const Options& options) {
+    const Result<std::vector<const AccuracyScene*>> scenes = chosenScenes(options);
+    if (!scenes) return fail(scenes.error());
+    const Result<AccuracyRun> measured =
+        measureAccuracy({options.paths, *scenes, options.out, options.fresh, showProgress});
+    if (!measured) return fail(measured.error());
+    for (const MeasuredScene& scene : measured->scenes) printScene(*measured, scene);
+    printBudget(*measured, options);
+    if (Status status = save(*measured, options.out); !status) return fail(status.error());
+    std::printf("\n%s\n", (options.out / "accuracy.html").c_str());
+    if (isSound(*measured)) return 0;
+    std::fprintf(stderr, "vernier-accuracy: Vernier failed, or left a hole or a double; see above\n");
+    return 1;
+}
+
+int render(const Options& options) {
+    const Result<Scene> scene = accuracySceneNamed(options.scene);
+    const Result<Rendering> rendering =
+        scene ? renderScene(options.paths, options.driver, *scene, false) : Result<Rendering>(scene.error());
+    const Status status = rendering ? saveRendering(*rendering, options.out) : Status(rendering.error());
+    if (!status) return fail(status.error());
+    return 0;
+}
+
+int list() {
+    for (const AccuracyScene& scene : accuracySceneTable())
+        std::printf("%-18s %s (%s)\n", scene.name, scene.description, scene.separates);
+    return 0;
 }
 
 int main(int argc, char** argv) {
     CLI::App app("Shows what accuracy costs: error against the exact oracle beside time per frame.");
-    app.require_subcommand(1);
-    DriverPaths paths;
-    addDriverOptions(app, paths);
-    CLI::App* renderCommand = app.add_subcommand("render", "Draw one scene at one position (used by run)");
-    std::string driver, scene, json;
-    std::filesystem::path renderOut, runOut = "out/accuracy";
-    renderCommand->add_option("--driver", driver)->required();
-    renderCommand->add_option("--scene", scene)->required();
-    renderCommand->add_option("--out", renderOut)->required();
-    CLI::App* runCommand = app.add_subcommand("run", "Measure every profile and every other driver");
-    runCommand->add_option("--out", runOut, "Folder for what the children write");
-    runCommand->add_option("--json", json, "File for the figures");
+    Options options;
+    addDriverOptions(app, options.paths);
+    app.add_flag("--all", options.all, "All scenes, which is what happens without --scene, too");
+    app.add_option("--scene", options.scenes, "Scenes to measure");
+    app.add_option("--out", options.out, "Folder for the page, figures and what children write")->capture_default_str();
+    app.add_flag("--fresh", options.fresh, "Measure again what an earlier run of this build has measured");
+    app.add_option("--within-ms", options.milliseconds, "Name the most exact setting that takes at most so long");
+    app.add_option("--within-error", options.error,
+                   "Name the fastest setting whose worst error is at most so many 1/255");
+    CLI::App* listCommand = app.add_subcommand("list", "Name the scenes");
+    CLI::App* renderCommand = app.add_subcommand("render", "Draw one scene at one position (used by this program)");
+    renderCommand->add_option("--driver", options.driver)->required();
+    renderCommand->add_option("--scene", options.scene)->required();
+    renderCommand->add_option("--out", options.out)->required();
     CLI11_PARSE(app, argc, argv);
-    return *renderCommand ? renderBenchScene(paths, driver, scene, renderOut) : run(paths, runOut, json);
+    if (*listCommand) return list();
+    return *renderCommand ? render(options) : run(options);
 }
 
 }  // namespace

@@ -58,9 +58,6 @@ std::span<const conformance::SceneEntry> speedScenes();
 /// 2048 x 2048 texels moved, and nothing drawn.
 std::span<const conformance::SceneEntry> transferScenes();
 
-/// Small enough for the exact oracle; each sensitive to one axis of accuracy.
-std::span<const conformance::SceneEntry> accuracyScenes();
-
 /// The scene called `name`: of a list above, or of a measurement of growth ("triangles:4096").
 Result<conformance::Scene> buildBenchScene(std::string_view name);
 

@@ -29,7 +29,7 @@ std::span<const SceneEntry> transferScenes() {
 }
 
 Result<Scene> buildBenchScene(std::string_view name) {
-    for (const std::span<const SceneEntry> list : {speedScenes(), transferScenes(), accuracyScenes()})
+    for (const std::span<const SceneEntry> list : {speedScenes(), transferScenes()})
         for (const SceneEntry& entry : list)
             if (entry.name == name) return entry.build();
     return growthScene(name);

@@ -2,27 +2,13 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "base/cpu_budget.h"
-#include "base/simd.h"
 #include "conformance/tool/render_scene.h"
 
 namespace vernier::bench {
-namespace {
 
 using namespace conformance;
-
-/// The processor as Linux names it, or nothing.
-std::string cpuModel() {
-    std::ifstream file("/proc/cpuinfo");
-    for (std::string line; std::getline(file, line);)
-        if (line.starts_with("model name")) return line.substr(std::min(line.size(), line.find(':') + 2));
-    return {};
-}
-
-}  // namespace
 
 std::vector<std::string> presentDrivers(const DriverPaths& paths, const RunOptions& options, bool needsVulkan) {
     std::vector<std::string> drivers;
@@ -36,10 +22,6 @@ std::vector<std::string> presentDrivers(const DriverPaths& paths, const RunOptio
             std::printf("left out: %s (%s)\n", choice.name.c_str(), choice.absence.c_str());
     }
     return drivers;
-}
-
-std::string machineText() {
-    return std::to_string(usableCpuCount()) + " usable CPUs (" + cpuModel() + "), " + std::string(isaName(bestIsa()));
 }
 
 Row measureRow(const DriverPaths& paths, const RunOptions& options, const std::vector<std::string>& drivers,

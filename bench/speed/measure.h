@@ -1,4 +1,4 @@
-// What all measurements share: which drivers run, on which machine, and one row of rounds.
+// What all measurements share: which drivers run, and one row of rounds.
 #pragma once
 
 #include <filesystem>
@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/speed/machine.h"
 #include "bench/speed/table.h"
 #include "conformance/tool/driver_choice.h"
 #include "conformance/tool/rendering.h"
@@ -23,9 +24,6 @@ struct RunOptions {
 /// The drivers that were asked for and are present; `needsVulkan` leaves out Vernier's own API. Tells what is left out.
 std::vector<std::string> presentDrivers(const conformance::DriverPaths& paths, const RunOptions& options,
                                         bool needsVulkan);
-
-/// "4 usable CPUs (AMD EPYC ...), avx512".
-std::string machineText();
 
 struct Row {
     std::map<std::string, Measured> measured;            // by driver

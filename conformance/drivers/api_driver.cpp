@@ -218,6 +218,7 @@ Result<std::unique_ptr<ApiDriver>> ApiDriver::create(const ApiOptions& options) 
     desc.profile = options.profile;
     desc.threads = options.threads;
     desc.maxIsa = options.maxIsa;
+    desc.axes = options.axes;
     if (const VnResult result = vnCreateDevice(&desc, &driver->device_); result != VN_SUCCESS) {
         return apiError(nullptr, "vnCreateDevice", result);
     }

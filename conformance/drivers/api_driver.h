@@ -13,6 +13,7 @@ struct ApiOptions {
     VnProfile profile = VN_PROFILE_DEFAULT;
     uint32_t threads = 0;          // 0: one per usable CPU
     const char* maxIsa = nullptr;  // "sse4", "avx2", "avx512"; nullptr: the best of this CPU
+    const char* axes = nullptr;    // VnDeviceDesc::axes
 };
 
 class ApiDriver final : public Driver {

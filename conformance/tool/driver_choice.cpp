@@ -35,19 +35,19 @@ std::vector<DriverChoice> driverChoices(const DriverPaths& paths) {
 #if VERNIER_HAS_API
 namespace {
 
-Result<std::unique_ptr<Driver>> createApiDriver(const std::string& profile) {
+Result<std::unique_ptr<Driver>> createApiDriver(const DriverPaths& paths) {
     constexpr std::array<std::pair<std::string_view, VnProfile>, 5> kProfiles{{{"draft", VN_PROFILE_DRAFT},
                                                                                {"fast", VN_PROFILE_FAST},
                                                                                {"standard", VN_PROFILE_STANDARD},
                                                                                {"fine", VN_PROFILE_FINE},
                                                                                {"reference", VN_PROFILE_REFERENCE}}};
     for (const auto& [name, value] : kProfiles) {
-        if (name != profile) continue;
-        Result<std::unique_ptr<ApiDriver>> driver = ApiDriver::create({value, 0});
+        if (name != paths.profile) continue;
+        Result<std::unique_ptr<ApiDriver>> driver = ApiDriver::create({value, 0, nullptr, paths.axes.c_str()});
         if (!driver) return driver.error();
         return std::unique_ptr<Driver>(std::move(driver).value());
     }
-    return invalidArgument("--profile is '" + profile + "', not draft, fast, standard, fine or reference");
+    return invalidArgument("--profile is '" + paths.profile + "', not draft, fast, standard, fine or reference");
 }
 
 }  // namespace
@@ -66,7 +66,7 @@ Status selectVulkanDriver(const DriverChoice& choice) {
 Result<std::unique_ptr<Driver>> createDriver(const DriverChoice& choice, const DriverPaths& paths, bool validate) {
     if (!choice.present()) return unsupported("driver '" + choice.name + "': " + choice.absence);
 #if VERNIER_HAS_API
-    if (choice.manifest.empty()) return createApiDriver(paths.profile);
+    if (choice.manifest.empty()) return createApiDriver(paths);
 #endif
     (void)paths;
     VERNIER_TRY(selectVulkanDriver(choice));
@@ -77,10 +77,11 @@ Result<std::unique_ptr<Driver>> createDriver(const DriverChoice& choice, const D
     return std::unique_ptr<Driver>(std::move(driver).value());
 }
 
-Result<std::vector<OracleImage>> judgeScene(const Scene& scene) {
+Result<std::vector<OracleImage>> judgeScene(const Scene& scene, const OracleRules& rules) {
 #if VERNIER_HAS_ORACLE
-    return renderOracle(scene);
+    return renderOracle(scene, rules);
 #else
+    (void)rules;
     return unsupported("scene '" + scene.name + "': the oracle is not in this build");
 #endif
 }

@@ -30,6 +30,7 @@ struct DriverPaths {
     std::filesystem::path lavapipe = "/usr/share/vulkan/icd.d/lvp_icd.x86_64.json";
     std::filesystem::path swiftShader = "/usr/lib/chromium/vk_swiftshader_icd.json";
     std::string profile = "standard";  // of Vernier's API: draft, fast, standard, fine, reference
+    std::string axes;                  // of Vernier's API: VnDeviceDesc::axes
     uint32_t cpus = 0;                 // that a driver's process may use; 0: all
 
     DriverPaths();
@@ -46,6 +47,6 @@ Status selectVulkanDriver(const DriverChoice& choice);
 Result<std::unique_ptr<Driver>> createDriver(const DriverChoice& choice, const DriverPaths& paths, bool validate);
 
 /// The oracle's images of a scene; `unsupported` in a build without the oracle.
-Result<std::vector<OracleImage>> judgeScene(const Scene& scene);
+Result<std::vector<OracleImage>> judgeScene(const Scene& scene, const OracleRules& rules = {});
 
 }  // namespace vernier::conformance

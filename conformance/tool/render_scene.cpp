@@ -16,12 +16,16 @@ void addDriverOptions(CLI::App& app, DriverPaths& paths) {
     app.add_option("--lavapipe", paths.lavapipe, "Manifest of lavapipe")->capture_default_str();
     app.add_option("--swiftshader", paths.swiftShader, "Manifest of SwiftShader")->capture_default_str();
     app.add_option("--profile", paths.profile, "Accuracy of the api driver: draft, fast, standard, fine or reference");
+    app.add_option("--axes", paths.axes, "Axes of accuracy of the api driver: \"axis=position ...\"");
     app.add_option("--cpus", paths.cpus, "CPUs a driver's process may use (0: all)");
 }
 
 std::vector<std::string> driverArguments(const DriverPaths& paths) {
-    return {"--icd",         paths.icd.string(),         "--lavapipe", paths.lavapipe.string(),
-            "--swiftshader", paths.swiftShader.string(), "--profile",  paths.profile,
+    return {"--icd",         paths.icd.string(),
+            "--lavapipe",    paths.lavapipe.string(),
+            "--swiftshader", paths.swiftShader.string(),
+            "--profile",     paths.profile,
+            "--axes",        paths.axes,
             "--cpus",        std::to_string(paths.cpus)};
 }
 

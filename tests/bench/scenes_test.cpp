@@ -25,7 +25,7 @@ void expectSound(const std::string& name) {
 
 TEST(BenchScenes, AreSoundAndNamedOnce) {
     std::set<std::string_view> names;
-    for (const auto list : {speedScenes(), transferScenes(), accuracyScenes()})
+    for (const auto list : {speedScenes(), transferScenes()})
         for (const conformance::SceneEntry& entry : list) {
             EXPECT_TRUE(names.insert(entry.name).second) << entry.name;
             expectSound(std::string(entry.name));

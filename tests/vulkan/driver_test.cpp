@@ -44,8 +44,37 @@ TEST_F(DriverTest, environmentChoosesTypeAndProfile) {
 
     setenv("VERNIER_PROFILE", "exactish", 1);
     EXPECT_NE(create(&other), VK_SUCCESS) << "an unknown profile must be refused";
+    setenv("VERNIER_PROFILE", "standard,", 1);
+    EXPECT_NE(create(&other), VK_SUCCESS) << "an empty name must be refused";
     unsetenv("VERNIER_PROFILE");
     unsetenv("VERNIER_DEVICE_TYPE");
+}
+
+TEST_F(DriverTest, accuraciesAreDevicesWhenAskedFor) {
+    setenv("VERNIER_PROFILE", "standard,reference", 1);
+    setenv("VERNIER_AXIS_SUBPIXEL", "12", 1);
+    const auto info = make<VkInstanceCreateInfo>(VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO);
+    VkInstance other = VK_NULL_HANDLE;
+    ASSERT_EQ(vkCreateInstance(&info, nullptr, &other), VK_SUCCESS);
+    uint32_t count = 0;
+    ASSERT_EQ(vkEnumeratePhysicalDevices(other, &count, nullptr), VK_SUCCESS);
+    ASSERT_EQ(count, 2u);
+    VkPhysicalDevice devices[2];
+    ASSERT_EQ(vkEnumeratePhysicalDevices(other, &count, devices), VK_SUCCESS);
+    VkPhysicalDeviceProperties properties[2];
+    for (uint32_t i = 0; i < 2; ++i) {
+        vkGetPhysicalDeviceProperties(devices[i], &properties[i]);
+        EXPECT_EQ(properties[i].limits.subPixelPrecisionBits, 12u);
+    }
+    EXPECT_NE(std::string(properties[1].deviceName).find("reference, subpixel=12"), std::string::npos)
+        << properties[1].deviceName;
+    EXPECT_NE(memcmp(properties[0].pipelineCacheUUID, properties[1].pipelineCacheUUID, VK_UUID_SIZE), 0);
+    vkDestroyInstance(other, nullptr);
+
+    setenv("VERNIER_AXIS_SUBPIXEL", "7", 1);
+    EXPECT_NE(vkCreateInstance(&info, nullptr, &other), VK_SUCCESS) << "an unknown position must be refused";
+    unsetenv("VERNIER_AXIS_SUBPIXEL");
+    unsetenv("VERNIER_PROFILE");
 }
 
 struct CoreCommand {

@@ -107,6 +107,20 @@ typedef enum VnProfile {
     VN_PROFILE_REFERENCE = 5
 } VnProfile;
 
+/* Every axis can also be set alone, by name: "subpixel=12 math=fine" changes these two of what the profile says.
+ * The axes, from 0; VN_ERROR_INVALID_ARGUMENT behind the last one. Thread-safe; needs no device. */
+typedef struct VnAxisInfo {
+    const char* name;             /* "subpixel" */
+    const char* meaning;          /* a sentence */
+    const char* const* positions; /* from cheap to exact, e.g. "4", "8", "12", "16" */
+    uint32_t positionCount;
+    uint32_t lowestForVulkan; /* positions before this one are below what Vulkan asks for */
+} VnAxisInfo;
+
+VN_API VnResult vnGetAxis(uint32_t index, VnAxisInfo* info);
+/* The position of axis `index` in a profile: an index into `positions`. */
+VN_API VnResult vnGetAxisPosition(uint32_t index, VnProfile profile, uint32_t* position);
+
 /* ---- Device ---- */
 
 /* Where big allocations (buffers, images) come from. Both functions must be thread-safe. */
@@ -122,6 +136,7 @@ typedef struct VnDeviceDesc {
     uint32_t threads;  /* worker threads, the background thread included; 0: one per usable CPU (affinity mask and
                           cgroup quota); at most 256 */
     VnProfile profile; /* of programs that do not choose their own */
+    const char* axes;  /* NULL, or the axes to change in that profile: "axis=position ..." */
     VnMessageCallback message; /* NULL: none. Also gets warnings */
     void* messageUser;
     VnAllocator allocator; /* both functions NULL: the C++ heap */
@@ -256,7 +271,8 @@ typedef struct VnProgramDesc {
     VnShader vertex;
     VnShader fragment; /* {0}: no fragment stage: only depth and stencil are written */
     VnShader compute;  /* stands alone: a program for dispatches */
-    VnProfile profile; /* 0: the device's */
+    VnProfile profile; /* 0: the device's, with its axes */
+    const char* axes;  /* NULL, or the axes to change in that: "axis=position ..." */
     uint32_t _end;
 } VnProgramDesc;
 

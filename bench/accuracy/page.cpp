@@ -1,0 +1,144 @@
+#include "bench/accuracy/page.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/accuracy/chart.h"
+#include "bench/accuracy/choose.h"
+#include "bench/svg/svg.h"
+#include "conformance/report/html.h"
+#include "conformance/report/picture.h"
+
+namespace vernier::bench {
+namespace {
+
+using namespace conformance;
+
+/// Red above the exact value, blue below it, on a logarithmic scale that is the same everywhere: from 1e-7 to 1e-1 of
+/// the full range.
+Rgb8 errorColor(double codes) {
+    constexpr double kFirstDecade = -7, kDecades = 6;
+    if (codes == 0) return {14, 16, 22};
+    const double decade = std::isinf(codes) ? 0 : std::log10(std::abs(codes) / 255);
+    const double strength = 0.15 + 0.85 * std::clamp((decade - kFirstDecade) / kDecades, 0.0, 1.0);
+    const auto scaled = [&](double full) { return static_cast<uint8_t>(std::lround(full * strength)); };
+    return codes > 0 ? Rgb8{scaled(255), scaled(84), scaled(56)} : Rgb8{scaled(70), scaled(150), scaled(255)};
+}
+
+Picture errorMap(const RenderedImage& image, const OracleImage& oracle) {
+    Picture picture(image.extent.width, image.extent.height);
+    const std::vector<double> errors = signedErrors(image, oracle);
+    std::transform(errors.begin(), errors.end(), picture.pixels.begin(), errorColor);
+    return picture;
+}
+
+std::string number(double value) {
+    return std::isinf(value) ? "NaN" : format("%.3g", value);
+}
+
+std::string vector4(const std::array<double, 4>& values) {
+    return precise(values[0]) + ", " + precise(values[1]) + ", " + precise(values[2]) + ", " + precise(values[3]);
+}
+
+std::string figuresTable(const AccuracyRun& run, const MeasuredScene& scene) {
+    const AccuracyFigures& base = scene.figures.at(kBaseProfile);
+    const std::vector<std::string> front = paretoFront(run, scene);
+    std::string html =
+        "<table><tr><th>position<th>ms<th>of standard<th>mean error<th>worst error<th>outside<th>misplaced"
+        "<th>holes<th>doubles<th></tr>";
+    for (const AccuracyPosition& position : run.positions) {
+        const AccuracyFigures& f = scene.figures.at(position.label);
+        html += "<tr><td>" + escapeHtml(position.label);
+        if (!f.failure.empty()) {
+            html += "<td colspan=9>" + escapeHtml(f.failure) + "</tr>";
+            continue;
+        }
+        html +=
+            "<td>" + format("%.3f", f.frame) + "<td>" + (base.frame > 0 ? format("%.2f", f.frame / base.frame) : "");
+        html += "<td>" + number(f.mean) + "<td>" + number(f.worst);
+        for (const uint64_t count : {f.outside, f.misplaced, f.holes, f.doubles}) html += "<td>" + grouped(count);
+        const bool onFront = std::find(front.begin(), front.end(), position.label) != front.end();
+        html += std::string("<td>") + (onFront ? "on the front" : "") +
+                (position.belowVulkan ? " below what Vulkan asks for" : "") + "</tr>";
+    }
+    return html + "</table>\n";
+}
+
+/// Error maps of the profiles and drivers, and the worst pixel of each magnified.
+std::string maps(const AccuracyRun& run, const MeasuredScene& scene) {
+    constexpr uint32_t kSquare = 9, kScale = 16;
+    std::string html = "<div class=pictures>";
+    for (const AccuracyPosition& position : run.positions) {
+        const auto image = scene.images.find(position.label);
+        if (image == scene.images.end() || !position.axis.empty()) continue;
+        const AccuracyFigures& f = scene.figures.at(position.label);
+        const Picture map = errorMap(image->second, scene.oracle);
+        html += "<figure>" + imageTag(map, "error of " + position.label) +
+                imageTag(magnified(map, f.worstX, f.worstY, kSquare, kScale), "its worst pixel") + "<figcaption>" +
+                escapeHtml(position.label) + ": worst at " + std::to_string(f.worstX) + ", " +
+                std::to_string(f.worstY) + ": " + vector4(f.worstGot) + ", exactly " + vector4(f.worstExact) +
+                "</figcaption></figure>";
+    }
+    return html + "</div>\n";
+}
+
+/// Rows: scenes; columns: profiles and drivers; cells: time ratio, worst error, holes and doubles.
+std::string overview(const AccuracyRun& run) {
+    std::string html = "<table><tr><th>scene<th>separates";
+    for (const AccuracyPosition& position : run.positions)
+        if (position.axis.empty()) html += "<th>" + escapeHtml(position.label);
+    html += "</tr>";
+    for (const MeasuredScene& scene : run.scenes) {
+        const AccuracyFigures& base = scene.figures.at(kBaseProfile);
+        html += "<tr><td><a href='#" + std::string(scene.scene->name) + "'>" + scene.scene->name + "</a><td>" +
+                escapeHtml(scene.scene->separates);
+        for (const AccuracyPosition& position : run.positions) {
+            if (!position.axis.empty()) continue;
+            const AccuracyFigures& f = scene.figures.at(position.label);
+            html += "<td>";
+            if (!f.failure.empty())
+                html += "failed";
+            else
+                html += format("%.2f / ", base.frame > 0 ? f.frame / base.frame : 1) + number(f.worst) + " / " +
+                        grouped(f.holes) + " / " + grouped(f.doubles);
+        }
+        html += "</tr>";
+    }
+    return html + "</table>\n";
+}
+
+std::string verdicts(const AccuracyRun& run) {
+    std::string html = "<p>Positions that are on no scene's front: ";
+    const std::vector<std::string> never = neverOnFront(run);
+    if (never.empty()) html += "none";
+    for (size_t i = 0; i < never.size(); ++i) html += (i ? ", " : "") + escapeHtml(never[i]);
+    return html + ".</p>\n";
+}
+
+}  // namespace
+
+Result<std::string> accuracyPage(const AccuracyRun& run) {
+    std::string body =
+        "<h1>What accuracy costs</h1><p>Each scene is drawn at every position of the dial, with each "
+        "axis alone, and by other drivers. Errors are absolute, against the exact values, in units of "
+        "1/255 of the full range; pixels whose coverage may legally differ are left out. Misplaced: "
+        "pixels that show another surface than the exact geometry, which is not snapped to any grid. "
+        "Holes and doubles: pixels that the mesh covers too seldom or too often. Time is the median of "
+        "steady frames of the same scene drawn larger.</p><p>" +
+        escapeHtml(run.machine) +
+        "</p>\n<h2>Scenes by positions</h2><p>time against standard / worst "
+        "error / holes / doubles</p>" +
+        overview(run) + verdicts(run);
+    for (const MeasuredScene& scene : run.scenes) {
+        const AccuracyScene& about = *scene.scene;
+        body += "<h2 id='" + std::string(about.name) + "'>" + about.name + "</h2><p>" + escapeHtml(about.description) +
+                " Separates: " + escapeHtml(about.separates) +
+                format(". Judged at %u x %u, timed at %u x %u.</p>", about.judged.width, about.judged.height,
+                       about.timed.width, about.timed.height);
+        body += paretoSvg(run, scene) + axesSvg(run, scene) + errorBarSvg(run, scene) + figuresTable(run, scene) +
+                maps(run, scene);
+    }
+    return page("What accuracy costs", body);
+}
+
+}  // namespace vernier::bench
