@@ -104,22 +104,6 @@ VnResult vnGetDeviceInfo(VnDevice device, VnDeviceInfo* info) {
     });
 }
 
-VnResult vnGetAxis(uint32_t index, VnAxisInfo* info) {
-    if (!info || index >= axes().size()) return VN_ERROR_INVALID_ARGUMENT;
-    const Axis& axis = axes()[index];
-    *info = {axis.name, axis.meaning, axis.positions.data(), static_cast<uint32_t>(axis.positions.size()),
-             static_cast<uint32_t>(axis.lowestForVulkan)};
-    return VN_SUCCESS;
-}
-
-VnResult vnGetAxisPosition(uint32_t index, VnProfile profile, uint32_t* position) {
-    if (!position || index >= axes().size()) return VN_ERROR_INVALID_ARGUMENT;
-    const Result<Accuracy> accuracy = accuracyFrom(profile, nullptr, accuracyOf(Profile::standard));
-    if (!accuracy) return VN_ERROR_INVALID_ARGUMENT;
-    *position = static_cast<uint32_t>(axes()[index].get(*accuracy));
-    return VN_SUCCESS;
-}
-
 VkFormatFeatureFlags vnGetFormatFeatures(VnDevice, VkFormat format) {
     const FormatInfo* info = findFormat(format);
     return info ? info->optimalTilingFeatures | info->bufferFeatures : 0;

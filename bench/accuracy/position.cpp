@@ -1,6 +1,6 @@
 #include "bench/accuracy/position.h"
 
-#include <vernier/vernier.h>
+#include <vernier/vernier_accuracy.h>
 
 namespace vernier::bench {
 namespace {

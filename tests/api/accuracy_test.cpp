@@ -1,4 +1,7 @@
 // The accuracy dial at the public boundary: profiles, and axes alone.
+#include <vernier/vernier_accuracy.h>
+
+#include <cmath>
 #include <set>
 #include <string>
 
@@ -99,6 +102,128 @@ TEST_F(ProgramAccuracy, aProgramChangesTheAxesOfItsDevice) {
     desc.axes = "math=perfect";
     EXPECT_EQ(vnCreateProgram(device_, &desc, &made), VN_ERROR_INVALID_ARGUMENT);
     EXPECT_NE(lastError().find("perfect"), std::string::npos) << lastError();
+}
+
+/// A renderer on paper: what each profile takes and shows; time passes only while it draws.
+struct PaperRenderer {
+    double milliseconds[6] = {0, 1, 2, 4, 8, 16};
+    double shown[6] = {0, 0.5, 0.9, 0.99, 0.999, 1.0};
+    double now = 0;
+    VnProfile last = VN_PROFILE_DEFAULT;
+    int draws = 0;
+    VnProfile failing = VN_PROFILE_DEFAULT;
+};
+
+VnBudgetDesc budgetOf(PaperRenderer& renderer) {
+    VnBudgetDesc desc{};
+    desc.user = &renderer;
+    desc.draw = [](void* user, VnProfile profile) {
+        auto& paper = *static_cast<PaperRenderer*>(user);
+        // Every third frame is late: the median does not mind.
+        paper.now += paper.milliseconds[profile] * (++paper.draws % 3 == 0 ? 10 : 1);
+        paper.last = profile;
+        return profile == paper.failing ? VN_ERROR_DEVICE_LOST : VN_SUCCESS;
+    };
+    desc.read = [](void* user, double* values, size_t count) {
+        const auto& paper = *static_cast<PaperRenderer*>(user);
+        for (size_t i = 0; i < count; ++i) values[i] = i == 1 ? paper.shown[paper.last] : 0;
+        return VN_SUCCESS;
+    };
+    desc.valueCount = 3;
+    desc.clock = [](void* user) { return static_cast<PaperRenderer*>(user)->now; };
+    return desc;
+}
+
+TEST(Budget, MostExactWithinTime) {
+    PaperRenderer renderer;
+    VnBudgetDesc desc = budgetOf(renderer);
+    VnBudgetResult result{};
+    const std::pair<double, VnProfile> expected[] = {
+        {100, VN_PROFILE_REFERENCE}, {16, VN_PROFILE_REFERENCE}, {15, VN_PROFILE_FINE}, {4, VN_PROFILE_STANDARD}};
+    for (const auto& [milliseconds, profile] : expected) {
+        desc.maxMilliseconds = milliseconds;
+        ASSERT_EQ(vnChooseProfile(&desc, &result), VN_SUCCESS) << milliseconds;
+        EXPECT_EQ(result.profile, profile) << milliseconds;
+        EXPECT_EQ(result.milliseconds, renderer.milliseconds[profile]);
+    }
+}
+
+TEST(Budget, BelowVulkanOnlyWhenAskedFor) {
+    PaperRenderer renderer;
+    VnBudgetDesc desc = budgetOf(renderer);
+    desc.maxMilliseconds = 2;
+    VnBudgetResult result{};
+    EXPECT_EQ(vnChooseProfile(&desc, &result), VN_ERROR_UNSUPPORTED);
+    EXPECT_EQ(result.profile, VN_PROFILE_STANDARD) << "the fastest that Vulkan allows";
+    desc.belowVulkan = 1;
+    EXPECT_EQ(vnChooseProfile(&desc, &result), VN_SUCCESS);
+    EXPECT_EQ(result.profile, VN_PROFILE_FAST);
+}
+
+TEST(Budget, FastestWithinError) {
+    PaperRenderer renderer;
+    VnBudgetDesc desc = budgetOf(renderer);
+    desc.belowVulkan = 1;
+    VnBudgetResult result{};
+    const std::pair<double, VnProfile> expected[] = {
+        {0.6, VN_PROFILE_DRAFT}, {0.2, VN_PROFILE_FAST}, {0.005, VN_PROFILE_FINE}, {1e-9, VN_PROFILE_REFERENCE}};
+    for (const auto& [error, profile] : expected) {
+        desc.maxError = error;
+        ASSERT_EQ(vnChooseProfile(&desc, &result), VN_SUCCESS) << error;
+        EXPECT_EQ(result.profile, profile) << error;
+        EXPECT_DOUBLE_EQ(result.error, 1.0 - renderer.shown[profile]);
+    }
+}
+
+TEST(Budget, BothBoundsHold) {
+    PaperRenderer renderer;
+    VnBudgetDesc desc = budgetOf(renderer);
+    desc.maxMilliseconds = 9;
+    desc.maxError = 0.0001;
+    VnBudgetResult result{};
+    EXPECT_EQ(vnChooseProfile(&desc, &result), VN_ERROR_UNSUPPORTED);
+    EXPECT_EQ(result.profile, VN_PROFILE_STANDARD) << "the fastest that Vulkan allows";
+    desc.maxMilliseconds = 20;
+    EXPECT_EQ(vnChooseProfile(&desc, &result), VN_SUCCESS);
+    EXPECT_EQ(result.profile, VN_PROFILE_REFERENCE);
+}
+
+TEST(Budget, NumbersThatAreNoneAreInfinitelyWrong) {
+    PaperRenderer renderer;
+    renderer.shown[VN_PROFILE_STANDARD] = std::nan("");
+    VnBudgetDesc desc = budgetOf(renderer);
+    desc.maxError = 1e6;
+    VnBudgetResult result{};
+    EXPECT_EQ(vnChooseProfile(&desc, &result), VN_SUCCESS);
+    EXPECT_EQ(result.profile, VN_PROFILE_FINE);
+}
+
+TEST(Budget, ErrorsOfCallbacksComeBack) {
+    PaperRenderer renderer;
+    renderer.failing = VN_PROFILE_FINE;
+    VnBudgetDesc desc = budgetOf(renderer);
+    desc.maxMilliseconds = 10;
+    VnBudgetResult result{};
+    EXPECT_EQ(vnChooseProfile(&desc, &result), VN_ERROR_DEVICE_LOST);
+}
+
+TEST(Budget, IncompleteDescriptionsAreRefused) {
+    PaperRenderer renderer;
+    VnBudgetResult result{};
+    VnBudgetDesc desc = budgetOf(renderer);
+    EXPECT_EQ(vnChooseProfile(&desc, &result), VN_ERROR_INVALID_ARGUMENT) << "nothing is bound";
+    desc.maxError = 0.1;
+    desc.valueCount = 0;
+    EXPECT_EQ(vnChooseProfile(&desc, &result), VN_ERROR_INVALID_ARGUMENT) << "no values to compare";
+    desc = budgetOf(renderer);
+    desc.maxMilliseconds = 5;
+    desc.draw = nullptr;
+    EXPECT_EQ(vnChooseProfile(&desc, &result), VN_ERROR_INVALID_ARGUMENT);
+    desc = budgetOf(renderer);
+    desc.maxMilliseconds = 5;
+    desc._end = 7;
+    EXPECT_EQ(vnChooseProfile(&desc, &result), VN_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(vnChooseProfile(nullptr, &result), VN_ERROR_INVALID_ARGUMENT);
 }
 
 }  // namespace

@@ -97,7 +97,8 @@ VN_HANDLE(VnQuery);
 /* ---- Accuracy ---- */
 
 /* One ordered dial. Watertightness, drawing order, determinism and memory safety hold at every position. Results at
- * VN_PROFILE_STANDARD and above do not depend on the number of threads, the SIMD width or the CPU. */
+ * VN_PROFILE_STANDARD and above do not depend on the number of threads, the SIMD width or the CPU. Each axis of it can be
+ * set alone, too, by name, and chosen by a budget of time or error: vernier_accuracy.h. */
 typedef enum VnProfile {
     VN_PROFILE_DEFAULT = 0, /* VN_PROFILE_STANDARD */
     VN_PROFILE_DRAFT = 1,   /* below Vulkan's minimum */
@@ -106,20 +107,6 @@ typedef enum VnProfile {
     VN_PROFILE_FINE = 4,
     VN_PROFILE_REFERENCE = 5
 } VnProfile;
-
-/* Every axis can also be set alone, by name: "subpixel=12 math=fine" changes these two of what the profile says.
- * The axes, from 0; VN_ERROR_INVALID_ARGUMENT behind the last one. Thread-safe; needs no device. */
-typedef struct VnAxisInfo {
-    const char* name;             /* "subpixel" */
-    const char* meaning;          /* a sentence */
-    const char* const* positions; /* from cheap to exact, e.g. "4", "8", "12", "16" */
-    uint32_t positionCount;
-    uint32_t lowestForVulkan; /* positions before this one are below what Vulkan asks for */
-} VnAxisInfo;
-
-VN_API VnResult vnGetAxis(uint32_t index, VnAxisInfo* info);
-/* The position of axis `index` in a profile: an index into `positions`. */
-VN_API VnResult vnGetAxisPosition(uint32_t index, VnProfile profile, uint32_t* position);
 
 /* ---- Device ---- */
 
