@@ -210,7 +210,7 @@ class WordSampler {
     /// Each lane from its own level: one pass per level that occurs, nearly always one or two.
     HWY_INLINE void readLevels(VI levels, const Point& at, Taps& taps) const {
         const auto only = static_cast<uint32_t>(hn::GetLane(levels));
-        readLevel(call_.view.levels[only], at, taps);
+        readTaps<kWrap>(WordLevel(call_.view.levels[only], at.slice), at.s, at.t, border_, taps);
         auto left = hn::Ne(levels, splatInt(static_cast<int32_t>(only)));
         while (HWY_UNLIKELY(!hn::AllFalse(I32(), left))) {
             alignas(64) int32_t index[kVectorLanes];

@@ -1,6 +1,8 @@
 // Image instructions and interpolation at other places: calls out to the owner of images and planes, one per
 // batch where descriptors do not vary between lanes.
 #include <algorithm>
+#include <array>
+#include <cstring>
 
 #include "spirv_interp/batch/handlers.h"
 
@@ -18,6 +20,14 @@ ImageBinding bindingOf(const Frame& frame, const ir::ImageOp& op, uint32_t image
     if (samplerIndex >= bindings.count[op.samplerResource]) return {};
     return bindings.combine(image, bindings.samplers[bindings.base[op.samplerResource] + samplerIndex]);
 }
+
+/// The lanes of a mask as words, four bits at a time.
+constexpr auto kMaskWords = [] {
+    std::array<std::array<uint32_t, 4>, 16> words{};
+    for (uint32_t bits = 0; bits < 16; ++bits)
+        for (uint32_t k = 0; k < 4; ++k) words[bits][k] = (bits >> k & 1) != 0 ? ~0u : 0u;
+    return words;
+}();
 
 class ImageRunner {
   public:
@@ -95,7 +105,8 @@ class ImageRunner {
             call_.mask = nullptr;
         } else {
             call_.mask = frame_.imageScratch;
-            for (uint32_t k = 0; k < frame_.lanes; ++k) frame_.imageScratch[k] = group.test(k) ? ~0u : 0u;
+            for (uint32_t k = 0; k < frame_.lanes; k += 4)
+                std::memcpy(frame_.imageScratch + k, kMaskWords[group.bits >> k & 15].data(), sizeof kMaskWords[0]);
         }
         for (uint32_t k = 0; k < 4; ++k) {
             uint32_t* row = const_cast<uint32_t*>(rowAt(site_.result[k]));
