@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/vulkan/structures.h"
+
 namespace vernier::test {
 
 /// Points the loader to the driver of this build. Call before the first Vulkan call.
@@ -78,13 +80,5 @@ class VulkanTest : public testing::Test {
     std::vector<std::function<void()>> deferred_;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
 };
-
-/// A structure with its sType set and everything else zero.
-template <class T>
-T make(VkStructureType type) {
-    T result{};
-    result.sType = type;
-    return result;
-}
 
 }  // namespace vernier::test
