@@ -2,6 +2,7 @@
 
 #include "conformance/oracle/quantise.h"
 
+#include <algorithm>
 #include <cstring>
 #include <optional>
 #include <string>
@@ -92,7 +93,7 @@ std::vector<std::optional<uint32_t>> vertexOrder(const Scene& scene, const Scene
 }
 
 Result<ShadedVertex> shadeVertex(const Interpreter& shader, Values inputs, uint32_t vertexIndex, uint32_t instance,
-                                 const SceneDraw& draw, ShaderResources& resources) {
+                                 const SceneDraw& draw, ShaderResources& resources, uint32_t viewIndex) {
     const auto set = [&inputs](spv::BuiltIn builtin, uint32_t value) {
         inputs.setInt(builtin, static_cast<int32_t>(value));
     };
@@ -101,6 +102,7 @@ Result<ShadedVertex> shadeVertex(const Interpreter& shader, Values inputs, uint3
     set(spv::BuiltInBaseVertex, draw.indexBuffer == kNone ? draw.first : static_cast<uint32_t>(draw.vertexOffset));
     set(spv::BuiltInBaseInstance, draw.firstInstance);
     set(spv::BuiltInDrawIndex, 0);
+    set(spv::BuiltInViewIndex, viewIndex);
     const auto outcome = shader.run(inputs, resources);
     if (!outcome) return outcome.error();
     ShadedVertex vertex;
@@ -111,6 +113,14 @@ Result<ShadedVertex> shadeVertex(const Interpreter& shader, Values inputs, uint3
     if (const auto clip = builtins.find(spv::BuiltInClipDistance); clip != builtins.end()) {
         for (const auto& distance : clip->second) vertex.clipDistances.push_back(distance.number);
     }
+    const auto first = [&](spv::BuiltIn builtin) -> const reference::Scalar<double>* {
+        const auto found = builtins.find(builtin);
+        return found == builtins.end() || found->second.empty() ? nullptr : &found->second[0];
+    };
+    if (const auto* size = first(spv::BuiltInPointSize)) vertex.pointSize = size->number;
+    if (const auto* layer = first(spv::BuiltInLayer)) vertex.layer = static_cast<uint32_t>(layer->bits);
+    if (const auto* viewport = first(spv::BuiltInViewportIndex))
+        vertex.viewport = static_cast<uint32_t>(viewport->bits);
     vertex.varyings = outcome->outputs.locations;
     return vertex;
 }
@@ -147,13 +157,43 @@ std::vector<std::array<uint32_t, 3>> trianglesOf(VkPrimitiveTopology topology, u
     return result;
 }
 
-Result<DrawGeometry> assembleDraw(const Scene& scene, const SceneDraw& draw, ShaderResources& resources) {
+namespace {
+
+/// The primitives of vertices that follow each other without a restart, by vertex number.
+std::vector<AssembledPrimitive> primitivesOf(VkPrimitiveTopology topology, uint32_t count) {
+    std::vector<AssembledPrimitive> result;
+    switch (topology) {
+        case VK_PRIMITIVE_TOPOLOGY_POINT_LIST:
+            for (uint32_t i = 0; i < count; ++i) result.push_back({{i}, 1});
+            break;
+        case VK_PRIMITIVE_TOPOLOGY_LINE_LIST:
+            for (uint32_t i = 0; i + 1 < count; i += 2) result.push_back({{i, i + 1}, 2});
+            break;
+        case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP:
+            for (uint32_t i = 0; i + 1 < count; ++i) result.push_back({{i, i + 1}, 2});
+            break;
+        default:
+            for (const auto& triangle : trianglesOf(topology, count)) result.push_back({triangle, 3});
+            break;
+    }
+    for (AssembledPrimitive& primitive : result) {
+        primitive.startsStrip = topology != VK_PRIMITIVE_TOPOLOGY_LINE_STRIP || primitive.vertices[0] == 0;
+    }
+    return result;
+}
+
+bool isAssembled(VkPrimitiveTopology topology) {
+    return topology <= VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN;  // the six without adjacency come first
+}
+
+}  // namespace
+
+Result<DrawGeometry> assembleDraw(const Scene& scene, const SceneDraw& draw, ShaderResources& resources,
+                                  uint32_t viewIndex) {
     const ScenePipeline& pipeline = scene.pipelines[draw.pipeline];
-    if (pipeline.topology != VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST &&
-        pipeline.topology != VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP &&
-        pipeline.topology != VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN) {
+    if (!isAssembled(pipeline.topology)) {
         return unsupported("oracle: pipeline " + std::to_string(draw.pipeline) + ": topology " +
-                           std::to_string(pipeline.topology) + " is not triangles");
+                           std::to_string(pipeline.topology));
     }
     for (const VkVertexInputAttributeDescription& attribute : pipeline.vertexAttributes) {
         if (!findPixelFormat(attribute.format)) {
@@ -176,9 +216,14 @@ Result<DrawGeometry> assembleDraw(const Scene& scene, const SceneDraw& draw, Sha
         std::vector<uint32_t> run;            // vertices since the last restart
         uint32_t primitiveId = 0;
         const auto flush = [&] {
-            for (const auto& t : trianglesOf(pipeline.topology, static_cast<uint32_t>(run.size()))) {
-                geometry.triangles.push_back({run[t[0]], run[t[1]], run[t[2]]});
-                geometry.primitiveIds.push_back(primitiveId++);
+            for (AssembledPrimitive primitive : primitivesOf(pipeline.topology, static_cast<uint32_t>(run.size()))) {
+                // Vulkan, Provoking Vertex: the first one in the order of the topology, or the vertex that comes last.
+                const auto end = primitive.vertices.begin() + primitive.count;
+                const uint32_t last = *std::max_element(primitive.vertices.begin(), end);
+                primitive.provoking = run[pipeline.provokingVertexLast ? last : primitive.vertices[0]];
+                std::for_each(primitive.vertices.begin(), end, [&](uint32_t& vertex) { vertex = run[vertex]; });
+                primitive.id = primitiveId++;
+                geometry.primitives.push_back(primitive);
             }
             run.clear();
         };
@@ -189,8 +234,8 @@ Result<DrawGeometry> assembleDraw(const Scene& scene, const SceneDraw& draw, Sha
             }
             const auto [entry, fresh] = shaded.try_emplace(*number, static_cast<uint32_t>(geometry.vertices.size()));
             if (fresh) {
-                auto vertex =
-                    shadeVertex(*shader, fetcher.fetch(*number, instance), *number, instance, draw, resources);
+                auto vertex = shadeVertex(*shader, fetcher.fetch(*number, instance), *number, instance, draw, resources,
+                                          viewIndex);
                 if (!vertex) return vertex.error();
                 // VK_EXT_depth_clip_control: depths from -w to w end up where (z + w) / 2 from 0 to w would.
                 if (pipeline.depthNegativeOneToOne)

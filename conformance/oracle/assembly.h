@@ -1,4 +1,4 @@
-// From a draw to triangles: index and vertex fetch, the vertex shader, primitive assembly.
+// From a draw to primitives: index and vertex fetch, the vertex shader, primitive assembly.
 #pragma once
 
 #include "base/result.h"
@@ -17,24 +17,31 @@ namespace vernier::conformance::exact {
 struct ShadedVertex {
     Clip<double> position{};
     std::vector<double> clipDistances;
+    double pointSize = 1;
+    uint32_t layer = 0, viewport = 0;
     std::map<reference::Location, reference::Texel<double>> varyings;
 };
 
-/// Indices into DrawGeometry::vertices in the order of Vulkan's topology definitions; the first is the
-/// provoking vertex.
-using AssembledTriangle = std::array<uint32_t, 3>;
+/// A triangle, line or point: indices into DrawGeometry::vertices in the order of Vulkan's topology definitions.
+struct AssembledPrimitive {
+    std::array<uint32_t, 3> vertices{};  // the first `count` of them
+    uint32_t count = 3;
+    uint32_t provoking = 0;  // an index into DrawGeometry::vertices
+    uint32_t id = 0;
+    bool startsStrip = false;  // of lines: a segment of a list, or the first one of a strip
+};
 
 struct DrawGeometry {
     std::vector<ShadedVertex> vertices;
-    std::vector<AssembledTriangle> triangles;
-    std::vector<uint32_t> primitiveIds;
+    std::vector<AssembledPrimitive> primitives;
 };
 
 /// Parses a scene's shader with its specialisation.
 Result<reference::Module> parseShader(const SceneShader& shader);
 
-/// All triangles of all instances of a draw. Points and lines are refused.
-Result<DrawGeometry> assembleDraw(const Scene& scene, const SceneDraw& draw, ShaderResources& resources);
+/// All primitives of all instances of a draw, seen by one view. Adjacency and patches are refused.
+Result<DrawGeometry> assembleDraw(const Scene& scene, const SceneDraw& draw, ShaderResources& resources,
+                                  uint32_t viewIndex = 0);
 
 /// The vertex numbers of each triangle within `count` vertices that follow each other (no restart inside).
 std::vector<std::array<uint32_t, 3>> trianglesOf(VkPrimitiveTopology topology, uint32_t count);

@@ -71,7 +71,7 @@ ModuleTraits scan(const std::vector<uint32_t>& words) {
 
 }  // namespace
 
-Result<FragmentShader> FragmentShader::create(const Scene& scene, const ScenePipeline& pipeline) {
+Result<FragmentShader> FragmentShader::create(const Scene& scene, const ScenePipeline& pipeline, uint32_t viewIndex) {
     const SceneShader& shader = scene.shaders[pipeline.fragmentShader];
     auto module = parseShader(shader);
     if (!module) return module.error();
@@ -82,6 +82,7 @@ Result<FragmentShader> FragmentShader::create(const Scene& scene, const ScenePip
     auto rounded = Interpreter::create(*module, spv::ExecutionModelFragment, "main", rounding);
     if (!rounded) return rounded.error();
     FragmentShader result(*module, *nominal, *rounded);
+    result.viewIndex_ = viewIndex;
 
     const ModuleTraits traits = scan(shader.spirv);
     result.imprecision_ = traits.imprecision;
@@ -100,14 +101,15 @@ Result<FragmentShader> FragmentShader::create(const Scene& scene, const ScenePip
                 result.outputs_.push_back(v);
                 continue;
             }
-            const bool perSample =
-                v.sample ||
-                (v.isBuiltin && (v.builtin == spv::BuiltInSampleId || v.builtin == spv::BuiltInSamplePosition));
-            if (pipeline.samples != VK_SAMPLE_COUNT_1_BIT && (perSample || v.centroid)) {
-                return unsupported("oracle: fragment input '" + v.name + "' asks for per-sample or centroid shading");
-            }
-            const bool interpolated =
-                v.isBuiltin ? v.builtin == spv::BuiltInFragCoord : !v.flat && !isIntegerVariable(v);
+            const bool multisampled = pipeline.samples != VK_SAMPLE_COUNT_1_BIT;
+            result.perSample_ =
+                result.perSample_ ||
+                (multisampled && (v.sample || (v.isBuiltin && (v.builtin == spv::BuiltInSampleId ||
+                                                               v.builtin == spv::BuiltInSamplePosition))));
+            result.hasCentroids_ = result.hasCentroids_ || (multisampled && v.centroid);
+            const bool interpolated = v.isBuiltin
+                                          ? v.builtin == spv::BuiltInFragCoord || v.builtin == spv::BuiltInPointCoord
+                                          : !v.flat && !isIntegerVariable(v);
             result.variesWithPosition_ = result.variesWithPosition_ || interpolated;
             result.inputs_.push_back(v);
         }
@@ -127,7 +129,8 @@ void FragmentShader::setVariable(const InterfaceVariable& variable, const Fragme
         reference::Texel<double>& texel = values.locations[location];
         for (size_t c = variable.component; c < std::min<size_t>(4, variable.component + variable.components); ++c) {
             if (variable.flat || isIntegerVariable(variable)) {
-                texel[c] = at[0][c];
+                const auto found = source.provoking->varyings.find(location);
+                if (found != source.provoking->varyings.end()) texel[c] = found->second[c];
                 continue;
             }
             const std::array<double, 3> f{at[0][c].number, at[1][c].number, at[2][c].number};
@@ -138,16 +141,22 @@ void FragmentShader::setVariable(const InterfaceVariable& variable, const Fragme
 }
 
 std::array<FragmentShader::Values, 4> FragmentShader::inputsAt(const FragmentSource& source, uint32_t x, uint32_t y,
-                                                               double shiftX, double shiftY) const {
+                                                               const ShadingPlace& place, double shiftX, double shiftY,
+                                                               size_t centroid) const {
     std::array<Values, 4> result;
     for (uint32_t lane = 0; lane < 4; ++lane) {
         Values& values = result[lane];
-        const double px = x + lane % 2 + 0.5, py = y + lane / 2 + 0.5;
+        const double px = x + lane % 2 + place.offset[0], py = y + lane / 2 + place.offset[1];
         const auto& shape = source.triangle->homogeneous();
         const auto weights = shape.weights(px + shiftX, py + shiftY);
+        auto centroidWeights = weights;
+        if (const auto& places = place.centroids[lane]; !places.empty()) {
+            const std::array<double, 2>& at = places[std::min(centroid, places.size() - 1)];
+            centroidWeights = shape.weights(at[0] + shiftX, at[1] + shiftY);
+        }
         for (const InterfaceVariable& v : inputs_) {
             if (!v.isBuiltin) {
-                setVariable(v, source, weights, values);
+                setVariable(v, source, v.centroid ? centroidWeights : weights, values);
                 continue;
             }
             switch (v.builtin) {
@@ -160,8 +169,29 @@ std::array<FragmentShader::Values, 4> FragmentShader::inputsAt(const FragmentSou
                 case spv::BuiltInPrimitiveId:
                     values.setInt(v.builtin, static_cast<int32_t>(source.primitiveId));
                     break;
+                case spv::BuiltInPointCoord:
+                    if (source.point != nullptr) {
+                        const auto [u, w] = source.point->coordinate(px + shiftX, py + shiftY);
+                        values.setFloat(v.builtin, {u, w});
+                    }
+                    break;
+                case spv::BuiltInSampleId:
+                    values.setInt(v.builtin, static_cast<int32_t>(place.sample));
+                    break;
+                case spv::BuiltInSamplePosition:
+                    values.setFloat(v.builtin, {place.offset[0], place.offset[1]});
+                    break;
+                case spv::BuiltInLayer:
+                    values.setInt(v.builtin, static_cast<int32_t>(source.provoking->layer));
+                    break;
+                case spv::BuiltInViewportIndex:
+                    values.setInt(v.builtin, static_cast<int32_t>(source.provoking->viewport));
+                    break;
+                case spv::BuiltInViewIndex:
+                    values.setInt(v.builtin, static_cast<int32_t>(viewIndex_));
+                    break;
                 default:
-                    break;  // reads as 0: SampleId and layers of what is modelled
+                    break;  // reads as 0
             }
         }
     }
@@ -170,8 +200,8 @@ std::array<FragmentShader::Values, 4> FragmentShader::inputsAt(const FragmentSou
 
 Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSource& source, uint32_t x, uint32_t y,
                                                                const std::array<bool, 4>& covered,
-                                                               const OutputState& output,
-                                                               ShaderResources& resources) const {
+                                                               const OutputState& output, ShaderResources& resources,
+                                                               const ShadingPlace& place) const {
     ShaderRuns runs;
     std::array<bool, 4> helper;
     for (size_t i = 0; i < 4; ++i) helper[i] = !covered[i];
@@ -181,7 +211,7 @@ Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSou
     resources.end = RangeEnd::nominal;
     resources.sawRange = false;
     resources.flags = 0;
-    const auto inputs = inputsAt(source, x, y, 0, 0);
+    const auto inputs = inputsAt(source, x, y, place, 0, 0);
     auto nominal = run(nominal_, inputs);
     if (!nominal) return nominal.error();
     runs.nominal = std::move(*nominal);
@@ -196,9 +226,14 @@ Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSou
         const double d = source.triangle->freedom();
         for (const double dx : {-d, d}) {
             for (const double dy : {-d, d}) {
-                if (Status s = add(runs.shifted, nominal_, inputsAt(source, x, y, dx, dy)); !s) return s.error();
+                if (Status s = add(runs.shifted, nominal_, inputsAt(source, x, y, place, dx, dy)); !s) return s.error();
             }
         }
+    }
+    size_t centroids = 0;
+    for (const auto& places : place.centroids) centroids = std::max(centroids, places.size());
+    for (size_t i = 1; i < centroids; ++i) {
+        if (Status s = add(runs.shifted, nominal_, inputsAt(source, x, y, place, 0, 0, i)); !s) return s.error();
     }
     if (filtered) {
         for (const RangeEnd end : {RangeEnd::low, RangeEnd::high}) {

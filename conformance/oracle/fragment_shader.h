@@ -4,6 +4,7 @@
 //   - the quad moved by the snapping freedom in the four diagonal directions (inputs, FragCoord.z and w move;
 //   FragCoord.xy
 //     does not);
+//   - centroid inputs at each of the places they may choose;
 //   - every texture read at the lower, then at the upper end of its range;
 //   - derivatives per quad instead of per row and column (where the module takes derivatives);
 //   - every result rounded to float32; its deviation, times 8, stands for the float rounding of another
@@ -19,6 +20,7 @@
 
 #include "base/result.h"
 #include "conformance/oracle/assembly.h"
+#include "conformance/oracle/line_shape.h"
 #include "conformance/oracle/sample_states.h"
 #include "conformance/oracle/shader_resources.h"
 #include "conformance/oracle/triangle.h"
@@ -30,24 +32,38 @@
 
 namespace vernier::conformance::exact {
 
-/// A triangle with everything its fragments read.
+/// A primitive with everything its fragments read.
 struct FragmentSource {
-    const Triangle* triangle = nullptr;
-    std::array<const ShadedVertex*, 3> vertices{};  // the first is provoking
+    const Triangle* triangle = nullptr;             // of lines and points: their carrier
+    std::array<const ShadedVertex*, 3> vertices{};  // of the triangle
+    const ShadedVertex* provoking = nullptr;
+    const PointShape* point = nullptr;  // of points
     bool frontFacing = false;
     uint32_t primitiveId = 0;
 };
 
+/// Where in its pixel each of a quad's fragments is shaded.
+struct ShadingPlace {
+    std::array<double, 2> offset{0.5, 0.5};  // of inputs and FragCoord, from the pixel's upper left corner
+    uint32_t sample = 0;                     // SampleId
+    // Per lane: the places, in pixels of the framebuffer, among which centroid inputs may choose; the first is the
+    // declared one. None: they are taken at `offset`.
+    std::array<std::vector<std::array<double, 2>>, 4> centroids;
+};
+
 class FragmentShader {
   public:
-    /// For pipelines without a fragment shader, use no FragmentShader at all. Refuses shaders that need what
-    /// the oracle does not model: per-sample shading, centroid inputs with several samples.
-    static Result<FragmentShader> create(const Scene& scene, const ScenePipeline& pipeline);
+    /// For pipelines without a fragment shader, use no FragmentShader at all.
+    static Result<FragmentShader> create(const Scene& scene, const ScenePipeline& pipeline, uint32_t viewIndex = 0);
 
     /// The quad whose upper left pixel is (x, y). `resources` is used by one thread at a time.
     Result<std::array<FragmentResult, 4>> evaluate(const FragmentSource& source, uint32_t x, uint32_t y,
                                                    const std::array<bool, 4>& covered, const OutputState& output,
-                                                   ShaderResources& resources) const;
+                                                   ShaderResources& resources, const ShadingPlace& place = {}) const;
+
+    /// Whether it runs for each sample because of what it reads.
+    bool perSample() const { return perSample_; }
+    bool hasCentroids() const { return hasCentroids_; }
 
   private:
     using Interpreter = reference::Interpreter<double>;
@@ -57,8 +73,9 @@ class FragmentShader {
     FragmentShader(reference::Module module, Interpreter nominal, Interpreter rounded)
         : module_(std::move(module)), nominal_(std::move(nominal)), rounded_(std::move(rounded)) {}
 
-    std::array<Values, 4> inputsAt(const FragmentSource& source, uint32_t x, uint32_t y, double shiftX,
-                                   double shiftY) const;
+    /// `centroid`: which of each lane's places centroid inputs take.
+    std::array<Values, 4> inputsAt(const FragmentSource& source, uint32_t x, uint32_t y, const ShadingPlace& place,
+                                   double shiftX, double shiftY, size_t centroid = 0) const;
     void setVariable(const reference::InterfaceVariable& variable, const FragmentSource& source,
                      const std::array<double, 3>& weights, Values& values) const;
 
@@ -67,7 +84,9 @@ class FragmentShader {
     std::shared_ptr<const Interpreter> coarse_;  // only if the module takes derivatives
     std::vector<reference::InterfaceVariable> inputs_, outputs_;
     bool variesWithPosition_ = false;  // reads something interpolated
-    double imprecision_ = 0;           // relative error of the built-in functions used
+    bool perSample_ = false, hasCentroids_ = false;
+    uint32_t viewIndex_ = 0;
+    double imprecision_ = 0;  // relative error of the built-in functions used
 };
 
 }  // namespace vernier::conformance::exact

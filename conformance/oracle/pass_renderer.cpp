@@ -1,17 +1,16 @@
 #include "conformance/oracle/pass_renderer.h"
 
 #include "conformance/oracle/assembly.h"
-#include "conformance/oracle/depth_exact.h"
 #include "conformance/oracle/fragment_shader.h"
+#include "conformance/oracle/prepare.h"
 #include "conformance/oracle/quantise.h"
 #include "conformance/oracle/sample_locations.h"
 #include "conformance/oracle/sample_states.h"
-#include "conformance/oracle/triangle.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <mutex>
+#include <optional>
+#include <span>
 #include <string>
 #include <thread>
 
@@ -19,20 +18,12 @@ namespace vernier::conformance::exact {
 
 namespace {
 
-// One triangle ready for all rows.
-struct PreparedTriangle {
-    Triangle triangle;
-    FragmentSource source;
-    PixelBounds bounds;
-    Interval bias;  // of depth
-    uint64_t depthOrigin = 0;
-    bool culled = false;  // nominally; only kept if another orientation is legal
-};
-
 class PassRenderer {
   public:
-    PassRenderer(const Scene& scene, const ScenePass& pass, const OracleRules& rules, std::vector<ImageStore>& images)
-        : scene_(scene), pass_(pass), rules_(rules), images_(images) {}
+    /// `layer`: of the attachments' layers the one to render; `view`: whether it is a view, which gets every draw.
+    PassRenderer(const Scene& scene, const ScenePass& pass, const OracleRules& rules, std::vector<ImageStore>& images,
+                 uint32_t layer, bool view)
+        : scene_(scene), pass_(pass), rules_(rules), images_(images), layer_(layer), view_(view) {}
 
     Status run() {
         if (Status s = load(); !s) return s;
@@ -46,16 +37,13 @@ class PassRenderer {
 
   private:
     ImageLevel* attachment(const SceneAttachment& a) {
-        return a.image < images_.size() ? &images_[a.image].level(a.mipLevel, a.layer) : nullptr;
+        return a.image < images_.size() ? &images_[a.image].level(a.mipLevel, a.layer + layer_) : nullptr;
     }
 
     Status load() {
         if (pass_.colors.size() > kMaxColorAttachments) {
             return unsupported("oracle: a pass with " + std::to_string(pass_.colors.size()) + " colour attachments");
         }
-        if (pass_.viewMask != 0) return unsupported("oracle: multiview");
-        for (const SceneAttachment& color : pass_.colors)
-            if (color.layerCount != 1) return unsupported("oracle: layered rendering");
         width_ = pass_.extent.width;
         height_ = pass_.extent.height;
         output_.colorCount = pass_.colors.size();
@@ -125,21 +113,29 @@ class PassRenderer {
 
     Status draw(const SceneDraw& draw) {
         const ScenePipeline& pipeline = scene_.pipelines[draw.pipeline];
-        if (Status s = checkModelled(draw, pipeline); !s) return s;
+        if (Status s = checkModelled(pipeline); !s) return s;
         OutputState output = output_;
         output.pipeline = &pipeline;
-        output.viewport = draw.viewport;
         ShaderResources vertexResources(scene_, images_, draw);
-        auto geometry = assembleDraw(scene_, draw, vertexResources);
+        const uint32_t viewIndex = view_ ? layer_ : 0;
+        auto geometry = assembleDraw(scene_, draw, vertexResources, viewIndex);
         if (!geometry) return geometry.error();
         if (vertexResources.wrote) return unsupported("oracle: the vertex shader uses storage buffers or images");
         std::optional<FragmentShader> shader;
         if (pipeline.fragmentShader != kNone) {
-            auto created = FragmentShader::create(scene_, pipeline);
+            auto created = FragmentShader::create(scene_, pipeline, viewIndex);
             if (!created) return created.error();
             shader = std::move(*created);
         }
-        const std::vector<PreparedTriangle> triangles = prepare(draw, pipeline, *geometry);
+        const PrepareContext context{draw,
+                                     pipeline,
+                                     {width_, height_},
+                                     rules_.subPixelBits,
+                                     output_.depthFormat,
+                                     view_ ? std::nullopt : std::optional(layer_)};
+        const Result<std::vector<PreparedPrimitive>> primitives = preparePrimitives(context, *geometry);
+        if (!primitives) return primitives.error();
+        positions_ = locations(pipeline);
 
         // Each thread owns whole rows of quads and sees all triangles in order: the result does not depend on
         // threads.
@@ -150,8 +146,8 @@ class PassRenderer {
             workers.emplace_back([&, t] {
                 ShaderResources resources(scene_, images_, draw);
                 for (uint32_t row = t * 2; row < height_ && status[t].ok(); row += threads * 2) {
-                    for (const PreparedTriangle& triangle : triangles) {
-                        status[t] = shadeRow(triangle, row, shader ? &*shader : nullptr, output, resources);
+                    for (const PreparedPrimitive& primitive : *primitives) {
+                        status[t] = shadeRow(primitive, row, shader ? &*shader : nullptr, output, resources);
                         if (!status[t]) break;
                     }
                 }
@@ -164,84 +160,25 @@ class PassRenderer {
         return {};
     }
 
-    Status checkModelled(const SceneDraw& draw, const ScenePipeline& pipeline) const {
-        if (pipeline.polygonMode != VK_POLYGON_MODE_FILL) return unsupported("oracle: polygonMode other than FILL");
-        if (pipeline.logicOpEnable) return unsupported("oracle: logic operations");
-        if (pipeline.depthBoundsTest) return unsupported("oracle: the depth bounds test");
-        if (pipeline.sampleShading && samples_ > 1) return unsupported("oracle: shading of samples");
-        if (!pipeline.sampleLocations.empty()) return unsupported("oracle: sample locations");
-        if (!draw.moreViews.empty()) return unsupported("oracle: several viewports");
-        if (pipeline.alphaToOne) return unsupported("oracle: alpha to one");
-        for (const SceneBinding& binding : draw.bindings)
-            if (binding.sampler != kNone && scene_.samplers[binding.sampler].maxAnisotropy > 1)
-                return unsupported("oracle: anisotropic filtering");
+    Status checkModelled(const ScenePipeline& pipeline) const {
+        // Vulkan, Sample Shading: at least ceil(least * samples) fragments are shaded; all or one are modelled.
+        const float asked = pipeline.minSampleShading * static_cast<float>(samples_);
+        if (pipeline.sampleShading && asked > 1 && asked <= static_cast<float>(samples_ - 1)) {
+            return unsupported("oracle: shading of some samples");
+        }
         return {};
     }
 
-    std::vector<PreparedTriangle> prepare(const SceneDraw& draw, const ScenePipeline& pipeline,
-                                          const DrawGeometry& geometry) {
-        const VkRect2D& scissor = draw.scissor;
-        PixelBounds limits{
-            std::max(0, scissor.offset.x), std::max(0, scissor.offset.y),
-            static_cast<int32_t>(std::min<int64_t>(width_, int64_t{scissor.offset.x} + scissor.extent.width)),
-            static_cast<int32_t>(std::min<int64_t>(height_, int64_t{scissor.offset.y} + scissor.extent.height))};
-        const double context[] = {static_cast<double>(pipeline.vertexShader),
-                                  draw.viewport.x,
-                                  draw.viewport.y,
-                                  draw.viewport.width,
-                                  draw.viewport.height,
-                                  draw.viewport.minDepth,
-                                  draw.viewport.maxDepth};
-        std::vector<PreparedTriangle> result;
-        for (size_t i = 0; i < geometry.triangles.size(); ++i) {
-            FragmentSource source;
-            Triangle::Setup setup{{},
-                                  draw.viewport,
-                                  !pipeline.depthClamp,
-                                  {},
-                                  hashNumbers(0, context, std::size(context)),
-                                  rules_.subPixelBits};
-            size_t distances = ~size_t{0};
-            for (size_t k = 0; k < 3; ++k) {
-                source.vertices[k] = &geometry.vertices[geometry.triangles[i][k]];
-                setup.position[k] = source.vertices[k]->position;
-                distances = std::min(distances, source.vertices[k]->clipDistances.size());
-            }
-            for (size_t d = 0; d < distances; ++d) {
-                std::array<double, 3> cut;
-                for (size_t k = 0; k < 3; ++k) cut[k] = source.vertices[k]->clipDistances[d];
-                setup.clipDistances.push_back(cut);
-            }
-            auto triangle = Triangle::create(setup);
-            if (!triangle) continue;
-            const PixelBounds bounds = triangle->bounds(limits);
-            if (bounds.empty()) continue;
-            source.frontFacing = isFrontFacing(triangle->orientation(), pipeline.frontFace);
-            source.primitiveId = geometry.primitiveIds[i];
-            const bool culled = (source.frontFacing && (pipeline.cullMode & VK_CULL_MODE_FRONT_BIT)) ||
-                                (!source.frontFacing && (pipeline.cullMode & VK_CULL_MODE_BACK_BIT));
-            if (culled && (!triangle->orientationOpen() || pipeline.cullMode == VK_CULL_MODE_FRONT_AND_BACK)) continue;
-            PreparedTriangle prepared{std::move(*triangle), source, bounds, 0.0, 0, culled};
-            prepared.depthOrigin = prepared.triangle.identity();
-            if (pipeline.depthBias && output_.depthFormat) {
-                prepared.bias = biasOf(prepared.triangle, pipeline);
-                const double bias[] = {pipeline.depthBiasConstant, pipeline.depthBiasClamp, pipeline.depthBiasSlope};
-                prepared.depthOrigin = hashNumbers(prepared.depthOrigin, bias, 3);
-            }
-            result.push_back(std::move(prepared));
-        }
-        for (PreparedTriangle& p : result) p.source.triangle = &p.triangle;
-        return result;
+    bool shadesSamples(const ScenePipeline& pipeline, const FragmentShader* shader) const {
+        const bool asked = pipeline.sampleShading && pipeline.minSampleShading * static_cast<float>(samples_) > 1;
+        return samples_ > 1 && shader && (asked || shader->perSample());
     }
 
-    Interval biasOf(const Triangle& triangle, const ScenePipeline& pipeline) const {
-        std::array<Rational, 3> depths;
-        const std::array<double, 3> z = triangle.vertexDepths();
-        for (size_t i = 0; i < 3; ++i) depths[i] = rational(std::isfinite(z[i]) ? z[i] : 1.0);
-        const BiasRange range = depthBias(output_.depthFormat->format, depths, rational(triangle.depthSlopeX()),
-                                          rational(triangle.depthSlopeY()), pipeline.depthBiasConstant,
-                                          pipeline.depthBiasClamp, pipeline.depthBiasSlope);
-        return {(range.low + range.high) / 2, range.low, range.high};
+    std::vector<GridPoint> locations(const ScenePipeline& pipeline) const {
+        if (pipeline.sampleLocations.empty()) return standardSampleLocations(samples_);
+        std::vector<GridPoint> result;
+        for (const auto& [x, y] : pipeline.sampleLocations) result.push_back({x, y});
+        return result;
     }
 
     GridPoint samplePoint(int32_t x, int32_t y, uint32_t s) const {
@@ -251,7 +188,7 @@ class PassRenderer {
     }
 
     // The two pixel rows of quads that begin at `row`.
-    Status shadeRow(const PreparedTriangle& t, uint32_t row, const FragmentShader* shader, const OutputState& output,
+    Status shadeRow(const PreparedPrimitive& t, uint32_t row, const FragmentShader* shader, const OutputState& output,
                     ShaderResources& resources) {
         const int32_t y0 = std::max<int32_t>(t.bounds.y0, static_cast<int32_t>(row));
         const int32_t y1 = std::min<int32_t>(t.bounds.y1, static_cast<int32_t>(row) + 2);
@@ -261,29 +198,54 @@ class PassRenderer {
             std::array<bool, 4> covered{};
             for (int32_t lane = 0; lane < 4; ++lane) {
                 const int32_t x = qx + lane % 2, y = static_cast<int32_t>(row) + lane / 2;
-                if (x < t.bounds.x0 || x >= t.bounds.x1 || y < y0 || y >= y1) continue;
                 for (uint32_t s = 0; s < samples_; ++s) {
                     SampleVerdict& verdict = verdicts[static_cast<size_t>(lane) * samples_ + s];
                     verdict = SampleVerdict{};
+                    if (x < t.bounds.x0 || x >= t.bounds.x1 || y < y0 || y >= y1) continue;
                     if (!(output.pipeline->sampleMask & (1u << s))) continue;
-                    verdict = t.triangle.classify(samplePoint(x, y, s));
-                    if (t.culled) verdict.nominalAsWhole = false;
+                    verdict = t.classify(samplePoint(x, y, s));
                     covered[static_cast<size_t>(lane)] = covered[static_cast<size_t>(lane)] || verdict.possible;
                 }
             }
             if (std::ranges::none_of(covered, [](bool c) { return c; })) continue;
+            if (Status s = shadeQuad(t, qx, static_cast<int32_t>(row), covered, verdicts, shader, output, resources);
+                !s) {
+                return s;
+            }
+        }
+        return {};
+    }
+
+    Status shadeQuad(const PreparedPrimitive& t, int32_t qx, int32_t qy, const std::array<bool, 4>& covered,
+                     const std::vector<SampleVerdict>& verdicts, const FragmentShader* shader,
+                     const OutputState& output, ShaderResources& resources) {
+        const bool perSample = shadesSamples(*output.pipeline, shader);
+        for (uint32_t run = 0; run < (perSample ? samples_ : 1); ++run) {
             std::array<FragmentResult, 4> fragments{};
             if (shader) {
-                auto shaded = shader->evaluate(t.source, static_cast<uint32_t>(qx), row, covered, output, resources);
+                ShadingPlace place;
+                if (perSample) {
+                    place.sample = run;
+                    place.offset = {static_cast<double>(positions_[run].x) / 16,
+                                    static_cast<double>(positions_[run].y) / 16};
+                } else if (shader->hasCentroids()) {
+                    for (size_t lane = 0; lane < 4; ++lane) {
+                        place.centroids[lane] =
+                            centroidPlaces(t, qx + static_cast<int32_t>(lane % 2), qy + static_cast<int32_t>(lane / 2),
+                                           std::span(verdicts).subspan(lane * samples_, samples_));
+                    }
+                }
+                auto shaded = shader->evaluate(t.source, static_cast<uint32_t>(qx), static_cast<uint32_t>(qy), covered,
+                                               output, resources, place);
                 if (!shaded) return shaded.error();
                 fragments = std::move(*shaded);
             } else {
                 for (FragmentResult& fragment : fragments) fragment.colorFlags.fill(kOracleUnknown);
             }
             for (size_t lane = 0; lane < 4; ++lane) {
-                if (!covered[lane]) continue;
-                const int32_t x = qx + static_cast<int32_t>(lane % 2), y = static_cast<int32_t>(row + lane / 2);
+                const int32_t x = qx + static_cast<int32_t>(lane % 2), y = qy + static_cast<int32_t>(lane / 2);
                 for (uint32_t s = 0; s < samples_; ++s) {
+                    if (perSample && s != run) continue;
                     applySample(t, x, y, s, verdicts[lane * samples_ + s], fragments[lane], output);
                 }
             }
@@ -291,24 +253,55 @@ class PassRenderer {
         return {};
     }
 
-    void applySample(const PreparedTriangle& t, int32_t x, int32_t y, uint32_t s, const SampleVerdict& verdict,
-                     const FragmentResult& fragment, const OutputState& output) {
+    /// Where centroid inputs may be taken: at the centre when all samples are covered, else at any place of the pixel
+    /// that the primitive covers (Vulkan, Interpolation Decorations). The declared one comes first.
+    std::vector<std::array<double, 2>> centroidPlaces(const PreparedPrimitive& t, int32_t x, int32_t y,
+                                                      std::span<const SampleVerdict> verdicts) const {
+        const std::array<double, 2> centre{x + 0.5, y + 0.5};
+        if (std::ranges::all_of(verdicts, [](const SampleVerdict& v) { return v.isCertain(); })) return {centre};
+        std::vector<std::array<double, 2>> places;
+        for (uint32_t s = 0; s < samples_; ++s) {
+            if (verdicts[s].possible) {
+                places.push_back(
+                    {x + static_cast<double>(positions_[s].x) / 16, y + static_cast<double>(positions_[s].y) / 16});
+            }
+        }
+        for (const auto& corner : t.clippedPixel(x, y)) places.push_back(corner);
+        // An edge sample may leave all of them covered.
+        if (std::ranges::all_of(verdicts, &SampleVerdict::possible)) places.push_back(centre);
+        return places;
+    }
+
+    void applySample(const PreparedPrimitive& t, int32_t x, int32_t y, uint32_t s, const SampleVerdict& verdict,
+                     const FragmentResult& shaded, const OutputState& output) {
         if (!verdict.possible) return;
+        const ScenePipeline& pipeline = *output.pipeline;
         SampleInput input;
         input.verdict = verdict;
-        input.fragment = &fragment;
-        if (output.pipeline->alphaToCoverage && samples_ > 1) {
+        FragmentResult fragment = shaded;
+        const GridPoint point = samplePoint(x, y, s);
+        if (const auto coverage = t.smoothCoverage(point)) {
+            for (Color& color : fragment.colors) {
+                color[3] = {color[3].value * *coverage, std::min(0.0, color[3].low), std::max(0.0, color[3].high)};
+            }
+        }
+        if (pipeline.alphaToCoverage && samples_ > 1) {
             const Interval& alpha = fragment.colors[0][3];
             if (alpha.high <= 0) return;
             input.coverageOpen = alpha.low < 1 - kCodeTolerance;
         }
-        input.depth = t.triangle.depth(samplePoint(x, y, s)) + t.bias;
+        if (pipeline.alphaToOne && samples_ > 1) {
+            for (Color& color : fragment.colors) color[3] = 1.0;
+        }
+        input.fragment = &fragment;
+        input.depth = t.carrier.depth(point) + t.bias;
         // Without depth clamping fragments beyond the viewport's range have been clipped; rounding leaves no
         // more than a trace.
-        const auto [low, high] = std::minmax(output.viewport.minDepth, output.viewport.maxDepth);
-        if (!output.pipeline->depthClamp && !output.pipeline->depthBias) input.depth = input.depth.clamped(low, high);
+        const auto [low, high] = std::minmax(t.viewport.minDepth, t.viewport.maxDepth);
+        if (!pipeline.depthClamp && !pipeline.depthBias) input.depth = input.depth.clamped(low, high);
         input.depthOrigin = t.depthOrigin;
         input.frontFacing = t.source.frontFacing;
+        input.viewport = t.viewport;
         applyTriangle(output, input, at(static_cast<uint32_t>(x), static_cast<uint32_t>(y), s));
     }
 
@@ -350,8 +343,8 @@ class PassRenderer {
     void resolve() {
         for (const SceneAttachment& a : pass_.colors) {
             if (a.resolveImage >= images_.size()) continue;
-            const ImageLevel& source = images_[a.image].level(a.mipLevel, a.layer);
-            ImageLevel& target = images_[a.resolveImage].level(0, 0);
+            const ImageLevel& source = images_[a.image].level(a.mipLevel, a.layer + layer_);
+            ImageLevel& target = images_[a.resolveImage].level(0, layer_);
             for (uint32_t y = 0; y < height_; ++y) {
                 for (uint32_t x = 0; x < width_; ++x) {
                     target.at(x, y) = resolveSamples(images_[a.image].format(), source, x, y);
@@ -364,6 +357,8 @@ class PassRenderer {
     const ScenePass& pass_;
     const OracleRules& rules_;
     std::vector<ImageStore>& images_;
+    const uint32_t layer_;
+    const bool view_;
     uint32_t width_ = 0, height_ = 0, samples_ = 1;
     OutputState output_;  // attachments only
     std::vector<GridPoint> positions_;
@@ -374,7 +369,15 @@ class PassRenderer {
 
 Status renderPass(const Scene& scene, const ScenePass& pass, const OracleRules& rules,
                   std::vector<ImageStore>& images) {
-    return PassRenderer(scene, pass, rules, images).run();
+    uint32_t layers = pass.depthStencil.image != kNone ? pass.depthStencil.layerCount : ~0u;
+    for (const SceneAttachment& color : pass.colors) layers = std::min(layers, color.layerCount);
+    if (layers == ~0u) layers = 1;
+    for (uint32_t layer = 0; layer < layers; ++layer) {
+        const bool view = pass.viewMask != 0;
+        if (view && (pass.viewMask >> layer & 1) == 0) continue;
+        if (Status s = PassRenderer(scene, pass, rules, images, layer, view).run(); !s) return s;
+    }
+    return {};
 }
 
 }  // namespace vernier::conformance::exact

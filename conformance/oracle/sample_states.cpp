@@ -4,6 +4,7 @@
 #include "conformance/oracle/quantise.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace vernier::conformance::exact {
@@ -98,6 +99,88 @@ bool isTrivial(VkBlendFactor factor, size_t channel, const Color& source, const 
     return f == Interval(0.0) || f == Interval(1.0);
 }
 
+/// A logic operation on codes (Vulkan, Logical Operations).
+uint64_t applyLogicOp(VkLogicOp op, uint64_t source, uint64_t stored, uint64_t mask) {
+    uint64_t result = 0;
+    switch (op) {
+        case VK_LOGIC_OP_CLEAR:
+            break;
+        case VK_LOGIC_OP_AND:
+            result = source & stored;
+            break;
+        case VK_LOGIC_OP_AND_REVERSE:
+            result = source & ~stored;
+            break;
+        case VK_LOGIC_OP_COPY:
+            result = source;
+            break;
+        case VK_LOGIC_OP_AND_INVERTED:
+            result = ~source & stored;
+            break;
+        case VK_LOGIC_OP_NO_OP:
+            result = stored;
+            break;
+        case VK_LOGIC_OP_XOR:
+            result = source ^ stored;
+            break;
+        case VK_LOGIC_OP_OR:
+            result = source | stored;
+            break;
+        case VK_LOGIC_OP_NOR:
+            result = ~(source | stored);
+            break;
+        case VK_LOGIC_OP_EQUIVALENT:
+            result = ~(source ^ stored);
+            break;
+        case VK_LOGIC_OP_INVERT:
+            result = ~stored;
+            break;
+        case VK_LOGIC_OP_OR_REVERSE:
+            result = source | ~stored;
+            break;
+        case VK_LOGIC_OP_COPY_INVERTED:
+            result = ~source;
+            break;
+        case VK_LOGIC_OP_OR_INVERTED:
+            result = ~source | stored;
+            break;
+        case VK_LOGIC_OP_NAND:
+            result = ~(source & stored);
+            break;
+        default:
+            result = mask;
+            break;
+    }
+    return result & mask;
+}
+
+/// Logic operations are judged on unsigned codes: normalised or integer. Where either side has more than a few codes,
+/// all results are possible.
+Interval logicComponent(VkLogicOp op, const Component& component, const Interval& source, const Interval& stored) {
+    const uint64_t mask = (uint64_t{1} << component.bits) - 1;
+    const double scale = component.encoding == Encoding::unorm ? static_cast<double>(mask) : 1;
+    const Interval from = quantise(component, source);
+    constexpr int64_t kMostCodes = 8;
+    const auto code = [&](double value) { return std::llround(value * scale); };
+    const auto result = [&](int64_t a, int64_t b) {
+        return static_cast<double>(applyLogicOp(op, static_cast<uint64_t>(a), static_cast<uint64_t>(b), mask)) / scale;
+    };
+    Interval answer(result(code(from.value), code(stored.value)));
+    if (code(from.high) - code(from.low) > kMostCodes || code(stored.high) - code(stored.low) > kMostCodes) {
+        return {answer.value, 0, static_cast<double>(mask) / scale};
+    }
+    for (int64_t a = code(from.low); a <= code(from.high); ++a) {
+        for (int64_t b = code(stored.low); b <= code(stored.high); ++b) answer = answer.united(result(a, b));
+    }
+    return answer;
+}
+
+/// Vulkan, Logical Operations: for unsigned normalised and integer attachments; floats and sRGB pass unchanged.
+bool takesLogicOps(const PixelFormat& format) {
+    const Encoding encoding = format.components[0].encoding;
+    return encoding == Encoding::unorm || encoding == Encoding::uint;
+}
+
 void writeColors(const OutputState& output, const FragmentResult& fragment, SampleState& s) {
     for (size_t i = 0; i < output.colorCount; ++i) {
         const PixelFormat* format = output.colorFormats[i];
@@ -109,7 +192,8 @@ void writeColors(const OutputState& output, const FragmentResult& fragment, Samp
         if (mask == 0) continue;
         const Color source = clampForFormat(*format, fragment.colors[i]);
         Color result = source;
-        const bool blend = state.blendEnable && !format->isInteger();
+        const bool logic = output.pipeline->logicOpEnable;  // for all attachments, and instead of blending
+        const bool blend = state.blendEnable && !format->isInteger() && !logic;
         std::array<double, 4> budget{};
         if (blend) {
             Color constants;
@@ -129,11 +213,16 @@ void writeColors(const OutputState& output, const FragmentResult& fragment, Samp
             }
         }
         uint8_t& flags = s.flags[i];
-        if (!blend && mask == present) flags = 0;
+        if (!blend && !logic && mask == present) flags = 0;
         flags |= fragment.colorFlags[i];
         for (const Component& c : format->all()) {
             if (!(mask & (1u << c.channel))) continue;
             if (result[c.channel].isNan()) flags |= kOracleUnknown;
+            if (logic && takesLogicOps(*format)) {
+                s.colors[i][c.channel] =
+                    logicComponent(output.pipeline->logicOp, c, result[c.channel], s.colors[i][c.channel]);
+                continue;
+            }
             s.colors[i][c.channel] = quantise(c, result[c.channel], budget[c.channel]);
         }
     }
@@ -206,6 +295,18 @@ class Splitter {
         const VkStencilOpState& stencil = input_.frontFacing ? pipeline.front : pipeline.back;
         const bool stencilTest = pipeline.stencilTest && output_.depthFormat && output_.depthFormat->stencil;
         const bool depthTest = pipeline.depthTest && output_.depthFormat && output_.depthFormat->depth;
+        if (pipeline.depthBoundsTest && output_.depthFormat && output_.depthFormat->depth) {
+            const Interval low(static_cast<double>(pipeline.minDepthBounds)),
+                high(static_cast<double>(pipeline.maxDepthBounds));
+            const Answer above = compareDepth(VK_COMPARE_OP_GREATER_OR_EQUAL, state.depth, low, false),
+                         below = compareDepth(VK_COMPARE_OP_LESS_OR_EQUAL, state.depth, high, false);
+            const bool mustFail = (!above.value && !above.open) || (!below.value && !below.open);
+            if (mustFail) {
+                add(std::move(state), nominal);
+                return;
+            }
+            splitOff(state, nominal, above.open || below.open, above.value && below.value);
+        }
         if (stencilTest) {
             const auto masked = [&stencil](uint32_t v) { return static_cast<double>(v & stencil.compareMask & 0xff); };
             if (!holds(stencil.compareOp, masked(stencil.reference), masked(state.stencil))) {
@@ -216,7 +317,7 @@ class Splitter {
         }
         Interval depth = input_.fragment->depth.value_or(input_.depth);
         if (pipeline.depthClamp) {
-            const auto [low, high] = std::minmax(output_.viewport.minDepth, output_.viewport.maxDepth);
+            const auto [low, high] = std::minmax(input_.viewport.minDepth, input_.viewport.maxDepth);
             depth = depth.clamped(low, high);
         }
         if (output_.depthFormat && output_.depthFormat->depth)

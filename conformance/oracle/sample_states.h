@@ -54,12 +54,12 @@ struct OutputState {
     std::array<const PixelFormat*, kMaxColorAttachments> colorFormats{};
     size_t colorCount = 0;
     const PixelFormat* depthFormat = nullptr;
-    VkViewport viewport{};
 };
 
-/// What one triangle brings to one sample.
+/// What one primitive brings to one sample.
 struct SampleInput {
     SampleVerdict verdict;
+    VkViewport viewport{};
     const FragmentResult* fragment = nullptr;
     Interval depth;  // window depth with bias, before clamping and storage
     uint64_t depthOrigin = 0;

@@ -59,24 +59,8 @@ std::optional<Triangle> Triangle::create(const Setup& setup) {
     }
     Triangle t{HomogeneousTriangle<double>(v)};
 
+    if (!t.addCuts(setup)) return std::nullopt;
     const auto& p = setup.position;
-    std::vector<std::array<double, 3>> planes(setup.clipDistances);
-    // The sides of the view volume: nothing is drawn outside the viewport, even where the scissor would allow
-    // it.
-    for (const size_t axis : {0, 1}) {
-        planes.push_back({p[0][3] + p[0][axis], p[1][3] + p[1][axis], p[2][3] + p[2][axis]});
-        planes.push_back({p[0][3] - p[0][axis], p[1][3] - p[1][axis], p[2][3] - p[2][axis]});
-    }
-    if (setup.depthClip) {
-        planes.push_back({p[0][2], p[1][2], p[2][2]});
-        planes.push_back({p[0][3] - p[0][2], p[1][3] - p[1][2], p[2][3] - p[2][2]});
-    }
-    for (const auto& plane : planes) {
-        const auto outside = std::ranges::count_if(plane, [](double d) { return d < 0; });
-        if (outside == 3) return std::nullopt;
-        if (outside != 0) t.cuts_.push_back(plane);
-    }
-
     t.subUnit_ = std::ldexp(1.0, -setup.subPixelBits);
     t.freedom_ = t.subUnit_;
     t.snapped_ = inFront;
@@ -120,8 +104,36 @@ std::optional<Triangle> Triangle::create(const Setup& setup) {
         const uint64_t first = hashNumbers(setup.context, std::min(a, b).data(), 4);
         t.edgeKey_[i] = hashNumbers(first, std::max(a, b).data(), 4);
     }
-    t.identity_ = setup.context;
-    for (const Clip<double>& position : p) t.identity_ = hashNumbers(t.identity_, position.data(), 4);
+    t.findDepths(setup);
+    return t;
+}
+
+/// Finds the planes that cut the triangle; false when one of them has it all outside.
+bool Triangle::addCuts(const Setup& setup) {
+    const auto& p = setup.position;
+    std::vector<std::array<double, 3>> planes(setup.clipDistances);
+    // The sides of the view volume: nothing is drawn outside the viewport, even where the scissor would allow
+    // it.
+    for (const size_t axis : {0, 1}) {
+        planes.push_back({p[0][3] + p[0][axis], p[1][3] + p[1][axis], p[2][3] + p[2][axis]});
+        planes.push_back({p[0][3] - p[0][axis], p[1][3] - p[1][axis], p[2][3] - p[2][axis]});
+    }
+    if (setup.depthClip) {
+        planes.push_back({p[0][2], p[1][2], p[2][2]});
+        planes.push_back({p[0][3] - p[0][2], p[1][3] - p[1][2], p[2][3] - p[2][2]});
+    }
+    for (const auto& plane : planes) {
+        const auto outside = std::ranges::count_if(plane, [](double d) { return d < 0; });
+        if (outside == 3) return false;
+        if (outside != 0) cuts_.push_back(plane);
+    }
+    return true;
+}
+
+void Triangle::findDepths(const Setup& setup) {
+    const std::array<WindowVertex<double>, 3>& v = shape_.vertex;
+    identity_ = setup.context;
+    for (const Clip<double>& position : setup.position) identity_ = hashNumbers(identity_, position.data(), 4);
 
     bool constantDepth = true;
     double largest = 0;
@@ -129,15 +141,50 @@ std::optional<Triangle> Triangle::create(const Setup& setup) {
         constantDepth = constantDepth && v[i].z == v[0].z && v[i].w == v[0].w;
         largest = std::max(largest, std::abs(v[i].z / v[i].w));
     }
-    if (!constantDepth && determinant != 0) {
+    if (!constantDepth && shape_.determinant != 0) {
         for (size_t i = 0; i < 3; ++i) {
-            t.slopeX_ += t.shape_.edge[i][0] * v[i].z / determinant;
-            t.slopeY_ += t.shape_.edge[i][1] * v[i].z / determinant;
+            slopeX_ += shape_.edge[i][0] * v[i].z / shape_.determinant;
+            slopeY_ += shape_.edge[i][1] * v[i].z / shape_.determinant;
         }
-        t.depthSlack_ =
-            t.freedom_ * (std::abs(t.slopeX_) + std::abs(t.slopeY_)) + kDepthRounding * std::min(largest, 1e6);
+        depthSlack_ = freedom_ * (std::abs(slopeX_) + std::abs(slopeY_)) + kDepthRounding * std::min(largest, 1e6);
     }
+}
+
+std::optional<Triangle> Triangle::createCarrier(const Setup& setup) {
+    std::array<WindowVertex<double>, 3> v;
+    for (size_t i = 0; i < 2; ++i) {
+        for (const double c : setup.position[i]) {
+            if (!std::isfinite(c)) return std::nullopt;
+        }
+        v[i] = toWindow(setup.position[i], setup.viewport);
+        if (!(v[i].w > 0)) return std::nullopt;
+    }
+    const double dx = v[1].x / v[1].w - v[0].x / v[0].w, dy = v[1].y / v[1].w - v[0].y / v[0].w;
+    const double length = std::hypot(dx, dy);
+    // A point has no direction: its second vertex lies beside it, with the same values.
+    if (length == 0) v[1].x += v[1].w;
+    v[2] = v[0];
+    v[2].x += v[0].w * (length == 0 ? 0 : -dy / length);
+    v[2].y += v[0].w * (length == 0 ? 1 : dx / length);
+    Triangle t{HomogeneousTriangle<double>(v)};
+    if (!t.addCuts(setup)) return std::nullopt;
+    t.side_ = t.shape_.determinant < 0 ? -1 : 1;
+    t.orientation_ = 1;
+    t.subUnit_ = std::ldexp(1.0, -setup.subPixelBits);
+    t.freedom_ = t.subUnit_;
+    for (size_t i = 0; i < 2; ++i) {
+        const double reach = std::max(std::abs(v[i].x), std::abs(v[i].y)) / v[i].w;
+        t.freedom_ = std::max(t.freedom_, t.subUnit_ + kPositionRounding * reach);
+    }
+    t.findDepths(setup);
     return t;
+}
+
+SampleVerdict Triangle::classifyCuts(const GridPoint& sample) const {
+    SampleVerdict verdict;
+    verdict.possible = true;
+    if (!cuts_.empty()) applyCuts(sample, verdict);
+    return verdict;
 }
 
 PixelBounds Triangle::bounds(const PixelBounds& within) const {

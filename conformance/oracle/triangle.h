@@ -35,6 +35,9 @@ struct SampleVerdict {
     std::array<OpenEdge, 3> edges{};
     uint32_t edgeCount = 0;
     bool cutOpen = false, cutNominal = false;  // all clip planes together
+
+    /// Covered by every legal implementation.
+    bool isCertain() const { return possible && !openAsWhole && edgeCount == 0 && !cutOpen; }
 };
 
 /// A point in sub-units.
@@ -56,6 +59,14 @@ class Triangle {
 
     /// Nothing when no implementation draws any of it.
     static std::optional<Triangle> create(const Setup& setup);
+
+    /// What carries depths, inputs and clipping of a line or a point, whose coverage it does not tell: a triangle of
+    /// the two ends and a point beside the first that has all of the first's values, so that everything interpolated
+    /// depends on the place along the line alone. For a point both ends are its vertex. Nothing when an end is not in
+    /// front of the eye or not finite, or when all is clipped.
+    static std::optional<Triangle> createCarrier(const Setup& setup);
+    /// Half-space tests of the cuts alone.
+    SampleVerdict classifyCuts(const GridPoint& sample) const;
 
     /// +1 clockwise on the screen, -1 counter-clockwise, 0: empty after snapping.
     int orientation() const { return orientation_; }
@@ -79,6 +90,9 @@ class Triangle {
 
   private:
     explicit Triangle(const HomogeneousTriangle<double>& shape) : shape_(shape) {}
+
+    bool addCuts(const Setup& setup);
+    void findDepths(const Setup& setup);
 
     SampleVerdict classifySnapped(const GridPoint& sample) const;
     SampleVerdict classifyHomogeneous(const GridPoint& sample) const;
