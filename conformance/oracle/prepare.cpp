@@ -191,6 +191,10 @@ class Preparer {
 
 }  // namespace
 
+Result<std::vector<PreparedPrimitive>> preparePrimitives(const PrepareContext& context, const DrawGeometry& geometry) {
+    return Preparer(context, geometry).run();
+}
+
 SampleVerdict PreparedPrimitive::classify(const GridPoint& sample) const {
     if (!line && !point) {
         SampleVerdict verdict = carrier.classify(sample);
