@@ -1,5 +1,6 @@
 // vernier-hardcases: the numeric hard cases on every driver, each in processes of its own, as a table.
 #include "conformance/drivers/try.h"
+#include "conformance/hardcases/page.h"
 #include "conformance/hardcases/run.h"
 #include "conformance/hardcases/table.h"
 #include "conformance/tool/child_process.h"
@@ -18,7 +19,7 @@ struct Options {
     DriverPaths paths;
     bool all = false, dial = false;
     std::vector<std::string> groups, cases, drivers;
-    std::filesystem::path markdown, json, work = "out/hardcases";
+    std::filesystem::path markdown, json, html, work = "out/hardcases";
     double timeoutSeconds = 300;
     size_t first = 0;  // of the child
 };
@@ -100,6 +101,18 @@ Result<FolderContents> drawInChildren(const Options& options, const Run& run, st
     return all;
 }
 
+/// The pictures of a case, in case its page has to show them: of ours of all cases, since another driver may be wrong.
+void keepPictures(TableColumn& column, const std::vector<SceneOutcome>& scenes) {
+    constexpr size_t kMostPictures = 2;
+    const size_t row = column.verdicts.size() - 1;
+    if (!column.ours && column.verdicts[row].outcome != Outcome::wrong) return;
+    for (const SceneOutcome& scene : scenes) {
+        if (scene.images.empty()) continue;
+        std::vector<RenderedImage>& kept = column.pictures[row];
+        if (kept.size() < kMostPictures) kept.push_back(scene.images[0]);
+    }
+}
+
 Result<Table> makeTable(const Options& options) {
     const Result<std::vector<const HardCase*>> chosen = chosenCases(options);
     if (!chosen) return chosen.error();
@@ -132,6 +145,7 @@ Result<Table> makeTable(const Options& options) {
             for (size_t i = 0; i < input.scenes().size() && at < drawn->scenes.size(); ++i)
                 scenes.push_back(std::move(drawn->scenes[at++]));
             column.verdicts.push_back(judgeCase(input, scenes, drawn->declared));
+            keepPictures(column, scenes);
         }
         table.columns.push_back(std::move(column));
     }
@@ -161,6 +175,7 @@ int run(int argc, char** argv) {
     app.add_flag("--dial", options.dial, "Vernier's API at every position of the accuracy dial");
     app.add_option("--markdown", options.markdown, "Write the table to a Markdown file");
     app.add_option("--json", options.json, "Write the table to a JSON file");
+    app.add_option("--html", options.html, "Write the table to an HTML page, with pictures of what is wrong");
     app.add_option("--work", options.work, "Folder for the drivers' images")->capture_default_str();
     app.add_option("--timeout", options.timeoutSeconds, "Seconds for a driver's process")->capture_default_str();
     CLI::App* draw = app.add_subcommand("draw", "Draw the cases' scenes on one driver in this process");
@@ -176,6 +191,8 @@ int run(int argc, char** argv) {
         return path.empty() ? Status() : writeFile(path, text.data(), text.size());
     };
     if (Status s = write(options.markdown, tableMarkdown(*table)); !s) return fail(s.error());
+    if (Status s = write(options.html, options.html.empty() ? std::string() : tablePage(*table)); !s)
+        return fail(s.error());
     if (Status s = write(options.json, tableJson(*table)); !s) return fail(s.error());
     const bool good = std::ranges::all_of(table->columns, [](const TableColumn& column) {
         const auto counts = column.counts();

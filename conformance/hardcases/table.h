@@ -4,6 +4,7 @@
 #include "conformance/hardcases/hard_case.h"
 
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,8 @@ struct TableColumn {
     bool ours = false;
     Declared declared;
     std::vector<Verdict> verdicts;  // one per row that is reachable, in order
+    // By row: the main outputs of the case's first scenes, where some driver is wrong.
+    std::map<size_t, std::vector<RenderedImage>> pictures = {};
 
     std::array<size_t, kOutcomeCount> counts() const;
 };

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace vernier::conformance::exact {
@@ -209,6 +210,35 @@ SampleResult filterLod(const Sampler& s, const Interval& lambda, double sCoordin
     return box.result();
 }
 
+// Every texel that a sample within the footprint may touch, at the levels between the one of its shorter side and the
+// isotropic one. Vulkan leaves number, places and weights of an anisotropic filter's samples open ("implementation-
+// dependent"); as an average of samples along the footprint the result is between the smallest and the largest texel.
+SampleResult filterFootprint(const Sampler& s, const SampleQuery& query, const Interval& lambda) {
+    const double last = s.image.mipLevels() - 1;
+    const double narrow = lambda.low - std::log2(std::max(1.0f, s.state.maxAnisotropy));
+    // The declared value is the isotropic one: of no consequence where more than one is permitted.
+    Box box;
+    box.add(filterLod(s, Interval(std::max(lambda.value, -1.0)), query.s, query.t));
+    const auto levelAt = [&](double lod) { return static_cast<uint32_t>(std::clamp(lod, 0.0, last)); };
+    for (uint32_t mip = levelAt(std::floor(narrow)); mip <= levelAt(std::ceil(lambda.high)); ++mip) {
+        const VkExtent2D extent = s.image.level(mip, s.layer).extent;
+        const auto range = [](double at, double reach, double size) {
+            // A linear filter reaches half a texel further; more than all texels are all of them.
+            const double half = std::min(reach + 0.5 + kWeightSlack + kCoordinateSlack * size, size);
+            return std::pair(static_cast<int64_t>(std::floor(at - half)), static_cast<int64_t>(std::floor(at + half)));
+        };
+        const double width = extent.width, height = extent.height;
+        const auto [left, right] =
+            range(query.s * width, (std::abs(query.ddx[0]) + std::abs(query.ddy[0])) / 2 * width, width);
+        const auto [top, bottom] =
+            range(query.t * height, (std::abs(query.ddx[1]) + std::abs(query.ddy[1])) / 2 * height, height);
+        for (int64_t y = top; y <= bottom; ++y) {
+            for (int64_t x = left; x <= right; ++x) box.add(tap(s, mip, x, y));
+        }
+    }
+    return box.result();
+}
+
 // A filter may work at the precision of the texture's codes: one code to either side of the box (but nothing
 // where all texels agree, and never beyond the format). The nominal value stays exact.
 void allowFilterRounding(const PixelFormat& format, SampleResult& result) {
@@ -279,7 +309,8 @@ SampleResult sampleImage(const ImageStore& image, const SceneSampler& sampler, c
     if (!isAddressable(query) || std::isnan(lambda.value)) return unknownTexel();
     const double floorLod = -1;  // anything below magnifies alike
     lambda = lambda.clamped(floorLod, std::numeric_limits<double>::max());
-    SampleResult result = filterLod(s, lambda, query.s, query.t);
+    const bool anisotropic = sampler.maxAnisotropy > 1 && !query.lod;
+    SampleResult result = anisotropic ? filterFootprint(s, query, lambda) : filterLod(s, lambda, query.s, query.t);
     if (!s.dref) allowFilterRounding(image.format(), result);
     return result;
 }

@@ -175,6 +175,9 @@ std::string indexPage(const Report& report) {
     }
     if (!report.judgement.stale.empty()) html += "<h2>Gaps that pass now</h2>" + list(report.judgement.stale, "bad");
     if (!report.judgement.covered.empty()) html += "<h2>Known gaps</h2>" + list(report.judgement.covered, "");
+    if (!report.hardCases.empty()) {
+        html += "<p><a href=\"" + escapeHtml(report.hardCases) + "\">Numeric hard cases, case by driver</a></p>";
+    }
     html += "<h2>Drivers</h2>" + driverCards(report) + "<h2>Settings</h2><table class=\"facts\">";
     for (const auto& [name, value] : report.facts) {
         html += "<tr><td>" + escapeHtml(name) + "</td><td>" + escapeHtml(value) + "</td></tr>";

@@ -54,6 +54,7 @@ struct Report {
     std::vector<ReportDriver> drivers;
     std::vector<ReportScene> scenes;
     GapJudgement judgement;
+    std::string hardCases;  // the page of the numeric hard cases beside the index; empty: none
 };
 
 /// Fills in ReportScene::comparisons: every driver of ours against every other one that drew the scene, and

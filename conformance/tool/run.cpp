@@ -171,6 +171,9 @@ Result<bool> runComparison(const std::vector<DriverChoice>& choices, const RunOp
     if (!gaps) return gaps.error();
 
     Report report;
+    // What vernier-hardcases --html left there.
+    constexpr const char* kHardCases = "hardcases.html";
+    if (std::filesystem::exists(options.out / kHardCases)) report.hardCases = kHardCases;
     report.facts = facts(options);
     RunExtent extent;
     for (const DriverChoice& choice : choices) {

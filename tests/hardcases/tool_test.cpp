@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "conformance/hardcases/table.h"
+#include "conformance/hardcases/page.h"
 
 namespace vernier::conformance::hardcases {
 namespace {
@@ -38,6 +38,14 @@ TEST(Table, SaysWhatTheVerdictsSay) {
     EXPECT_NE(markdown.find("a \\| hole"), std::string::npos);
     EXPECT_NE(markdown.find("| confirmed |"), std::string::npos) << "the claim about E10";
     EXPECT_NE(text.find("E01 swiftshader wrong: pixel (1, 2)"), std::string::npos) << text;
+    RenderedImage picture{VK_FORMAT_R8G8B8A8_UNORM, {2, 2}, Bytes(16)};
+    table.columns[0].pictures[0] = table.columns[1].pictures[0] = {picture};
+    const std::string html = tablePage(table);
+    EXPECT_NE(html.find("<a href=\"#E01-swiftshader\"><b>wrong</b></a>"), std::string::npos);
+    EXPECT_NE(html.find("<b>pixel (1, 2)</b>"), std::string::npos);
+    size_t pictures = 0;
+    for (size_t at = html.find("<img"); at != std::string::npos; at = html.find("<img", at + 1)) ++pictures;
+    EXPECT_EQ(pictures, 2u) << "the driver's that is wrong, and ours beside it";
     const auto document = nlohmann::json::parse(tableJson(table));
     EXPECT_EQ(document["cases"][1]["verdicts"]["api"]["outcome"], "allowed");
     EXPECT_EQ(document["drivers"][1]["counts"]["wrong"], 2);

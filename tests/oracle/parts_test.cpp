@@ -259,7 +259,7 @@ struct StateTest : testing::Test {
         output.colorCount = 1;
         output.colorFormats[0] = findPixelFormat(VK_FORMAT_R8G8B8A8_UNORM);
         output.depthFormat = findPixelFormat(VK_FORMAT_D32_SFLOAT);
-        output.viewport = kViewport;
+
         red.colors[0] = {1.0, 0.0, 0.0, 1.0};
         green.colors[0] = {0.0, 1.0, 0.0, 1.0};
         sample[0].depth = 1.0;
@@ -269,6 +269,7 @@ struct StateTest : testing::Test {
         SampleInput input;
         input.verdict = t.classify(p);
         if (!input.verdict.possible) return;
+        input.viewport = kViewport;
         input.fragment = &fragment;
         input.depth = t.depth(p);
         input.depthOrigin = identity ? identity : t.identity();
