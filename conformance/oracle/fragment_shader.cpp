@@ -142,13 +142,14 @@ void FragmentShader::setVariable(const InterfaceVariable& variable, const Fragme
 
 std::array<FragmentShader::Values, 4> FragmentShader::inputsAt(const FragmentSource& source, uint32_t x, uint32_t y,
                                                                const ShadingPlace& place, double shiftX, double shiftY,
-                                                               size_t centroid) const {
+                                                               size_t centroid, bool centred) const {
     std::array<Values, 4> result;
     for (uint32_t lane = 0; lane < 4; ++lane) {
         Values& values = result[lane];
         const double px = x + lane % 2 + place.offset[0], py = y + lane / 2 + place.offset[1];
         const auto& shape = source.triangle->homogeneous();
         const auto weights = shape.weights(px + shiftX, py + shiftY);
+        const auto centreWeights = shape.weights(x + lane % 2 + 0.5 + shiftX, y + lane / 2 + 0.5 + shiftY);
         auto centroidWeights = weights;
         if (const auto& places = place.centroids[lane]; !places.empty()) {
             const std::array<double, 2>& at = places[std::min(centroid, places.size() - 1)];
@@ -156,7 +157,11 @@ std::array<FragmentShader::Values, 4> FragmentShader::inputsAt(const FragmentSou
         }
         for (const InterfaceVariable& v : inputs_) {
             if (!v.isBuiltin) {
-                setVariable(v, source, v.centroid ? centroidWeights : weights, values);
+                setVariable(v, source,
+                            v.centroid             ? centroidWeights
+                            : centred && !v.sample ? centreWeights
+                                                   : weights,
+                            values);
                 continue;
             }
             switch (v.builtin) {
@@ -234,6 +239,9 @@ Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSou
     for (const auto& places : place.centroids) centroids = std::max(centroids, places.size());
     for (size_t i = 1; i < centroids; ++i) {
         if (Status s = add(runs.shifted, nominal_, inputsAt(source, x, y, place, 0, 0, i)); !s) return s.error();
+    }
+    if (place.perSample) {
+        if (Status s = add(runs.shifted, nominal_, inputsAt(source, x, y, place, 0, 0, 0, true)); !s) return s.error();
     }
     if (filtered) {
         for (const RangeEnd end : {RangeEnd::low, RangeEnd::high}) {

@@ -46,6 +46,7 @@ struct FragmentSource {
 struct ShadingPlace {
     std::array<double, 2> offset{0.5, 0.5};  // of inputs and FragCoord, from the pixel's upper left corner
     uint32_t sample = 0;                     // SampleId
+    bool perSample = false;  // `offset` is a sample's: inputs without Sample may be taken at the centre all the same
     // Per lane: the places, in pixels of the framebuffer, among which centroid inputs may choose; the first is the
     // declared one. None: they are taken at `offset`.
     std::array<std::vector<std::array<double, 2>>, 4> centroids;
@@ -73,9 +74,9 @@ class FragmentShader {
     FragmentShader(reference::Module module, Interpreter nominal, Interpreter rounded)
         : module_(std::move(module)), nominal_(std::move(nominal)), rounded_(std::move(rounded)) {}
 
-    /// `centroid`: which of each lane's places centroid inputs take.
+    /// `centroid`: which of each lane's places centroid inputs take; `centred`: inputs without Sample at the centre.
     std::array<Values, 4> inputsAt(const FragmentSource& source, uint32_t x, uint32_t y, const ShadingPlace& place,
-                                   double shiftX, double shiftY, size_t centroid = 0) const;
+                                   double shiftX, double shiftY, size_t centroid = 0, bool centred = false) const;
     void setVariable(const reference::InterfaceVariable& variable, const FragmentSource& source,
                      const std::array<double, 3>& weights, Values& values) const;
 

@@ -226,6 +226,7 @@ class PassRenderer {
                 ShadingPlace place;
                 if (perSample) {
                     place.sample = run;
+                    place.perSample = true;
                     place.offset = {static_cast<double>(positions_[run].x) / 16,
                                     static_cast<double>(positions_[run].y) / 16};
                 } else if (shader->hasCentroids()) {
