@@ -74,6 +74,9 @@ void fragmentFacts(const ir::Program* fragment, const Plan& plan, FactWriter& fa
     }
     facts.runs(std::string("fragment program, once per ") + (plan.perSample ? "sample" : "pixel"),
                plan.perSample ? "it asks for samples" : "nothing in it varies between samples");
+    if (plan.splitSamples)
+        facts.runs("a part of it once per pixel, " + count(plan.carried.size(), "value") + " handed on",
+                   "it is the same for all samples");
     if (plan.usesQuads) {
         facts.runs("helper invocations, to whole 2x2 quads", "the program takes derivatives");
     } else {
@@ -161,8 +164,13 @@ void collectFacts(const GraphicsState& state, const ShaderProgram& program, Plan
     if (state.rasterizerDiscard) return;
     depthFacts(state, plan, facts);
     fragmentFacts(program.fragmentIr(), plan, facts);
-    if (plan.runsFragments)
-        rateFacts("fragment program", "fragment", *program.fragmentIr(), program.fragment()->statistics(), facts);
+    if (plan.splitSamples)
+        rateFacts("pixels' part of the fragment program", "pixel", program.pixelPart()->source(),
+                  program.pixelPart()->statistics(), facts);
+    if (plan.runsFragments) {
+        const BatchProgram& fragment = plan.splitSamples ? *program.samplePart() : *program.fragment();
+        rateFacts("fragment program", "fragment", fragment.source(), fragment.statistics(), facts);
+    }
     colorFacts(state, plan, facts);
 }
 

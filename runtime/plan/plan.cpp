@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "runtime/plan/facts.h"
+#include "spirv_interp/ir/split_samples.h"
 
 namespace vernier {
 namespace {
@@ -108,21 +109,47 @@ bool isInterpolated(ir::Builtin builtin) {
     return builtin == ir::Builtin::user || builtin == ir::Builtin::clipDistance || builtin == ir::Builtin::cullDistance;
 }
 
-void planVaryings(const ir::Program& vertex, const ir::Program& fragment, Plan& plan) {
+/// The varying of an input; made if there is none.
+Varying& varyingOf(const ir::Program& vertex, const ir::InterfaceSlot& input, Plan& plan) {
+    uint32_t vertexSlot = kNoSlot;
+    for (uint32_t out = 0; out < vertex.outputs.size(); ++out) {
+        const ir::InterfaceSlot& output = vertex.outputs[out];
+        if (output.builtin == input.builtin && output.location == input.location && output.component == input.component)
+            vertexSlot = out;
+    }
+    const auto found = std::find_if(plan.varyings.begin(), plan.varyings.end(), [&](const Varying& v) {
+        return vertexSlot != kNoSlot && v.vertexSlot == vertexSlot && v.interpolation == input.interpolation &&
+               v.sampling == input.sampling;
+    });
+    if (found != plan.varyings.end()) return *found;
+    Varying varying;
+    varying.vertexSlot = vertexSlot;
+    varying.interpolation = input.interpolation;
+    varying.sampling = input.sampling;
+    return plan.varyings.emplace_back(varying);
+}
+
+/// `pixel`: the part of the fragment program that runs per pixel, if it is split.
+void planVaryings(const ir::Program& vertex, const ir::Program& fragment, const ir::Program* pixel, Plan& plan) {
     for (uint32_t slot = 0; slot < fragment.inputs.size(); ++slot) {
         const ir::InterfaceSlot& input = fragment.inputs[slot];
-        if (!isInterpolated(input.builtin)) {
+        if (pixel != nullptr && ir::isCarried(input)) {
+            for (uint32_t out = 0; out < pixel->outputs.size(); ++out)
+                if (pixel->outputs[out].location == input.location && pixel->outputs[out].component == input.component)
+                    plan.carried.push_back({out, slot});
+        } else if (isInterpolated(input.builtin)) {
+            varyingOf(vertex, input, plan).fragmentSlot = slot;
+        } else {
             plan.fragmentBuiltins.push_back({input.builtin, input.component, slot});
-            continue;
         }
-        Varying varying{kNoSlot, slot, input.interpolation, input.sampling};
-        for (uint32_t out = 0; out < vertex.outputs.size(); ++out) {
-            const ir::InterfaceSlot& output = vertex.outputs[out];
-            if (output.builtin == input.builtin && output.location == input.location &&
-                output.component == input.component)
-                varying.vertexSlot = out;
+    }
+    for (uint32_t slot = 0; pixel != nullptr && slot < pixel->inputs.size(); ++slot) {
+        const ir::InterfaceSlot& input = pixel->inputs[slot];
+        if (isInterpolated(input.builtin)) {
+            varyingOf(vertex, input, plan).pixelSlot = slot;
+        } else {
+            plan.pixelBuiltins.push_back({input.builtin, input.component, slot});
         }
-        plan.varyings.push_back(varying);
     }
     std::stable_sort(plan.varyings.begin(), plan.varyings.end(), [](const Varying& a, const Varying& b) {
         return static_cast<int>(a.interpolation) < static_cast<int>(b.interpolation);
@@ -283,16 +310,20 @@ Plan makePlan(const GraphicsState& state, const ShaderProgram& program) {
     plan.smoothLines = state.lineMode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT && drawsLines(state);
     plan.preciseInterpolation = accuracy.interpolation == InterpolationArithmetic::doubleFloat;
     // minSampleShading asks for "a minimum number" of shaded samples: all of them are shaded where more than one is.
-    plan.perSample = state.samples > 1 && fragment != nullptr &&
-                     (fragment->perSample ||
-                      (state.sampleShading && state.minSampleShading * static_cast<float>(state.samples) > 1));
+    const bool shadesSamples = state.sampleShading && state.minSampleShading * static_cast<float>(state.samples) > 1;
+    plan.perSample = state.samples > 1 && fragment != nullptr && (fragment->perSample || shadesSamples);
+    plan.allAtSample = plan.perSample && shadesSamples;
+    plan.splitSamples = plan.perSample && !shadesSamples && program.samplePart() != nullptr;
+    const ir::Program* pixel = plan.splitSamples ? &program.pixelPart()->source() : nullptr;
+    if (plan.splitSamples) fragment = &program.samplePart()->source();
     planAttributes(state, vertex, program.isa(), plan);
     planVertexOutputs(vertex, plan);
     if (!state.rasterizerDiscard) {
         planDepth(state, fragment, plan);
         if (fragment != nullptr) {
-            planVaryings(vertex, *fragment, plan);
+            planVaryings(vertex, *fragment, pixel, plan);
             planFragments(state, *fragment, program.isa(), plan);
+            plan.usesQuads = plan.usesQuads || (pixel != nullptr && pixel->usesQuads);
         }
     }
     collectFacts(state, program, plan);

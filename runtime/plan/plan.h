@@ -49,8 +49,9 @@ struct BuiltinSlot {
 
 /// One scalar that travels from the vertex to the fragment program.
 struct Varying {
-    uint32_t vertexSlot = kNoSlot;  // kNoSlot: nobody writes it, it reads as 0
-    uint32_t fragmentSlot = 0;
+    uint32_t vertexSlot = kNoSlot;    // kNoSlot: nobody writes it, it reads as 0
+    uint32_t fragmentSlot = kNoSlot;  // of the fragment program, or of the part of it that runs per sample
+    uint32_t pixelSlot = kNoSlot;     // of the part that runs per pixel
     ir::Interpolation interpolation = ir::Interpolation::smooth;
     ir::Sampling sampling = ir::Sampling::center;
 };
@@ -69,6 +70,12 @@ struct DepthPlan {
     bool clampToViewport = false;  // depth clamping
     uint8_t compare = 7;           // bit 0: passes when less, bit 1: equal, bit 2: greater (as VkCompareOp is numbered)
     bool any() const { return test || bounds || stencil; }
+};
+
+/// A value that the part of a fragment program that runs per sample takes from the part that runs per pixel.
+struct CarriedValue {
+    uint32_t from = 0;  // output of the one
+    uint32_t to = 0;    // input of the other
 };
 
 /// How colours get into an attachment.
@@ -110,6 +117,9 @@ struct Plan {
     bool runsFragments = false;  // the fragment program has an effect
     bool usesQuads = false;      // derivatives: whole 2x2 quads run, helper lanes included
     bool perSample = false;      // one run per sample
+    bool allAtSample = false;    // all inputs are taken at the sample, whatever they say of themselves
+    bool splitSamples = false;   // perSample: a part of the program runs once per pixel
+    std::vector<CarriedValue> carried;
     bool needsBarycentrics = false;
     bool needsCentroid = false;         // some input is evaluated inside the covered part of the pixel
     bool ordered = false;               // a batch holds each pixel once: colours are read back
@@ -122,7 +132,7 @@ struct Plan {
     uint32_t sampleMask = ~0u;
     bool alphaToCoverage = false, alphaToOne = false;
     bool smoothLines = false;  // alpha of colour 0 is multiplied with what a line covers of the pixel
-    std::vector<BuiltinSlot> fragmentBuiltins;
+    std::vector<BuiltinSlot> fragmentBuiltins, pixelBuiltins;
     uint32_t fragDepthSlot = kNoSlot, stencilRefSlot = kNoSlot, sampleMaskSlot = kNoSlot, alphaSlot = kNoSlot;
     DepthPlan depth;
     std::vector<ColorPlan> colors;  // the attachments that change

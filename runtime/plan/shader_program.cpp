@@ -1,6 +1,7 @@
 #include "runtime/plan/shader_program.h"
 
 #include "spirv_interp/ir/link.h"
+#include "spirv_interp/ir/split_samples.h"
 
 namespace vernier {
 namespace {
@@ -42,14 +43,19 @@ Result<std::shared_ptr<const ShaderProgram>> ShaderProgram::create(const ShaderP
 
     BatchOptions options{desc.isa, desc.accuracy.math};
     options.verified = true;
-    auto compiled = BatchProgram::compile(std::move(vertexIr), options);
-    if (!compiled) return Error{compiled.error().code, "vertex shader: " + compiled.error().message};
-    program->vertex_ = std::move(compiled).value();
-    if (hasFragment) {
-        auto fragment = BatchProgram::compile(std::move(fragmentIr), options);
-        if (!fragment) return Error{fragment.error().code, "fragment shader: " + fragment.error().message};
-        program->fragment_ = std::move(fragment).value();
+    const auto compile = [&](ir::Program& ir, const char* stage, std::shared_ptr<const BatchProgram>& to) -> Status {
+        auto compiled = BatchProgram::compile(std::move(ir), options);
+        if (!compiled) return Error{compiled.error().code, std::string(stage) + " shader: " + compiled.error().message};
+        to = std::move(compiled).value();
+        return {};
+    };
+    if (Status status = compile(vertexIr, "vertex", program->vertex_); !status) return status.error();
+    if (auto split = desc.splitSamples ? ir::splitSamples(fragmentIr) : std::nullopt) {
+        if (Status status = compile(split->pixel, "fragment", program->pixelPart_); !status) return status.error();
+        if (Status status = compile(split->sample, "fragment", program->samplePart_); !status) return status.error();
     }
+    if (hasFragment)
+        if (Status status = compile(fragmentIr, "fragment", program->fragment_); !status) return status.error();
     return std::shared_ptr<const ShaderProgram>(program);
 }
 

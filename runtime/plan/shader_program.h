@@ -20,6 +20,8 @@ struct ShaderProgramDesc {
     uint32_t keptColors = ~0u;
     Accuracy accuracy;
     Isa isa = Isa::sse4;
+    // What a fragment program that asks for samples computes the same for all samples of a pixel runs once per pixel.
+    bool splitSamples = true;
 };
 
 /// Immutable; shared between threads.
@@ -35,6 +37,9 @@ class ShaderProgram {
     const ir::Program* fragmentIr() const { return fragment_ ? &fragment_->source() : nullptr; }
     const std::shared_ptr<const BatchProgram>& vertex() const { return vertex_; }
     const std::shared_ptr<const BatchProgram>& fragment() const { return fragment_; }
+    /// The fragment program in two (ir/split_samples.h); nullptr where it is not worth it.
+    const std::shared_ptr<const BatchProgram>& pixelPart() const { return pixelPart_; }
+    const std::shared_ptr<const BatchProgram>& samplePart() const { return samplePart_; }
     /// Vertex outputs that linking removed because nobody reads them, for explain().
     uint32_t removedVaryings() const { return removedVaryings_; }
     /// Operations of the fragment shader that linking moved into the vertex program, for explain().
@@ -44,7 +49,7 @@ class ShaderProgram {
     ShaderProgram() = default;
     Accuracy accuracy_;
     Isa isa_ = Isa::sse4;
-    std::shared_ptr<const BatchProgram> vertex_, fragment_;
+    std::shared_ptr<const BatchProgram> vertex_, fragment_, pixelPart_, samplePart_;
     uint32_t removedVaryings_ = 0;
     ir::LiftFacts lifted_;
 };

@@ -9,48 +9,49 @@ namespace vernier {
 
 /// Sorts the varyings that the program reads by how they get their values.
 void FragmentStage::bindInputs() {
-    for (VaryingTargets* targets : {&centreTargets_, &centroidTargets_}) {
-        targets->smooth.clear();
-        targets->linear.clear();
-    }
-    flatTargets_.clear();
+    for (VaryingTargets* targets : {&centreTargets_, &centroidTargets_, &sampleTargets_, &pixelTargets_}) *targets = {};
+    const auto add = [](VaryingTargets& targets, const Varying& varying, const VaryingTarget& target) {
+        if (target.plane == nullptr) return;
+        (varying.interpolation == ir::Interpolation::flat            ? targets.flat
+         : varying.interpolation == ir::Interpolation::noPerspective ? targets.linear
+                                                                     : targets.smooth)
+            .push_back(target);
+    };
     for (uint32_t k = 0; k < plan_->varyings.size(); ++k) {
         const Varying& varying = plan_->varyings[k];
-        const VaryingTarget target{k, context_->input(varying.fragmentSlot)};
-        if (target.plane == nullptr) continue;
-        const bool centroid = varying.sampling == ir::Sampling::centroid && plan_->needsCentroid && !plan_->perSample;
-        VaryingTargets& targets = centroid ? centroidTargets_ : centreTargets_;
-        if (varying.interpolation == ir::Interpolation::flat) {
-            flatTargets_.push_back(target);
-        } else {
-            (varying.interpolation == ir::Interpolation::noPerspective ? targets.linear : targets.smooth)
-                .push_back(target);
-        }
+        if (varying.pixelSlot != kNoSlot) add(pixelTargets_, varying, {k, pixelContext_->input(varying.pixelSlot)});
+        if (varying.fragmentSlot == kNoSlot) continue;
+        const bool centre =
+            varying.sampling == ir::Sampling::center || varying.interpolation == ir::Interpolation::flat;
+        const bool centroid = varying.sampling == ir::Sampling::centroid && plan_->needsCentroid;
+        VaryingTargets& targets = plan_->perSample && (plan_->allAtSample || !centre) ? sampleTargets_
+                                  : centroid && !centre                               ? centroidTargets_
+                                                                                      : centreTargets_;
+        add(targets, varying, {k, context_->input(varying.fragmentSlot)});
     }
 }
 
 /// What interpolation needs besides the batch. Filled once per draw: clearing it costs more than a block's colours.
 void FragmentStage::bindInterpolation() {
-    const auto targetsOf = [](const VaryingTargets& targets, InterpolationInput& input) {
+    const auto bindTo = [&](InterpolationInput& input, const VaryingTargets& targets, const float* x, const float* y) {
+        input = {};
+        input.capacity = capacity_;
+        input.perspective = !targets.smooth.empty();
         input.smooth = targets.smooth;
         input.linear = targets.linear;
+        input.flat = targets.flat;
+        input.offsetX = x;
+        input.offsetY = y;
     };
-    centreInput_ = {};
-    centreInput_.capacity = capacity_;
-    centreInput_.perspective = plan_->smoothCount > 0;
-    targetsOf(centreTargets_, centreInput_);
-    centroidInput_ = centreInput_;
-    targetsOf(centroidTargets_, centroidInput_);
-    centroidInput_.offsetX = centroidX_.data();
-    centroidInput_.offsetY = centroidY_.data();
-    centreInput_.flat = flatTargets_;
-    if (plan_->perSample) {
-        centreInput_.offsetX = batch_.offsetX.data();
-        centreInput_.offsetY = batch_.offsetY.data();
-    }
+    bindTo(centreInput_, centreTargets_, nullptr, nullptr);
+    bindTo(centroidInput_, centroidTargets_, centroidX_.data(), centroidY_.data());
+    bindTo(sampleInput_, sampleTargets_, batch_.offsetX.data(), batch_.offsetY.data());
+    if (!plan_->perSample) centreInput_.perspective = plan_->smoothCount > 0;
+    bindTo(pixelInput_, pixelTargets_, nullptr, nullptr);
     if (plan_->usesFragCoord) {
-        centreInput_.fragZ = fragZ_.data();
-        centreInput_.fragInverseW = fragInverseW_.data();
+        InterpolationInput& first = plan_->perSample ? sampleInput_ : centreInput_;
+        first.fragZ = fragZ_.data();
+        first.fragInverseW = fragInverseW_.data();
     }
 }
 
@@ -69,12 +70,13 @@ void FragmentStage::interpolate(const FragmentBatch& batch, InterpolationInput& 
 }
 
 void FragmentStage::fillInputs(const FragmentBatch& batch) {
-    interpolate(batch, centreInput_);
-    if (!centroidTargets_.smooth.empty() || !centroidTargets_.linear.empty()) {
+    if (plan_->perSample && (!sampleTargets_.empty() || plan_->usesFragCoord)) interpolate(batch, sampleInput_);
+    if (!plan_->perSample || !centreTargets_.empty()) interpolate(batch, centreInput_);
+    if (!centroidTargets_.empty()) {
         centroidOffsets(batch);
         interpolate(batch, centroidInput_);
     }
-    fillBuiltins(batch);
+    fillBuiltins(batch, plan_->fragmentBuiltins, *context_);
 }
 
 /// Where centroid inputs are evaluated: the centre when the pixel is fully covered, else its first covered
@@ -90,9 +92,10 @@ void FragmentStage::centroidOffsets(const FragmentBatch& batch) {
     }
 }
 
-void FragmentStage::fillBuiltins(const FragmentBatch& batch) {
-    for (const BuiltinSlot& builtin : plan_->fragmentBuiltins)
-        if (float* plane = context_->input(builtin.slot); plane != nullptr) fillBuiltin(batch, builtin, plane);
+void FragmentStage::fillBuiltins(const FragmentBatch& batch, std::span<const BuiltinSlot> builtins,
+                                 BatchContext& context) {
+    for (const BuiltinSlot& builtin : builtins)
+        if (float* plane = context.input(builtin.slot); plane != nullptr) fillBuiltin(batch, builtin, plane);
 }
 
 void FragmentStage::fillBuiltin(const FragmentBatch& batch, const BuiltinSlot& builtin, float* plane) {

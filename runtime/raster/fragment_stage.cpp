@@ -97,17 +97,17 @@ void FragmentStage::bind(const PreparedDraw& draw, uint64_t token) {
     depthState_.front = {draw.state->stencilFront, dynamic.stencilFront};
     depthState_.back = {draw.state->stencilBack, dynamic.stencilBack};
 
-    context_ = nullptr;
+    context_ = pixelContext_ = nullptr;
     if (!plan_->runsFragments) return;
-    const std::shared_ptr<const BatchProgram>& program = draw.call.pipeline->fragmentProgram();
-    ContextCache::Entry& entry = contexts_.get(program);
-    if (entry.begun != token) {
-        entry.context.beginDraw(draw.call.fragmentResources);
-        entry.context.setInterpolator({this, &FragmentStage::interpolateAt});
-        entry.begun = token;
-    }
-    context_ = &entry.context;
+    const ShaderProgram& shaders = draw.call.pipeline->program();
+    const std::shared_ptr<const BatchProgram>& program =
+        plan_->splitSamples ? shaders.samplePart() : shaders.fragment();
+    context_ = begin(draw, program);
     capacity_ = std::min(program->lanes(), kMaxFragmentLanes);
+    if (plan_->splitSamples) {
+        pixelContext_ = begin(draw, shaders.pixelPart());
+        capacity_ = std::min(capacity_, shaders.pixelPart()->lanes());
+    }
     bindInputs();
     bindInterpolation();
     bindColors(isa);
@@ -116,6 +116,16 @@ void FragmentStage::bind(const PreparedDraw& draw, uint64_t token) {
 
     block_.order = plan_->usesQuads ? LaneOrder::quads : LaneOrder::rows;
     block_.segmentCount = 1;
+}
+
+BatchContext* FragmentStage::begin(const PreparedDraw& draw, const std::shared_ptr<const BatchProgram>& program) {
+    ContextCache::Entry& entry = contexts_.get(program);
+    if (entry.begun != token_) {
+        entry.context.beginDraw(draw.call.fragmentResources);
+        entry.context.setInterpolator({this, &FragmentStage::interpolateAt});
+        entry.begun = token_;
+    }
+    return &entry.context;
 }
 
 TrianglePlanes& FragmentStage::startPrimitive() {
@@ -156,7 +166,7 @@ void FragmentStage::add(const BlockCoverage& block) {
     // What waits for these pixels comes first.
     if ((plan_->ordered || atOnce) && (inBatch_[index] & any) != 0) flush();
     if (atOnce) return runBlock(block, any);
-    if (plan_->perSample) {
+    if (plan_->perSample && !plan_->splitSamples) {
         for (uint32_t s = 0; s < samples_; ++s) {
             if (plan_->usesQuads) {
                 addQuads(block, block.masks[s], 1, s);
@@ -280,7 +290,17 @@ void FragmentStage::flush() {
         std::fill_n(batch_.execute.begin(), count, ~0u);
         if (!plan_->usesQuads) std::fill_n(batch_.store.begin(), count, ~0u);
         for (uint32_t lane = count; lane < capacity_; ++lane) batch_.execute[lane] = batch_.store[lane] = 0;
-        run(batch_);
+        if (plan_->splitSamples) {
+            runSamples(batch_);
+        } else {
+            run(batch_);
+        }
+        if (plan_->perSample) {
+            // Where samples do not run one by one, they are the pixel.
+            std::fill_n(batch_.sample.begin(), count, 0);
+            std::fill_n(batch_.offsetX.begin(), count, 0.5f);
+            std::fill_n(batch_.offsetY.begin(), count, 0.5f);
+        }
         batch_.count = 0;
         batch_.segmentCount = 0;
         batch_.spanCount = 0;
@@ -303,7 +323,7 @@ void FragmentStage::run(FragmentBatch& batch) {
     if (!context_->run(lanes, execute, store)) outOfBudget_ = true;
     ++statistics_.batches;
     uint32_t stored = count;
-    if (batch.partial || (masked && plan_->usesQuads))
+    if (batch.partial || (masked && (plan_->usesQuads || plan_->splitSamples)))
         for (uint32_t lane = 0; lane < count; ++lane) stored -= 1 - (batch.store[lane] & 1);
     statistics_.fragmentInvocations += stored;
     statistics_.helperInvocations += (batch.partial ? batch.running : count) - stored;

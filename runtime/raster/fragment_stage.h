@@ -50,15 +50,17 @@ class FragmentStage {
     void addPixels(const BlockCoverage& block, uint64_t any);
     void addQuads(const BlockCoverage& block, uint64_t any, uint32_t samples, uint32_t sample);
     void addSamples(const BlockCoverage& block, uint32_t sample);
+    BatchContext* begin(const PreparedDraw& draw, const std::shared_ptr<const BatchProgram>& program);
     void bindInputs();
     void bindInterpolation();
     void placeBlock();
     void runBlock(const BlockCoverage& block, uint64_t pixels);
 
     void run(FragmentBatch& batch);
+    void runSamples(FragmentBatch& batch);  // fragment_samples.cpp
     void fillInputs(const FragmentBatch& batch);
     void interpolate(const FragmentBatch& batch, InterpolationInput& input);
-    void fillBuiltins(const FragmentBatch& batch);
+    void fillBuiltins(const FragmentBatch& batch, std::span<const BuiltinSlot> builtins, BatchContext& context);
     void fillBuiltin(const FragmentBatch& batch, const BuiltinSlot& builtin, float* plane);
     void centroidOffsets(const FragmentBatch& batch);
     void reduceCoverage(FragmentBatch& batch);
@@ -79,16 +81,18 @@ class FragmentStage {
     const Plan* plan_ = nullptr;
     uint64_t token_ = 0;
     BatchContext* context_ = nullptr;
+    BatchContext* pixelContext_ = nullptr;  // where a part of the fragment program runs per pixel
     uint32_t capacity_ = 0;
     uint32_t samples_ = 1;
     const SamplePosition* positions_ = nullptr;
-    // Inputs of the program: those taken at the pixel (or sample), at the centroid, and from the provoking vertex.
+    // Inputs of the program: those taken at the pixel, at the centroid and at the sample.
     struct VaryingTargets {
-        std::vector<VaryingTarget> smooth, linear;
+        std::vector<VaryingTarget> smooth, linear, flat;
+        bool empty() const { return smooth.empty() && linear.empty() && flat.empty(); }
     };
-    VaryingTargets centreTargets_, centroidTargets_;
-    std::vector<VaryingTarget> flatTargets_;
-    InterpolationInput centreInput_{}, centroidInput_{};
+    VaryingTargets centreTargets_, centroidTargets_, sampleTargets_;
+    VaryingTargets pixelTargets_;  // of the part that runs per pixel
+    InterpolationInput centreInput_{}, centroidInput_{}, sampleInput_{}, pixelInput_{};
     InterpolateFn interpolate_ = nullptr;
     PlaceLanesFn placeLanes_ = nullptr;
     SpreadPixelsFn spreadPixels_ = nullptr;
@@ -118,6 +122,7 @@ class FragmentStage {
     alignas(64) std::array<float, kLaneRoom> fragZ_, fragInverseW_;
     alignas(64) std::array<float, kLaneRoom> centroidX_, centroidY_;
     alignas(64) std::array<uint32_t, kLaneRoom> mask_;
+    alignas(64) std::array<uint32_t, kLaneRoom> pixelCoverage_;  // of all samples, while they run one by one
     alignas(64) std::array<float, kLaneRoom> zeros_, ones_;
     alignas(64) std::array<float, kLaneRoom> smoothAlpha_;  // of colour 0, times the area that a smooth line covers
     std::array<uint64_t, kBlocksPerTile> inBatch_{};        // pixels of the tile that wait in batch_

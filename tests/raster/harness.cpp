@@ -111,7 +111,8 @@ std::shared_ptr<const GraphicsPipeline> makePipeline(const PipelineOptions& opti
     auto program = ShaderProgram::create({.vertex = &vertex,
                                           .fragment = options.fragment.empty() ? nullptr : &fragment,
                                           .accuracy = options.accuracy,
-                                          .isa = options.isa});
+                                          .isa = options.isa,
+                                          .splitSamples = options.splitSamples});
     if (!program) {
         ADD_FAILURE() << program.error().message;
         std::abort();

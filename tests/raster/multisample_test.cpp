@@ -25,6 +25,7 @@ class Multisample : public testing::Test {
         options.fragment = fragment;
         options.state = plainState(format);
         options.state.samples = samples;
+        options.splitSamples = splitSamples_;
         if (change) change(options.state);
         Result result{std::make_unique<Surface>(format, kSize, kSize, samples),
                       std::make_unique<Surface>(format, kSize, kSize),
@@ -38,6 +39,7 @@ class Multisample : public testing::Test {
         return result;
     }
     ThreadPool pool_{2};
+    bool splitSamples_ = true;
 };
 
 const std::vector<Vertex> kWhole{at(-5, -5, kSize, kSize), at(200, -5, kSize, kSize), at(-5, 200, kSize, kSize)};
@@ -177,6 +179,51 @@ TEST_F(Multisample, PerSampleRuns) {
         EXPECT_EQ(c.float32[1], 7 + kSamplePositions4[s].x());
         EXPECT_EQ(c.float32[2], 9 + kSamplePositions4[s].y());
     }
+}
+
+// What all samples of a pixel share is computed once: the image has the same bits.
+TEST_F(Multisample, PartsThatRunPerPixelChangeNoBit) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> place(-8, kSize + 8);
+    std::uniform_real_distribution<float> shade(0, 1);
+    std::vector<Vertex> v;
+    for (int k = 0; k < 120; ++k)
+        v.push_back(at(place(random), place(random), kSize, kSize, {shade(random), shade(random), shade(random), 1}));
+    for (const std::string fragment : {"splitsample_frag", "splitquad_frag"}) {
+        for (const uint32_t samples : {2u, 4u, 8u, 16u}) {
+            for (const bool blending : {false, true}) {
+                const auto change = [&](GraphicsState& state) {
+                    if (blending) setAdditive(state);
+                };
+                splitSamples_ = false;
+                const Result whole = draw(VK_FORMAT_R32G32B32A32_SFLOAT, samples, v, change, fragment);
+                splitSamples_ = true;
+                const Result parts = draw(VK_FORMAT_R32G32B32A32_SFLOAT, samples, v, change, fragment);
+                EXPECT_EQ(parts.statistics.fragmentInvocations, whole.statistics.fragmentInvocations);
+                EXPECT_EQ(parts.statistics.samplesPassed, whole.statistics.samplesPassed);
+                for (uint32_t y = 0; y < kSize; ++y)
+                    for (uint32_t x = 0; x < kSize; ++x)
+                        for (uint32_t s = 0; s < samples; ++s) {
+                            const VkClearColorValue a = whole.color->color(x, y, s), b = parts.color->color(x, y, s);
+                            for (int c = 0; c < 4; ++c)
+                                ASSERT_EQ(a.uint32[c], b.uint32[c])
+                                    << fragment << " " << x << " " << y << " sample " << s << " of " << samples;
+                        }
+            }
+        }
+    }
+    PipelineOptions options;
+    options.vertex = "color_vert";
+    options.fragment = "splitquad_frag";
+    options.state = plainState(VK_FORMAT_R32G32B32A32_SFLOAT);
+    options.state.samples = 4;
+    EXPECT_TRUE(makePipeline(options)->plan().splitSamples);
+    // What the pipeline wants at samples is at samples as a whole.
+    options.state.sampleShading = true;
+    options.state.minSampleShading = 1;
+    EXPECT_FALSE(makePipeline(options)->plan().splitSamples);
+    options.state.samples = 1;
+    EXPECT_FALSE(makePipeline(options)->plan().perSample);
 }
 
 TEST_F(Multisample, ResolveAverages) {
