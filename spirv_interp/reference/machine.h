@@ -182,7 +182,7 @@ class Machine {
     Scalar<Number> pointerScalar(const Pointer<Number>& pointer) const;
     Pointer<Number> scalarPointer(const Type& type, uint64_t bits) const;
 
-    // memory.cpp
+    // memory.cpp, atomics.cpp
     bool executeMemory(const Instruction& i);
     bool executeAtomic(const Instruction& i);
     // subgroups.cpp

@@ -1,5 +1,4 @@
-// Variables, pointers, loads, stores and atomics.
-#include <algorithm>
+// Variables, pointers, loads and stores.
 #include <cstring>
 
 #include "spirv_interp/reference/integer_ops.h"
@@ -29,35 +28,6 @@ void writeScalar(std::span<std::byte> bytes, uint64_t offset, const Type& type, 
 }
 
 }  // namespace
-
-template <class Number>
-void Machine<Number>::createInterface(const InterfaceValues<Number>& inputs) {
-    for (const InterfaceLayout& layout : module_.entryPointData[program_.entryPoint].layouts) {
-        const Variable& variable = module_.variables[layout.variable];
-        variables_[layout.variable] = variablePointer(variable);
-        Object<Number>& object = *variables_[layout.variable]->object;
-        object.layout = &layout;
-        if (layout.output) continue;
-        for (const InterfaceCell& cell : layout.cells) {
-            Scalar<Number>& target = object.cells[cell.cell];
-            if (cell.isBuiltin) {
-                if (cell.builtin == spv::BuiltInHelperInvocation) target.bits = helper_ ? 1 : 0;
-                const auto found = inputs.builtins.find(cell.builtin);
-                if (found != inputs.builtins.end() && cell.element < found->second.size())
-                    target = found->second[cell.element];
-            } else if (const auto found = inputs.locations.find(cell.location); found != inputs.locations.end()) {
-                target = found->second[cell.component];
-                if (module_.types[cell.type].width == 64 && cell.component < 3 &&
-                    module_.types[cell.type].kind == TypeKind::integer)
-                    target.bits = (target.bits & 0xFFFFFFFFu) | found->second[cell.component + 1].bits << 32;
-            }
-            const Type& type = module_.types[cell.type];
-            target.bits &= widthMask(type.width);
-            if (type.kind == TypeKind::boolean) target.bits = target.bits != 0 ? 1 : 0;
-            if (type.width == 32) target.number = rounded(target.number);
-        }
-    }
-}
 
 template <class Number>
 Pointer<Number> Machine<Number>::variablePointer(const Variable& variable) {
@@ -454,133 +424,14 @@ bool Machine<Number>::executeMemory(const Instruction& i) {
     }
 }
 
-/// One invocation runs at a time, so an atomic is a load and a store. Helpers read but do not write.
-template <class Number>
-bool Machine<Number>::executeAtomic(const Instruction& i) {
-    const auto modify = [&](auto combine) {
-        const Pointer<Number> p = pointer(i.operand(0));
-        const Type& type = module_.types[p.type];
-        if (type.kind != TypeKind::integer) failUnsupported(name(i.op) + " on type " + name(type.id));
-        const uint64_t old = loadScalars(p)[0].bits & widthMask(type.width);
-        store(p, {Scalar<Number>::ofBits(combine(old, type.width) & widthMask(type.width))});
-        if (i.result != 0) setResult(i, Scalar<Number>::ofBits(old));
-        return true;
-    };
-    // Operands: pointer, scope, semantics, value; exchange-compare: ..., semantics if unequal, value,
-    // comparator.
-    const auto operand = [&](size_t index) { return bits(i.operand(index)); };
-    const auto arithmetic = [&](spv::Op op) {
-        return modify([&, op](uint64_t old, uint32_t width) {
-            return *integerOperation(op, width, {old, operand(3), 0, 0});
-        });
-    };
-    const auto extreme = [&](bool isSigned, bool larger) {
-        return modify([&, isSigned, larger](uint64_t old, uint32_t width) {
-            const uint64_t v = operand(3);
-            const bool greater = isSigned ? asSigned(v, width) > asSigned(old, width) : v > old;
-            return greater == larger ? v : old;
-        });
-    };
-    switch (i.op) {
-        case spv::OpAtomicLoad:
-            setResult(i, loadScalars(pointer(i.operand(0))));
-            return true;
-        case spv::OpAtomicStore:
-            store(pointer(i.operand(0)), data(i.operand(3), 1));
-            return true;
-        case spv::OpAtomicExchange: {
-            const Pointer<Number> p = pointer(i.operand(0));
-            Scalars<Number> old = loadScalars(p);
-            store(p, data(i.operand(3), 1));
-            setResult(i, std::move(old));
-            return true;
-        }
-        case spv::OpAtomicCompareExchange:
-            return modify([&](uint64_t old, uint32_t) { return old == operand(5) ? operand(4) : old; });
-        case spv::OpAtomicIIncrement:
-            return modify([](uint64_t old, uint32_t) { return old + 1; });
-        case spv::OpAtomicIDecrement:
-            return modify([](uint64_t old, uint32_t) { return old - 1; });
-        case spv::OpAtomicIAdd:
-            return arithmetic(spv::OpIAdd);
-        case spv::OpAtomicISub:
-            return arithmetic(spv::OpISub);
-        case spv::OpAtomicAnd:
-            return arithmetic(spv::OpBitwiseAnd);
-        case spv::OpAtomicOr:
-            return arithmetic(spv::OpBitwiseOr);
-        case spv::OpAtomicXor:
-            return arithmetic(spv::OpBitwiseXor);
-        case spv::OpAtomicSMin:
-            return extreme(true, false);
-        case spv::OpAtomicUMin:
-            return extreme(false, false);
-        case spv::OpAtomicSMax:
-            return extreme(true, true);
-        case spv::OpAtomicUMax:
-            return extreme(false, true);
-        case spv::OpAtomicFAddEXT:
-        case spv::OpAtomicFMinEXT:
-        case spv::OpAtomicFMaxEXT: {
-            using std::isnan;
-            const Pointer<Number> p = pointer(i.operand(0));
-            const Scalar<Number> old = loadScalars(p)[0], v = scalar(i.operand(3));
-            Scalar<Number> next = v;
-            if (i.op == spv::OpAtomicFAddEXT)
-                next.number = old.number + v.number;
-            else if (isnan(v.number) || (i.op == spv::OpAtomicFMinEXT ? old.number < v.number : v.number < old.number))
-                next = old;
-            round(next, module_.types[p.type].width);
-            store(p, {next});
-            setResult(i, old);
-            return true;
-        }
-        case spv::OpMemoryBarrier:
-            return true;
-        default:
-            return false;
-    }
-}
-
-template <class Number>
-Outcome<Number> Machine<Number>::outcome() const {
-    Outcome<Number> result;
-    result.discarded = discarded_;
-    result.steps = steps_;
-    for (const InterfaceLayout& layout : module_.entryPointData[program_.entryPoint].layouts) {
-        if (!layout.output) continue;
-        const Object<Number>& object = *variables_[layout.variable]->object;
-        for (const InterfaceCell& cell : layout.cells) {
-            if (!object.written[cell.cell]) continue;
-            const Scalar<Number>& scalar = object.cells[cell.cell];
-            if (cell.isBuiltin) {
-                auto& scalars = result.outputs.builtins[cell.builtin];
-                if (scalars.size() <= cell.element) scalars.resize(cell.element + 1);
-                scalars[cell.element] = scalar;
-            } else {
-                Texel<Number>& texel = result.outputs.locations[cell.location];
-                texel[cell.component] = scalar;
-                const Type& type = module_.types[cell.type];
-                if (type.kind == TypeKind::integer && type.width == 64 && cell.component < 3) {
-                    texel[cell.component].bits &= 0xFFFFFFFFu;
-                    texel[cell.component + 1].bits = scalar.bits >> 32;
-                }
-            }
-        }
-    }
-    return result;
-}
-
 #define VERNIER_INSTANTIATE(Number)                                                       \
-    template void Machine<Number>::createInterface(const InterfaceValues<Number>&);       \
+    template Pointer<Number> Machine<Number>::variablePointer(const Variable&);           \
     template Scalar<Number> Machine<Number>::pointerScalar(const Pointer<Number>&) const; \
     template Pointer<Number> Machine<Number>::scalarPointer(const Type&, uint64_t) const; \
     template const Pointer<Number>& Machine<Number>::pointer(Id);                         \
     template Scalars<Number> Machine<Number>::loadScalars(const Pointer<Number>&);        \
     template void Machine<Number>::store(const Pointer<Number>&, const Scalars<Number>&); \
-    template bool Machine<Number>::executeMemory(const Instruction&);                     \
-    template bool Machine<Number>::executeAtomic(const Instruction&);                     \
-    template Outcome<Number> Machine<Number>::outcome() const;
+    template bool Machine<Number>::executeMemory(const Instruction&);
 VERNIER_INSTANTIATE(float)
 VERNIER_INSTANTIATE(double)
 VERNIER_INSTANTIATE(Real)

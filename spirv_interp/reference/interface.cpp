@@ -1,0 +1,72 @@
+// The inputs of an invocation, and what it leaves in its outputs.
+#include "spirv_interp/reference/integer_ops.h"
+#include "spirv_interp/reference/machine.h"
+
+namespace vernier::reference {
+
+template <class Number>
+void Machine<Number>::createInterface(const InterfaceValues<Number>& inputs) {
+    for (const InterfaceLayout& layout : module_.entryPointData[program_.entryPoint].layouts) {
+        const Variable& variable = module_.variables[layout.variable];
+        variables_[layout.variable] = variablePointer(variable);
+        Object<Number>& object = *variables_[layout.variable]->object;
+        object.layout = &layout;
+        if (layout.output) continue;
+        for (const InterfaceCell& cell : layout.cells) {
+            Scalar<Number>& target = object.cells[cell.cell];
+            if (cell.isBuiltin) {
+                if (cell.builtin == spv::BuiltInHelperInvocation) target.bits = helper_ ? 1 : 0;
+                const auto found = inputs.builtins.find(cell.builtin);
+                if (found != inputs.builtins.end() && cell.element < found->second.size())
+                    target = found->second[cell.element];
+            } else if (const auto found = inputs.locations.find(cell.location); found != inputs.locations.end()) {
+                target = found->second[cell.component];
+                if (module_.types[cell.type].width == 64 && cell.component < 3 &&
+                    module_.types[cell.type].kind == TypeKind::integer)
+                    target.bits = (target.bits & 0xFFFFFFFFu) | found->second[cell.component + 1].bits << 32;
+            }
+            const Type& type = module_.types[cell.type];
+            target.bits &= widthMask(type.width);
+            if (type.kind == TypeKind::boolean) target.bits = target.bits != 0 ? 1 : 0;
+            if (type.width == 32) target.number = rounded(target.number);
+        }
+    }
+}
+
+template <class Number>
+Outcome<Number> Machine<Number>::outcome() const {
+    Outcome<Number> result;
+    result.discarded = discarded_;
+    result.steps = steps_;
+    for (const InterfaceLayout& layout : module_.entryPointData[program_.entryPoint].layouts) {
+        if (!layout.output) continue;
+        const Object<Number>& object = *variables_[layout.variable]->object;
+        for (const InterfaceCell& cell : layout.cells) {
+            if (!object.written[cell.cell]) continue;
+            const Scalar<Number>& scalar = object.cells[cell.cell];
+            if (cell.isBuiltin) {
+                auto& scalars = result.outputs.builtins[cell.builtin];
+                if (scalars.size() <= cell.element) scalars.resize(cell.element + 1);
+                scalars[cell.element] = scalar;
+            } else {
+                Texel<Number>& texel = result.outputs.locations[cell.location];
+                texel[cell.component] = scalar;
+                const Type& type = module_.types[cell.type];
+                if (type.kind == TypeKind::integer && type.width == 64 && cell.component < 3) {
+                    texel[cell.component].bits &= 0xFFFFFFFFu;
+                    texel[cell.component + 1].bits = scalar.bits >> 32;
+                }
+            }
+        }
+    }
+    return result;
+}
+
+#define VERNIER_INSTANTIATE(Number)                                                 \
+    template void Machine<Number>::createInterface(const InterfaceValues<Number>&); \
+    template Outcome<Number> Machine<Number>::outcome() const;
+VERNIER_INSTANTIATE(float)
+VERNIER_INSTANTIATE(double)
+VERNIER_INSTANTIATE(Real)
+
+}  // namespace vernier::reference
