@@ -33,8 +33,10 @@ class Arena {
     template <class T>
     std::span<T> array(size_t count) {
         static_assert(std::is_trivially_destructible_v<T>);
+        // T may well be a pointer: arrays of them are wanted. NOLINTBEGIN(bugprone-sizeof-expression)
         if (count > SIZE_MAX / sizeof(T)) throw std::bad_alloc();
         return {static_cast<T*>(allocate(sizeof(T) * count, alignof(T))), count};
+        // NOLINTEND(bugprone-sizeof-expression)
     }
 
     template <class T>

@@ -8,6 +8,11 @@ using namespace vernier::mini;
 
 namespace {
 
+std::string elementText(uint32_t set, uint32_t binding, size_t element) {
+    return "the program uses set " + std::to_string(set) + ", binding " + std::to_string(binding) + ", element " +
+           std::to_string(element);
+}
+
 bool needsBinding(const ir::Resource& resource) {
     return resource.kind != ir::ResourceKind::pushConstants && resource.kind != ir::ResourceKind::workgroupMemory;
 }
@@ -41,10 +46,9 @@ VnResult checkBound(VnContext context, const char* function, const ir::Program& 
                    isBound(found->second[bound], resource.kind))
                 ++bound;
         if (bound < needed)
-            return wrongState(context, function,
-                              "the program uses set " + std::to_string(resource.set) + ", binding " +
-                                  std::to_string(resource.binding) + ", element " + std::to_string(bound) +
-                                  ", but nothing of its type is bound there");
+            return wrongState(
+                context, function,
+                elementText(resource.set, resource.binding, bound) + ", but nothing of its type is bound there");
     }
     return VN_SUCCESS;
 }
@@ -86,9 +90,8 @@ VnResult checkViews(VnContext context, const char* function, const ir::Program& 
                                               attachment ? isArrayed(view->view) : op.arrayed, op.multisampled);
             if (const std::string given = kindOf(view->view); given != wanted)
                 return wrongState(context, function,
-                                  "the program reads set " + std::to_string(resource.set) + ", binding " +
-                                      std::to_string(resource.binding) + ", element " + std::to_string(element) +
-                                      " as a " + wanted + " image, but a " + given + " view is bound there");
+                                  elementText(resource.set, resource.binding, element) + " as a " + wanted +
+                                      " image, but a " + given + " view is bound there");
         }
     }
     return VN_SUCCESS;

@@ -38,8 +38,8 @@ struct Interval {
         return {a.value - b.value, a.low - b.high, a.high - b.low};
     }
     friend Interval operator*(const Interval& a, const Interval& b) {
-        const auto [low, high] = std::minmax({a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high});
-        return {a.value * b.value, low, high};
+        const auto [least, most] = std::minmax({a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high});
+        return {a.value * b.value, least, most};
     }
 };
 
