@@ -1,4 +1,4 @@
-// Fragment programs of which a part runs once per pixel, and the rest once per sample.
+// Fragment programs that run once per sample, a part of them once per pixel perhaps.
 #include <algorithm>
 #include <cstring>
 
@@ -9,10 +9,12 @@ namespace vernier {
 /// `batch` holds pixels, with their covered samples in `coverage`.
 void FragmentStage::runSamples(FragmentBatch& batch) {
     const uint32_t count = batch.count, lanes = (count + 3) / 4 * 4;
-    interpolate(batch, pixelInput_);
-    fillBuiltins(batch, plan_->pixelBuiltins, *pixelContext_);
-    // Lanes of no sample are the helpers of quads: here too they run.
-    if (!pixelContext_->run(lanes, batch.execute.data(), batch.execute.data())) outOfBudget_ = true;
+    if (plan_->splitSamples) {
+        interpolate(batch, pixelInput_);
+        fillBuiltins(batch, plan_->pixelBuiltins, *pixelContext_);
+        // Lanes of no sample are the helpers of quads: here too they run.
+        if (!pixelContext_->run(lanes, batch.execute.data(), batch.execute.data())) outOfBudget_ = true;
+    }
     std::copy_n(batch.coverage.begin(), count, pixelCoverage_.begin());
     for (uint32_t s = 0; s < samples_; ++s) {
         uint32_t covered = 0;
@@ -31,6 +33,10 @@ void FragmentStage::runSamples(FragmentBatch& batch) {
                 std::memcpy(plane, pixelContext_->output(value.from), lanes * sizeof(float));
         run(batch);
     }
+    // Where samples do not run one by one, they are the pixel.
+    std::fill_n(batch.sample.begin(), count, 0);
+    std::fill_n(batch.offsetX.begin(), count, 0.5f);
+    std::fill_n(batch.offsetY.begin(), count, 0.5f);
 }
 
 }  // namespace vernier

@@ -166,16 +166,8 @@ void FragmentStage::add(const BlockCoverage& block) {
     // What waits for these pixels comes first.
     if ((plan_->ordered || atOnce) && (inBatch_[index] & any) != 0) flush();
     if (atOnce) return runBlock(block, any);
-    if (plan_->perSample && !plan_->splitSamples) {
-        for (uint32_t s = 0; s < samples_; ++s) {
-            if (plan_->usesQuads) {
-                addQuads(block, block.masks[s], 1, s);
-            } else {
-                addSamples(block, s);
-            }
-        }
-    } else if (plan_->usesQuads) {
-        addQuads(block, any, samples_, 0);
+    if (plan_->usesQuads) {
+        addQuads(block, any);
     } else {
         addPixels(block, any);
     }
@@ -248,23 +240,8 @@ void FragmentStage::addPixels(const BlockCoverage& block, uint64_t any) {
     }
 }
 
-void FragmentStage::addSamples(const BlockCoverage& block, uint32_t sample) {
-    const SamplePosition position = positions_[sample];
-    for (uint64_t mask = block.masks[sample]; mask != 0; mask &= mask - 1) {
-        reserve(1);
-        const int bit = std::countr_zero(mask);
-        const uint32_t lane = appendSpan(tileX_ + block.x + (bit & 7), tileY_ + block.y + (bit >> 3), 1);
-        batch_.coverage[lane] = 1u << sample;
-        batch_.sample[lane] = sample;
-        batch_.offsetX[lane] = position.x();
-        batch_.offsetY[lane] = position.y();
-    }
-}
-
 /// Quads with a covered pixel, four lanes each: upper left, upper right, lower left, lower right.
-void FragmentStage::addQuads(const BlockCoverage& block, uint64_t any, uint32_t samples, uint32_t sample) {
-    const SamplePosition position = positions_[sample];
-    const uint32_t wanted = ((1u << samples) - 1) << sample;
+void FragmentStage::addQuads(const BlockCoverage& block, uint64_t any) {
     for (uint64_t quads = quadsOf(any); quads != 0; quads &= quads - 1) {
         reserve(4);
         const auto origin = static_cast<uint32_t>(std::countr_zero(quads));
@@ -272,13 +249,8 @@ void FragmentStage::addQuads(const BlockCoverage& block, uint64_t any, uint32_t 
             const uint32_t first = appendSpan(tileX_ + block.x + static_cast<int32_t>(bit & 7),
                                               tileY_ + block.y + static_cast<int32_t>(bit >> 3), 2);
             for (uint32_t n = 0; n < 2; ++n) {
-                const uint32_t coverage = samples_ == 1 ? static_cast<uint32_t>(any >> (bit + n) & 1)
-                                                        : coverageOf(block, bit + n, samples_) & wanted;
-                batch_.coverage[first + n] = coverage;
-                batch_.store[first + n] = coverage != 0 ? ~0u : 0u;
-                batch_.sample[first + n] = sample;
-                batch_.offsetX[first + n] = position.x();
-                batch_.offsetY[first + n] = position.y();
+                batch_.coverage[first + n] = coverageOf(block, bit + n, samples_);
+                batch_.store[first + n] = batch_.coverage[first + n] != 0 ? ~0u : 0u;
             }
         }
     }
@@ -290,16 +262,10 @@ void FragmentStage::flush() {
         std::fill_n(batch_.execute.begin(), count, ~0u);
         if (!plan_->usesQuads) std::fill_n(batch_.store.begin(), count, ~0u);
         for (uint32_t lane = count; lane < capacity_; ++lane) batch_.execute[lane] = batch_.store[lane] = 0;
-        if (plan_->splitSamples) {
+        if (plan_->perSample) {
             runSamples(batch_);
         } else {
             run(batch_);
-        }
-        if (plan_->perSample) {
-            // Where samples do not run one by one, they are the pixel.
-            std::fill_n(batch_.sample.begin(), count, 0);
-            std::fill_n(batch_.offsetX.begin(), count, 0.5f);
-            std::fill_n(batch_.offsetY.begin(), count, 0.5f);
         }
         batch_.count = 0;
         batch_.segmentCount = 0;
@@ -323,7 +289,7 @@ void FragmentStage::run(FragmentBatch& batch) {
     if (!context_->run(lanes, execute, store)) outOfBudget_ = true;
     ++statistics_.batches;
     uint32_t stored = count;
-    if (batch.partial || (masked && (plan_->usesQuads || plan_->splitSamples)))
+    if (batch.partial || (masked && (plan_->usesQuads || plan_->perSample)))
         for (uint32_t lane = 0; lane < count; ++lane) stored -= 1 - (batch.store[lane] & 1);
     statistics_.fragmentInvocations += stored;
     statistics_.helperInvocations += (batch.partial ? batch.running : count) - stored;

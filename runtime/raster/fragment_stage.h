@@ -48,8 +48,7 @@ class FragmentStage {
     uint32_t appendSpan(int32_t x, int32_t y, uint32_t lanes);
     void reserve(uint32_t lanes);
     void addPixels(const BlockCoverage& block, uint64_t any);
-    void addQuads(const BlockCoverage& block, uint64_t any, uint32_t samples, uint32_t sample);
-    void addSamples(const BlockCoverage& block, uint32_t sample);
+    void addQuads(const BlockCoverage& block, uint64_t any);
     BatchContext* begin(const PreparedDraw& draw, const std::shared_ptr<const BatchProgram>& program);
     void bindInputs();
     void bindInterpolation();
