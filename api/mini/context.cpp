@@ -65,10 +65,10 @@ VnResult checkOperations(VnDevice device, const VnAttachment& attachment, const 
     const struct {
         const char* name;
         int64_t value, last;
-    } fields[] = {{" loadOp", attachment.loadOp, VK_ATTACHMENT_LOAD_OP_DONT_CARE},
-                  {" storeOp", attachment.storeOp, VK_ATTACHMENT_STORE_OP_DONT_CARE},
-                  {" stencilLoadOp", attachment.stencilLoadOp, VK_ATTACHMENT_LOAD_OP_DONT_CARE},
-                  {" stencilStoreOp", attachment.stencilStoreOp, VK_ATTACHMENT_STORE_OP_DONT_CARE}};
+    } fields[] = {{" loadOp", enumValue(attachment.loadOp), VK_ATTACHMENT_LOAD_OP_DONT_CARE},
+                  {" storeOp", enumValue(attachment.storeOp), VK_ATTACHMENT_STORE_OP_DONT_CARE},
+                  {" stencilLoadOp", enumValue(attachment.stencilLoadOp), VK_ATTACHMENT_LOAD_OP_DONT_CARE},
+                  {" stencilStoreOp", enumValue(attachment.stencilStoreOp), VK_ATTACHMENT_STORE_OP_DONT_CARE}};
     for (const auto& field : fields)
         if (VnResult r = checkEnum(device, "vnBeginPass", name + field.name, field.value, field.last)) return r;
     return VN_SUCCESS;

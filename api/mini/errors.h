@@ -1,7 +1,9 @@
 // Turning what goes wrong into a result code, a text and a message.
 #pragma once
 
+#include <cstring>
 #include <string>
+#include <type_traits>
 
 #include "api/mini/objects.h"
 
@@ -48,6 +50,15 @@ inline VnResult badHandle(VnDevice device, const char* function, const char* kin
 
 inline VnResult invalid(VnDevice device, const char* function, const std::string& text) {
     return fail(device, VN_ERROR_INVALID_ARGUMENT, std::string(function) + ": " + text);
+}
+
+/// What a C caller put into an enum: it may be no value of the enum at all, so that it must not be read as one.
+template <class Enum>
+int64_t enumValue(const Enum& field) {
+    static_assert(std::is_enum_v<Enum> && sizeof(Enum) == sizeof(uint32_t));
+    uint32_t value;
+    std::memcpy(&value, &field, sizeof value);
+    return value;
 }
 
 /// Of an enum whose values are 0 .. `last`.

@@ -68,18 +68,18 @@ VnResult checkSampler(VnDevice device, const VnSamplerDesc& desc) {
     const struct {
         const char* name;
         int64_t value, last;
-    } enums[] = {{"magFilter", desc.magFilter, VK_FILTER_LINEAR},
-                 {"minFilter", desc.minFilter, VK_FILTER_LINEAR},
-                 {"mipmapMode", desc.mipmapMode, VK_SAMPLER_MIPMAP_MODE_LINEAR},
-                 {"addressU", desc.addressU, VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE},
-                 {"addressV", desc.addressV, VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE},
-                 {"addressW", desc.addressW, VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE},
-                 {"compareOp", desc.compareOp, VK_COMPARE_OP_ALWAYS}};
+    } enums[] = {{"magFilter", enumValue(desc.magFilter), VK_FILTER_LINEAR},
+                 {"minFilter", enumValue(desc.minFilter), VK_FILTER_LINEAR},
+                 {"mipmapMode", enumValue(desc.mipmapMode), VK_SAMPLER_MIPMAP_MODE_LINEAR},
+                 {"addressU", enumValue(desc.addressU), VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE},
+                 {"addressV", enumValue(desc.addressV), VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE},
+                 {"addressW", enumValue(desc.addressW), VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE},
+                 {"compareOp", enumValue(desc.compareOp), VK_COMPARE_OP_ALWAYS}};
     for (const auto& field : enums)
         if (VnResult r = checkEnum(device, kFunction, field.name, field.value, field.last)) return r;
-    if (desc.borderColor != VK_BORDER_COLOR_FLOAT_CUSTOM_EXT && desc.borderColor != VK_BORDER_COLOR_INT_CUSTOM_EXT)
-        if (VnResult r =
-                checkEnum(device, kFunction, "borderColor", desc.borderColor, VK_BORDER_COLOR_INT_OPAQUE_WHITE))
+    const int64_t border = enumValue(desc.borderColor);
+    if (border != VK_BORDER_COLOR_FLOAT_CUSTOM_EXT && border != VK_BORDER_COLOR_INT_CUSTOM_EXT)
+        if (VnResult r = checkEnum(device, kFunction, "borderColor", border, VK_BORDER_COLOR_INT_OPAQUE_WHITE))
             return r;
     if (!(desc.lodBias >= -kMaxSamplerLodBias && desc.lodBias <= kMaxSamplerLodBias))
         return invalid(device, kFunction, "lodBias is " + std::to_string(desc.lodBias) + ", but must be -15 to 15");

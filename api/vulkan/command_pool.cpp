@@ -19,6 +19,7 @@ void CommandBuffer::reset() {
 }
 
 void CommandBuffer::fail(const char* command, std::string_view text) {
+    if (result != VK_SUCCESS) return;  // a consequence of what was told before, of memory that ran out, say
     device.messages().error(command, {VK_OBJECT_TYPE_COMMAND_BUFFER, reinterpret_cast<uint64_t>(this)}, text);
     result = VK_ERROR_UNKNOWN;
 }

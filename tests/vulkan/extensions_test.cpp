@@ -246,7 +246,8 @@ TEST_F(ExtensionsTest, copyCommandsTakeChains) {
     auto* words = static_cast<uint32_t*>(from.data);
     for (uint32_t n = 0; n < kExtent.width * kExtent.height; ++n) words[n] = n * 2654435761u;
     const TestImage image =
-        makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+        makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent,
+                  VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
     const VkCommandBuffer commands = begin();
     const auto barrier = [&](VkImage of) {
         auto memory = make<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);

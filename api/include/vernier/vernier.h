@@ -97,8 +97,8 @@ VN_HANDLE(VnQuery);
 /* ---- Accuracy ---- */
 
 /* One ordered dial. Watertightness, drawing order, determinism and memory safety hold at every position. Results at
- * VN_PROFILE_STANDARD and above do not depend on the number of threads, the SIMD width or the CPU. Each axis of it can be
- * set alone, too, by name, and chosen by a budget of time or error: vernier_accuracy.h. */
+ * VN_PROFILE_STANDARD and above do not depend on the number of threads, the SIMD width or the CPU. Each axis of it can
+ * be set alone, too, by name, and chosen by a budget of time or error: vernier_accuracy.h. */
 typedef enum VnProfile {
     VN_PROFILE_DEFAULT = 0, /* VN_PROFILE_STANDARD */
     VN_PROFILE_DRAFT = 1,   /* below Vulkan's minimum */
