@@ -36,6 +36,8 @@ Result<BufferView> BufferView::create(const Buffer& buffer, const BufferViewInfo
     texture.ops = formatOps(info.format, VK_IMAGE_ASPECT_COLOR_BIT, isa);
     texture.levels[0].data = buffer.data() + info.offset;
     texture.levels[0].width = static_cast<uint32_t>(texels);
+    // One row; its pitch says how many bytes the view reaches, to whoever keeps work on the same bytes in order.
+    texture.levels[0].rowPitch = static_cast<uint32_t>(texels) * format->bytesPerTexel;
     return view;
 }
 

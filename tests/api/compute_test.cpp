@@ -48,6 +48,29 @@ class Compute : public ApiTest {
     }
 };
 
+TEST_F(Compute, TexelBuffersPassFromDispatchToDispatch) {
+    constexpr uint32_t kTexels = 4096, kRounds = 200;
+    const VnProgram step = computeProgram(R"(#version 450
+layout(local_size_x = 64) in;
+layout(set = 0, binding = 0) uniform usamplerBuffer from;
+layout(set = 0, binding = 1, r32ui) writeonly uniform uimageBuffer to;
+void main() {
+    int i = int(gl_GlobalInvocationID.x);
+    imageStore(to, i, texelFetch(from, (i + 1000) % 4096) + 1u);
+})");
+    std::vector<uint32_t> texels(kTexels);
+    const VnBuffer buffers[] = {buffer(texels.data(), kTexels * 4), buffer(nullptr, kTexels * 4)};
+    ASSERT_EQ(vnBindProgram(context_, step), VN_SUCCESS) << lastError();
+    for (uint32_t round = 0; round < kRounds; ++round) {
+        for (const uint32_t side : {0u, 1u})
+            ASSERT_EQ(vnBindTexelBuffer(context_, 0, side, 0, buffers[(round + side) % 2], VK_FORMAT_R32_UINT, 0, 0),
+                      VN_SUCCESS)
+                << lastError();
+        ASSERT_EQ(vnDispatch(context_, kTexels / 64, 1, 1), VN_SUCCESS) << lastError();
+    }
+    EXPECT_THAT(readWords(buffers[kRounds % 2], kTexels), Each(kRounds));
+}
+
 TEST_F(Compute, DispatchesRunInOrderAndSeeEachOther) {
     std::vector<uint32_t> numbers(1000);
     std::iota(numbers.begin(), numbers.end(), 0u);

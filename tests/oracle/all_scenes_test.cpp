@@ -5,6 +5,7 @@
 #include "tests/oracle/rendered.h"
 
 #include <gtest/gtest.h>
+#include <algorithm>
 
 #include <chrono>
 #include <iostream>
@@ -13,6 +14,14 @@ namespace vernier::conformance {
 namespace {
 
 class EveryScene : public testing::TestWithParam<SceneEntry> {};
+
+/// Where the specification itself leaves much open: Bresenham lines may be a pixel off, smooth lines have any alpha,
+/// stipples and depth bias are cut at places that depend on it, and which samples an alpha covers is nobody's rule.
+bool isLoose(std::string_view scene) {
+    constexpr std::string_view kLoose[] = {"lines_bresenham", "lines_smooth", "lines_stippled", "depth_bias",
+                                           "alpha_to_coverage"};
+    return std::find(std::begin(kLoose), std::end(kLoose), scene) != std::end(kLoose);
+}
 
 TEST_P(EveryScene, IsDecided) {
     const auto scene = GetParam().build();
@@ -38,7 +47,7 @@ TEST_P(EveryScene, IsDecided) {
                   << sum / (4.0 * static_cast<double>(image.pixels.size())) << ", widest " << widest << "\n";
         EXPECT_EQ(self.outside, 0u) << "the declared value is always permitted";
         EXPECT_EQ(self.unknown, 0u);
-        EXPECT_LT(self.edges, image.pixels.size() / 10);
+        EXPECT_LT(self.edges, image.pixels.size() / (isLoose(GetParam().name) ? 3 : 10));
     }
 }
 
