@@ -13,6 +13,9 @@ namespace {
 constexpr size_t kAlignment = 64;
 /// From this size on memory comes as pages, which the system gives zeroed when they are first touched.
 constexpr size_t kPagesFrom = 1 << 20;
+/// Up to this size all pages are taken at once: a few images' worth, which the first frame would touch one page fault
+/// after the other, at several times the cost.
+constexpr size_t kPagesAtOnceUpTo = 32 << 20;
 
 }  // namespace
 
@@ -35,7 +38,8 @@ Result<std::unique_ptr<Memory>> Memory::create(const HostAllocator& allocator, V
     memory->mapped_ = !allocator.allocate && size >= kPagesFrom;
     void* data = nullptr;
     if (memory->mapped_) {
-        data = mmap(nullptr, size + kSlack, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+        const int atOnce = size <= kPagesAtOnceUpTo ? MAP_POPULATE : 0;
+        data = mmap(nullptr, size + kSlack, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | atOnce, -1, 0);
         if (data == MAP_FAILED) data = nullptr;
     } else {
         data = allocator.get(size + kSlack, kAlignment);
