@@ -49,19 +49,23 @@ std::string dotShape(const Dot& dot, double x, double y) {
                   dot.onFront ? color : "white");
 }
 
-/// Where labels go so that none covers another: below each other, in the order of the dots.
+/// Where labels go so that none covers another: beside their dots where there is room, else below each other, and all
+/// above `bottom`. They come in the order of their dots' heights.
 class LabelColumn {
   public:
-    LabelColumn(double x, double top, double step) : x_(x), next_(top), step_(step) {}
+    LabelColumn(double x, double top, double bottom, size_t count) : x_(x), next_(top), bottom_(bottom), left_(count) {}
     std::string add(double fromX, double fromY, const std::string& text) {
-        const double y = std::max(next_, fromY);
-        next_ = y + step_;
+        constexpr double kStep = 15;
+        const double latest = bottom_ - kStep * static_cast<double>(left_--);
+        const double y = std::max(next_, std::min(fromY, latest));
+        next_ = y + kStep;
         return format("<line x1='%.1f' y1='%.1f' x2='%.1f' y2='%.1f' stroke='#bbb'/>", fromX + 6, fromY, x_ - 3, y) +
                svgLabel(x_, y + 4, "start", text);
     }
 
   private:
-    double x_, next_, step_;
+    double x_, next_, bottom_;
+    size_t left_;
 };
 
 }  // namespace
@@ -80,7 +84,7 @@ std::string paretoSvg(const AccuracyRun& run, const MeasuredScene& scene) {
     for (const Dot& dot : front) svg += format("%.1f,%.1f ", x.place(dot.time), y.place(dot.error));
     svg += "'/>\n";
     std::sort(dots.begin(), dots.end(), [](const Dot& a, const Dot& b) { return a.error > b.error; });
-    LabelColumn labels(kRight + 24, kTop, 15);
+    LabelColumn labels(kRight + 24, kTop, kBottom + 30, dots.size());
     for (const Dot& dot : dots) {
         const double dotX = x.place(dot.time), dotY = y.place(dot.error);
         svg += labels.add(dotX, dotY, dot.position->label) + dotShape(dot, dotX, dotY);
