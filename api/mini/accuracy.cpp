@@ -25,21 +25,17 @@ class ProfileSearch {
             if (VnResult read = desc_.read(desc_.user, exact_.data(), exact_.size())) return read;
         }
         bool found = false, measured = false;
-        const auto isBetter = [&](const VnBudgetResult& tried, const VnBudgetResult& kept) {
-            return boundsTime() ? tried.profile > kept.profile : tried.milliseconds < kept.milliseconds;
-        };
         for (int profile = VN_PROFILE_REFERENCE; profile >= VN_PROFILE_DRAFT; --profile) {
             if (!desc_.belowVulkan && isBelowVulkan(static_cast<VnProfile>(profile))) continue;
             VnBudgetResult tried{static_cast<VnProfile>(profile), 0, 0};
             if (VnResult failed = measure(tried)) return failed;
             const bool fits = keepsBounds(tried);
             const bool better =
-                !measured || (fits && !found) ||
-                (fits == found && (found ? isBetter(tried, result) : tried.milliseconds < result.milliseconds));
+                !measured || (fits && !found) || (fits == found && tried.milliseconds < result.milliseconds);
             if (better) result = tried;
             measured = true;
             found = found || fits;
-            if (found && boundsTime()) break;  // what follows is less exact
+            if (found && boundsTime()) break;  // the most exact one: what follows is less exact
         }
         return found ? VN_SUCCESS : VN_ERROR_UNSUPPORTED;
     }

@@ -61,9 +61,14 @@ int64_t enumValue(const Enum& field) {
     return value;
 }
 
-/// Of an enum whose values are 0 .. `last`.
-inline VnResult checkEnum(VnDevice device, const char* function, const std::string& field, int64_t value,
-                          int64_t last) {
+/// Of an enum, or of what enumValue() made of one, whose values are 0 .. `last`.
+template <class Value>
+VnResult checkEnum(VnDevice device, const char* function, const std::string& field, const Value& given, int64_t last) {
+    int64_t value;
+    if constexpr (std::is_enum_v<Value>)
+        value = enumValue(given);
+    else
+        value = given;
     if (value >= 0 && value <= last) return VN_SUCCESS;
     return invalid(device, function, field + " is " + std::to_string(value) + ", which stands for nothing");
 }

@@ -104,7 +104,7 @@ Result<Scene> buildAccuracyScene(const AccuracyScene& scene, SceneUse use) {
     draw.instances(scene.instances).push(push);
     if (textured) {
         SceneSampler sampler;
-        sampler.magFilter = sampler.minFilter = scene.filter;
+        sampler.magFilter = sampler.minFilter = VK_FILTER_LINEAR;
         sampler.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
         if (scene.texture == SceneTexture::ramp)
             sampler.addressModeU = sampler.addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;

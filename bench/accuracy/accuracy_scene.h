@@ -31,7 +31,6 @@ struct AccuracyScene {
     uint32_t instances = 1;
     uint32_t cover = 1;  // how often the mesh covers each pixel
     SceneTexture texture = SceneTexture::none;
-    VkFilter filter = VK_FILTER_LINEAR;
     bool blend = false, depth = false;
 };
 

@@ -6,6 +6,7 @@
 #include "conformance/scene/scene_format.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace vernier::conformance {
 namespace {
@@ -156,17 +157,17 @@ Status SceneRun::runDraw(const SceneDraw& draw) {
     return {};
 }
 
-/// The region of one layer between two corners; mirrored ones cannot be said in the API.
-Result<VnRegion> regionBetween(const VkImageSubresourceLayers& layers, const VkOffset3D& low, const VkOffset3D& high) {
+/// The region of one layer between two corners, in any order; a blit mirrors by VnRegion::mirror.
+Result<VnRegion> regionBetween(const VkImageSubresourceLayers& layers, const VkOffset3D& first,
+                               const VkOffset3D& second) {
     if (layers.layerCount != 1) return unsupported("copies of several layers cannot be said in the API");
-    if (high.x < low.x || high.y < low.y) return unsupported("mirrored blits cannot be said in the API");
     VnRegion region{};
     region.mip = layers.mipLevel;
     region.layer = layers.baseArrayLayer;
-    region.x = static_cast<uint32_t>(low.x);
-    region.y = static_cast<uint32_t>(low.y);
-    region.width = static_cast<uint32_t>(high.x - low.x);
-    region.height = static_cast<uint32_t>(high.y - low.y);
+    region.x = static_cast<uint32_t>(std::min(first.x, second.x));
+    region.y = static_cast<uint32_t>(std::min(first.y, second.y));
+    region.width = static_cast<uint32_t>(std::abs(second.x - first.x));
+    region.height = static_cast<uint32_t>(std::abs(second.y - first.y));
     return region;
 }
 
@@ -189,8 +190,14 @@ Status SceneRun::runBlit(const SceneBlitImage& blit) {
     const VkImageBlit& region = blit.region;
     const Result<VnRegion> source = regionBetween(region.srcSubresource, region.srcOffsets[0], region.srcOffsets[1]);
     if (!source) return source.error();
-    const Result<VnRegion> target = regionBetween(region.dstSubresource, region.dstOffsets[0], region.dstOffsets[1]);
+    Result<VnRegion> target = regionBetween(region.dstSubresource, region.dstOffsets[0], region.dstOffsets[1]);
     if (!target) return target.error();
+    // Turned round is what one of the two regions runs against the other.
+    const auto turned = [&](int32_t VkOffset3D::*axis) {
+        return (region.srcOffsets[0].*axis > region.srcOffsets[1].*axis) !=
+               (region.dstOffsets[0].*axis > region.dstOffsets[1].*axis);
+    };
+    target->mirror = (turned(&VkOffset3D::x) ? 1u : 0u) | (turned(&VkOffset3D::y) ? 2u : 0u);
     VERNIER_TRY_API(vnBlitImage(context_, objects_.image(blit.source), &source.value(),
                                 objects_.image(blit.destination), &target.value(), blit.filter));
     return {};

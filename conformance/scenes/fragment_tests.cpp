@@ -13,35 +13,13 @@ namespace {
 constexpr VkFormat kRgba8 = VK_FORMAT_R8G8B8A8_UNORM;
 constexpr double kTau = 6.283185307179586476925;
 
-struct Vertex {
-    glm::vec3 position, color;
-};
-
-constexpr const char* kVertexGlsl = R"(#version 450
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 color;
-layout(location = 0) out vec3 vColor;
-void main() {
-    gl_Position = vec4(position, 1.0);
-    vColor = color;
-}
-)";
-
-PipelineRecorder pipeline(SceneRecorder& record, const char* vertexGlsl = kVertexGlsl,
-                          const char* fragmentGlsl = kColorFragmentGlsl) {
-    return record.pipeline(record.vertex(vertexGlsl), record.fragment(fragmentGlsl))
-        .binding(sizeof(Vertex))
-        .attribute(VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position))
-        .attribute(VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, color));
-}
-
 glm::vec2 onCircle(double turns, double radius) {
     return glm::vec2(glm::dvec2(std::cos(kTau * turns), std::sin(kTau * turns)) * radius);
 }
 
 /// Triangles around the middle, `count` sails of two colours, reaching a little beyond the viewport.
-std::vector<Vertex> pinwheel(int count, double radius, float z) {
-    std::vector<Vertex> vertices;
+std::vector<DepthColorVertex> pinwheel(int count, double radius, float z) {
+    std::vector<DepthColorVertex> vertices;
     for (int i = 0; i < count; ++i) {
         const double turns = (i + 0.11) / count;
         const auto share = static_cast<float>(i) / static_cast<float>(count);
@@ -63,15 +41,15 @@ Result<Scene> scissor_viewport() {
                          "and scissors down to one pixel and to nothing; 251 x 255 pixels.");
     const uint32_t target = record.colorTarget("color", kRgba8, kExtent);
     const uint32_t depth = record.depthTarget("depth", VK_FORMAT_D32_SFLOAT, kExtent);
-    std::vector<Vertex> vertices = pinwheel(7, 1.25, 0.5f);
+    std::vector<DepthColorVertex> vertices = pinwheel(7, 1.25, 0.5f);
     // A mark that tells up from down.
     const glm::vec3 mark(0.98f, 0.97f, 0.9f);
     vertices.insert(vertices.end(),
                     {{{-0.2f, -0.5f, 0.4f}, mark}, {{0.2f, -0.5f, 0.4f}, mark}, {{0, -0.9f, 0.4f}, mark}});
     const auto count = static_cast<uint32_t>(vertices.size());
     const uint32_t buffer = record.vertexBuffer("pinwheel", vertices);
-    const uint32_t less = pipeline(record).depth(VK_COMPARE_OP_LESS);
-    const uint32_t always = pipeline(record).depth(VK_COMPARE_OP_ALWAYS);
+    const uint32_t less = depthColorPipeline(record).depth(VK_COMPARE_OP_LESS);
+    const uint32_t always = depthColorPipeline(record).depth(VK_COMPARE_OP_ALWAYS);
     record.pass(kExtent).color(target, {0.13f, 0.14f, 0.17f, 1}).depthStencil(depth);
     const auto view = [&](uint32_t which) { return record.draw(which, count).vertices(buffer); };
     view(less).viewport(0, 0, 83, 85).scissor(0, 0, 83, 85);
@@ -97,28 +75,30 @@ Result<Scene> depth_intersect() {
                          "GREATER pass without depth writes tints what lies behind a fourth.");
     const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
     const uint32_t depth = record.depthTarget("depth", VK_FORMAT_D32_SFLOAT, kSceneExtent);
-    std::vector<Vertex> vertices;
+    std::vector<DepthColorVertex> vertices;
     const std::array<glm::vec3, 3> colors{{{0.95f, 0.4f, 0.3f}, {0.98f, 0.8f, 0.3f}, {0.25f, 0.6f, 0.85f}}};
     for (int sheet = 0; sheet < 3; ++sheet) {
         const double turns = sheet / 3.0 + 0.03;
         const glm::vec2 along = onCircle(turns, 0.95), across = onCircle(turns + 0.25, 0.3);
         const glm::vec3 color = colors[static_cast<size_t>(sheet)];
-        const Vertex a{{-along - across, 0.13f}, color}, b{{-along + across, 0.17f}, color * 0.85f};
-        const Vertex c{{along - across, 0.91f}, color * 0.4f}, d{{along + across, 0.87f}, color * 0.3f};
+        const DepthColorVertex a{{-along - across, 0.13f}, color}, b{{-along + across, 0.17f}, color * 0.85f};
+        const DepthColorVertex c{{along - across, 0.91f}, color * 0.4f}, d{{along + across, 0.87f}, color * 0.3f};
         vertices.insert(vertices.end(), {a, b, c, c, b, d});
     }
     const glm::vec3 tint(0.85f, 0.95f, 0.9f);
     vertices.insert(vertices.end(),
                     {{{-0.6f, -0.6f, 0.35f}, tint}, {{0.9f, 0.0f, 0.6f}, tint}, {{-0.4f, 0.8f, 0.45f}, tint}});
-    const uint32_t less = pipeline(record).depth(VK_COMPARE_OP_LESS);
+    const uint32_t less = depthColorPipeline(record).depth(VK_COMPARE_OP_LESS);
     VkPipelineColorBlendAttachmentState half{};
     half.blendEnable = VK_TRUE;
     half.srcColorBlendFactor = VK_BLEND_FACTOR_CONSTANT_COLOR;
     half.dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_COLOR;
     half.srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
     half.colorWriteMask = 0xf;
-    const uint32_t greater =
-        pipeline(record).depth(VK_COMPARE_OP_GREATER, false).blend(half).blendConstants({0.5f, 0.5f, 0.5f, 0.5f});
+    const uint32_t greater = depthColorPipeline(record)
+                                 .depth(VK_COMPARE_OP_GREATER, false)
+                                 .blend(half)
+                                 .blendConstants({0.5f, 0.5f, 0.5f, 0.5f});
     const uint32_t buffer = record.vertexBuffer("sheets", vertices);
     record.pass(kSceneExtent).color(target, {0.08f, 0.09f, 0.13f, 1}).depthStencil(depth);
     record.draw(less, 18).vertices(buffer);
@@ -141,7 +121,7 @@ Result<Scene> stencil_winding() {
                                 compareMask,        writeMask, reference};
     };
     // A {7/3} star and a ring wound the other way, as fans from a point outside: only the winding matters.
-    std::vector<Vertex> star;
+    std::vector<DepthColorVertex> star;
     const glm::vec3 anchor(-0.97f, -0.91f, 0.5f), none(0);
     const auto fan = [&](auto pointAt, int count) {
         for (int i = 0; i < count; ++i) {
@@ -152,14 +132,14 @@ Result<Scene> stencil_winding() {
     };
     fan([](int i) { return onCircle(-3.0 * i / 7 - 0.25, 0.94); }, 7);
     fan([](int i) { return onCircle(i / 24.0, 0.17); }, 24);
-    std::vector<Vertex> cover;
+    std::vector<DepthColorVertex> cover;
     const std::array<glm::vec3, 4> palette{
         {{0.95f, 0.75f, 0.25f}, {0.93f, 0.45f, 0.3f}, {0.72f, 0.2f, 0.4f}, {0.25f, 0.65f, 0.7f}}};
     for (const glm::vec3 color : palette) {
         cover.insert(cover.end(), {{{-1, -1, 0}, color}, {{3, -1, 0}, color * 0.6f}, {{-1, 3, 0}, color * 0.8f}});
     }
     constexpr uint32_t kCountBits = 0x0f, kMarkBit = 0x80;
-    const uint32_t count = pipeline(record)
+    const uint32_t count = depthColorPipeline(record)
                                .stencil(op(VK_COMPARE_OP_ALWAYS, VK_STENCIL_OP_INCREMENT_AND_WRAP, 0, 0xff, kCountBits),
                                         op(VK_COMPARE_OP_ALWAYS, VK_STENCIL_OP_DECREMENT_AND_WRAP, 0, 0xff, kCountBits))
                                .writeMask(0);
@@ -168,11 +148,11 @@ Result<Scene> stencil_winding() {
     std::vector<uint32_t> paints;
     for (const uint32_t winding : {1u, 2u, 3u}) {
         const VkStencilOpState equal = op(VK_COMPARE_OP_EQUAL, VK_STENCIL_OP_INVERT, winding, kCountBits, kMarkBit);
-        paints.push_back(pipeline(record).stencil(equal, equal));
+        paints.push_back(depthColorPipeline(record).stencil(equal, equal));
     }
     // Whatever was not marked by the passes before, in a lower half only.
     const VkStencilOpState unmarked = op(VK_COMPARE_OP_NOT_EQUAL, VK_STENCIL_OP_KEEP, kMarkBit, kMarkBit, 0);
-    const uint32_t rest = pipeline(record).stencil(unmarked, unmarked);
+    const uint32_t rest = depthColorPipeline(record).stencil(unmarked, unmarked);
     record.pass(kSceneExtent).color(target, {0.1f, 0.12f, 0.16f, 1}).depthStencil(stencil);
     record.draw(count, static_cast<uint32_t>(star.size())).vertices(starBuffer);
     for (uint32_t i = 0; i < paints.size(); ++i) record.draw(paints[i], 3).first(3 * i).vertices(coverBuffer);
@@ -252,7 +232,7 @@ Result<Scene> msaa_resolve() {
     const uint32_t multisampled = record.colorTarget("multisampled", kRgba8, kSceneExtent, kSamples);
     const uint32_t resolved = record.colorTarget("resolved", kRgba8, kSceneExtent);
     const uint32_t depth = record.depthTarget("depth", VK_FORMAT_D32_SFLOAT, kSceneExtent, kSamples);
-    std::vector<Vertex> vertices;
+    std::vector<DepthColorVertex> vertices;
     constexpr int kSpokes = 23;
     for (int spoke = 0; spoke < kSpokes; ++spoke) {
         const double turns = (spoke + 0.37) / kSpokes;
@@ -265,12 +245,12 @@ Result<Scene> msaa_resolve() {
     for (int i = 0; i < kRim; ++i) {  // a disc that leans through the spokes
         const auto rim = [&](int at) {
             const glm::vec2 p = onCircle(static_cast<double>(at % kRim) / kRim, 0.55);
-            return Vertex{{p, 0.4f + 0.3f * p.x}, {0.35f + 0.3f * p.y, 0.16f, 0.34f}};
+            return DepthColorVertex{{p, 0.4f + 0.3f * p.x}, {0.35f + 0.3f * p.y, 0.16f, 0.34f}};
         };
-        const Vertex center{{0, 0, 0.4f}, {0.62f, 0.2f, 0.4f}};
+        const DepthColorVertex center{{0, 0, 0.4f}, {0.62f, 0.2f, 0.4f}};
         vertices.insert(vertices.end(), {center, rim(i), rim(i + 1)});
     }
-    const uint32_t state = pipeline(record).depth(VK_COMPARE_OP_LESS).samples(kSamples);
+    const uint32_t state = depthColorPipeline(record).depth(VK_COMPARE_OP_LESS).samples(kSamples);
     const uint32_t buffer = record.vertexBuffer("wheel", vertices);
     record.pass(kSceneExtent).color(multisampled, {0.05f, 0.07f, 0.11f, 1}, resolved).depthStencil(depth);
     record.draw(state, static_cast<uint32_t>(vertices.size())).vertices(buffer);

@@ -15,20 +15,6 @@ constexpr VkFormat kRgba8 = VK_FORMAT_R8G8B8A8_UNORM;
 constexpr VkExtent2D kExtent{160, 160};
 constexpr std::array<float, 4> kDark{0.07f, 0.08f, 0.11f, 1};
 
-struct Vertex {
-    glm::vec3 position, color;
-};
-
-constexpr const char* kVertexGlsl = R"(#version 450
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 color;
-layout(location = 0) out vec3 vColor;
-void main() {
-    gl_Position = vec4(position, 1.0);
-    vColor = color;
-}
-)";
-
 constexpr const char* kFlatVertexGlsl = R"(#version 450
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 color;
@@ -44,14 +30,6 @@ layout(location = 0) out vec4 color;
 void main() { color = vec4(vColor, 1.0); }
 )";
 
-PipelineRecorder pipeline(SceneRecorder& record, const char* vertexGlsl = kVertexGlsl,
-                          const char* fragmentGlsl = kColorFragmentGlsl) {
-    return record.pipeline(record.vertex(vertexGlsl), record.fragment(fragmentGlsl))
-        .binding(sizeof(Vertex))
-        .attribute(VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position))
-        .attribute(VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, color));
-}
-
 glm::vec3 hue(int i) {
     const std::array<glm::vec3, 7> colors{{{0.9f, 0.3f, 0.25f},
                                            {0.95f, 0.7f, 0.25f},
@@ -64,8 +42,8 @@ glm::vec3 hue(int i) {
 }
 
 /// A band of triangles for strips: `count` vertices, alternately above and below.
-std::vector<Vertex> band(int count, float top) {
-    std::vector<Vertex> vertices;
+std::vector<DepthColorVertex> band(int count, float top) {
+    std::vector<DepthColorVertex> vertices;
     for (int i = 0; i < count; ++i) {
         const float x = -0.9f + 1.8f * static_cast<float>(i) / static_cast<float>(count - 1);
         vertices.push_back({{x, i % 2 == 0 ? top : top + 0.42f, 0.5f}, hue(i)});
@@ -74,8 +52,8 @@ std::vector<Vertex> band(int count, float top) {
 }
 
 /// A half wheel for fans, the hub first.
-std::vector<Vertex> wheel(int rim, float top) {
-    std::vector<Vertex> vertices{{{0.01f, top, 0.5f}, hue(rim)}};
+std::vector<DepthColorVertex> wheel(int rim, float top) {
+    std::vector<DepthColorVertex> vertices{{{0.01f, top, 0.5f}, hue(rim)}};
     for (int i = 0; i < rim; ++i) {
         const double angle = 0.08 + 2.98 * i / (rim - 1);
         vertices.push_back(
@@ -85,10 +63,10 @@ std::vector<Vertex> wheel(int rim, float top) {
     return vertices;
 }
 
-void addQuad(std::vector<Vertex>& list, glm::vec2 low, glm::vec2 high, const std::array<float, 4>& depths,
+void addQuad(std::vector<DepthColorVertex>& list, glm::vec2 low, glm::vec2 high, const std::array<float, 4>& depths,
              glm::vec3 color) {
-    const Vertex a{{low, depths[0]}, color}, b{{high.x, low.y, depths[1]}, color};
-    const Vertex c{{low.x, high.y, depths[2]}, color}, d{{high, depths[3]}, color};
+    const DepthColorVertex a{{low, depths[0]}, color}, b{{high.x, low.y, depths[1]}, color};
+    const DepthColorVertex c{{low.x, high.y, depths[2]}, color}, d{{high, depths[3]}, color};
     list.insert(list.end(), {a, b, c, c, b, d});
 }
 
@@ -106,7 +84,7 @@ Result<Scene> provoking_vertex() {
     record.pass({320, 160}).color(target, kDark);
     for (const bool last : {false, true}) {
         const auto draw = [&](VkPrimitiveTopology topology, uint32_t buffer, size_t count) {
-            PipelineRecorder flat = pipeline(record, kFlatVertexGlsl, kFlatFragmentGlsl).topology(topology);
+            PipelineRecorder flat = depthColorPipeline(record, kFlatVertexGlsl, kFlatFragmentGlsl).topology(topology);
             if (last) flat.provokingVertexLast();
             record.draw(flat, static_cast<uint32_t>(count))
                 .vertices(buffer)
@@ -137,7 +115,7 @@ Result<Scene> primitive_restart() {
     const uint32_t buffer = record.vertexBuffer("vertices", vertices);
     const uint32_t narrow = record.indexBuffer("strip", stripIndices), wide = record.indexBuffer("fan", fanIndices);
     const auto flat = [&](VkPrimitiveTopology topology) {
-        return pipeline(record, kFlatVertexGlsl, kFlatFragmentGlsl).topology(topology, true);
+        return depthColorPipeline(record, kFlatVertexGlsl, kFlatFragmentGlsl).topology(topology, true);
     };
     const uint32_t strips = flat(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP), fans = flat(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN);
     record.pass(kExtent).color(target, kDark);
@@ -159,7 +137,7 @@ Result<Scene> biasedTiles(SceneRecorder& record, VkFormat depthFormat) {
     const auto depthsOf = [&](glm::vec2 low, glm::vec2 high) {
         return std::array<float, 4>{depthAt(low), depthAt({high.x, low.y}), depthAt({low.x, high.y}), depthAt(high)};
     };
-    std::vector<Vertex> vertices;
+    std::vector<DepthColorVertex> vertices;
     addQuad(vertices, {-1, -1}, {1, 1}, depthsOf({-1, -1}, {1, 1}), {0.25f, 0.3f, 0.4f});
     struct Bias {
         float constant, slope, clamp;
@@ -181,11 +159,11 @@ Result<Scene> biasedTiles(SceneRecorder& record, VkFormat depthFormat) {
     }
     const uint32_t buffer = record.vertexBuffer("tiles", vertices);
     record.pass(kTileExtent).color(target, kDark).depthStencil(depth);
-    record.draw(pipeline(record).depth(VK_COMPARE_OP_LESS), 6).vertices(buffer);
+    record.draw(depthColorPipeline(record).depth(VK_COMPARE_OP_LESS), 6).vertices(buffer);
     for (size_t i = 0; i < kBiases.size(); ++i) {
         const Bias& bias = kBiases[i];
         const uint32_t state =
-            pipeline(record).depth(VK_COMPARE_OP_LESS).depthBias(bias.constant, bias.slope, bias.clamp);
+            depthColorPipeline(record).depth(VK_COMPARE_OP_LESS).depthBias(bias.constant, bias.slope, bias.clamp);
         record.draw(state, 6).vertices(buffer).first(static_cast<uint32_t>(6 + 6 * i));
     }
     record.output(target);
@@ -213,7 +191,7 @@ namespace {
 Result<Scene> blades(SceneRecorder& record, const std::function<void(PipelineRecorder&)>& state, float near) {
     const uint32_t target = record.colorTarget("color", kRgba8, kExtent);
     const uint32_t depth = record.depthTarget("depth", VK_FORMAT_D32_SFLOAT, kExtent);
-    std::vector<Vertex> vertices;
+    std::vector<DepthColorVertex> vertices;
     const float span = 1 - near;
     for (int i = 0; i < 7; ++i) {
         const float x = -0.93f + 0.27f * static_cast<float>(i);
@@ -222,7 +200,7 @@ Result<Scene> blades(SceneRecorder& record, const std::function<void(PipelineRec
         addQuad(vertices, {x, -0.9f}, {x + 0.22f, 0.9f}, {from, from + 0.1f, to, to + 0.05f}, hue(i));
         addQuad(vertices, {-0.9f, x}, {0.9f, x + 0.1f}, {to, from, to, from}, hue(i + 3) * 0.7f);
     }
-    PipelineRecorder pipe = pipeline(record).depth(VK_COMPARE_OP_LESS);
+    PipelineRecorder pipe = depthColorPipeline(record).depth(VK_COMPARE_OP_LESS);
     state(pipe);
     const uint32_t buffer = record.vertexBuffer("blades", vertices);
     record.pass(kExtent).color(target, kDark).depthStencil(depth);
@@ -251,11 +229,11 @@ Result<Scene> depth_bounds() {
     SceneRecorder record("depth_bounds", "A tint only where the depth stored lies within bounds, its own depth aside.");
     const uint32_t target = record.colorTarget("color", kRgba8, kExtent);
     const uint32_t depth = record.depthTarget("depth", VK_FORMAT_D32_SFLOAT, kExtent);
-    std::vector<Vertex> vertices;
+    std::vector<DepthColorVertex> vertices;
     addQuad(vertices, {-0.9f, -0.9f}, {0.9f, 0.8f}, {0.1f, 0.6f, 0.4f, 0.95f}, {0.3f, 0.45f, 0.6f});
     addQuad(vertices, {-1, -1}, {1, 1}, {0.05f, 0.05f, 0.05f, 0.05f}, {0.95f, 0.8f, 0.35f});
-    const uint32_t sheet = pipeline(record).depth(VK_COMPARE_OP_LESS);
-    const uint32_t tint = pipeline(record).depthBounds(0.375f, 0.5625f).targets(1);
+    const uint32_t sheet = depthColorPipeline(record).depth(VK_COMPARE_OP_LESS);
+    const uint32_t tint = depthColorPipeline(record).depthBounds(0.375f, 0.5625f).targets(1);
     const uint32_t buffer = record.vertexBuffer("sheets", vertices);
     record.pass(kExtent).color(target, kDark).depthStencil(depth);
     record.draw(sheet, 6).vertices(buffer);
@@ -272,7 +250,7 @@ Result<Scene> viewports_indexed() {
     const uint32_t target = record.colorTarget("color", kRgba8, kExtent);
     const auto fan = wheel(9, -0.2f);
     const uint32_t buffer = record.vertexBuffer("fan", fan);
-    const uint32_t state = pipeline(record, R"(#version 450
+    const uint32_t state = depthColorPipeline(record, R"(#version 450
 #extension GL_ARB_shader_viewport_layer_array : enable
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 color;
@@ -322,7 +300,7 @@ Result<Scene> layers() {
     const uint32_t flat = record.colorTarget("side by side", kRgba8, kExtent);
     const auto fan = wheel(9, -0.2f);
     const uint32_t buffer = record.vertexBuffer("fan", fan);
-    const uint32_t state = pipeline(record, R"(#version 450
+    const uint32_t state = depthColorPipeline(record, R"(#version 450
 #extension GL_ARB_shader_viewport_layer_array : enable
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 color;
@@ -349,7 +327,7 @@ Result<Scene> multiview() {
     const uint32_t flat = record.colorTarget("side by side", kRgba8, kExtent);
     const auto fan = wheel(9, -0.2f);
     const uint32_t buffer = record.vertexBuffer("fan", fan);
-    const uint32_t state = pipeline(record, R"(#version 450
+    const uint32_t state = depthColorPipeline(record, R"(#version 450
 #extension GL_EXT_multiview : enable
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 color;
@@ -359,7 +337,7 @@ void main() {
     vColor = color;
 }
 )",
-                                    R"(#version 450
+                                              R"(#version 450
 #extension GL_EXT_multiview : enable
 layout(location = 0) in vec3 vColor;
 layout(location = 0) out vec4 color;

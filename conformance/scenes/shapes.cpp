@@ -203,6 +203,16 @@ void main() {
 }
 )";
 
+const char* const kDepthColorVertexGlsl = R"(#version 450
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 color;
+layout(location = 0) out vec3 vColor;
+void main() {
+    gl_Position = vec4(position, 1.0);
+    vColor = color;
+}
+)";
+
 const char* const kColorFragmentGlsl = R"(#version 450
 layout(location = 0) in vec3 vColor;
 layout(location = 0) out vec4 color;
@@ -232,5 +242,12 @@ void main() {
     gl_Position = vec4(corner * 2.0 - 1.0, 0.0, 1.0);
 }
 )";
+
+PipelineRecorder depthColorPipeline(SceneRecorder& record, const char* vertexGlsl, const char* fragmentGlsl) {
+    return record.pipeline(record.vertex(vertexGlsl), record.fragment(fragmentGlsl))
+        .binding(sizeof(DepthColorVertex))
+        .attribute(VK_FORMAT_R32G32B32_SFLOAT, offsetof(DepthColorVertex, position))
+        .attribute(VK_FORMAT_R32G32B32_SFLOAT, offsetof(DepthColorVertex, color));
+}
 
 }  // namespace vernier::conformance

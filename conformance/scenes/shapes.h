@@ -2,6 +2,7 @@
 #pragma once
 
 #include "conformance/scene/scene.h"
+#include "conformance/scenes/recorder.h"
 
 #define GLM_FORCE_DEPTH_ZERO_TO_ONE
 #include <glm/glm.hpp>
@@ -71,11 +72,21 @@ inline constexpr VkExtent2D kSpriteExtent{12, 12};
 /// Position (vec2) and colour (vec3) straight through.
 extern const char* const kColorVertexGlsl;
 extern const char* const kColorFragmentGlsl;
+/// Position (vec3, depth included) and colour (vec3) straight through.
+extern const char* const kDepthColorVertexGlsl;
 /// Clip position (vec4) and texture coordinate (vec2) straight through; one combined image sampler at binding
 /// 0.
 extern const char* const kTexturedVertexGlsl;
 extern const char* const kTexturedFragmentGlsl;
 /// One triangle over the whole viewport from gl_VertexIndex, without inputs or outputs.
 extern const char* const kCoverVertexGlsl;
+
+/// What kDepthColorVertexGlsl reads.
+struct DepthColorVertex {
+    glm::vec3 position, color;
+};
+/// A pipeline that reads DepthColorVertex from binding 0.
+PipelineRecorder depthColorPipeline(SceneRecorder& record, const char* vertexGlsl = kDepthColorVertexGlsl,
+                                    const char* fragmentGlsl = kColorFragmentGlsl);
 
 }  // namespace vernier::conformance

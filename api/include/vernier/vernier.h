@@ -100,9 +100,9 @@ VN_HANDLE(VnQuery);
  * VN_PROFILE_STANDARD and above do not depend on the number of threads, the SIMD width or the CPU. Each axis of it can
  * be set alone, too, by name, and chosen by a budget of time or error: vernier_accuracy.h. */
 typedef enum VnProfile {
-    VN_PROFILE_DEFAULT = 0, /* VN_PROFILE_STANDARD */
-    VN_PROFILE_DRAFT = 1,   /* below Vulkan's minimum */
-    VN_PROFILE_FAST = 2,
+    VN_PROFILE_DEFAULT = 0,  /* VN_PROFILE_STANDARD */
+    VN_PROFILE_DRAFT = 1,    /* below Vulkan's minimum */
+    VN_PROFILE_FAST = 2,     /* below it in the elementary functions of shaders */
     VN_PROFILE_STANDARD = 3, /* what Vulkan asks for, or better */
     VN_PROFILE_FINE = 4,
     VN_PROFILE_REFERENCE = 5

@@ -1,6 +1,7 @@
 /* Draws one white pixel with an installed Vernier; exits with 0 if it is white. */
 #include <stdio.h>
 #include <vernier/vernier.h>
+#include <vernier/vernier_accuracy.h>
 #include <vernier/vernier_glsl.h>
 
 static VnShader compile(VnDevice device, VkShaderStageFlagBits stage, const char* source) {
