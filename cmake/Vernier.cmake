@@ -43,7 +43,12 @@ target_compile_options(vernier_settings INTERFACE
 if(VERNIER_SANITIZE)
     target_compile_options(vernier_settings INTERFACE
         -fsanitize=${VERNIER_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
-    target_link_options(vernier_settings INTERFACE -fsanitize=${VERNIER_SANITIZE})
+    # Programs in C link libraries in C++: what the sanitizers of those need, the C driver of Clang leaves out.
+    set(VERNIER_SANITIZE_LINK -fsanitize=${VERNIER_SANITIZE})
+    if(CMAKE_CXX_COMPILER_ID MATCHES Clang)
+        list(APPEND VERNIER_SANITIZE_LINK -fsanitize-link-c++-runtime -lstdc++)
+    endif()
+    target_link_options(vernier_settings INTERFACE ${VERNIER_SANITIZE_LINK})
 endif()
 
 # For small structures g++ takes "rep stos" and "rep movs", which cost some 80 cycles to start: too much for what runs once

@@ -46,7 +46,8 @@ Status readAccuracies(std::vector<DeviceAccuracy>& accuracies) {
         const std::string_view name = names.substr(0, names.find(','));
         const auto profile = profileFromName(name);
         if (!profile) return badValue("VERNIER_PROFILE", name, "draft, fast, standard, fine, reference");
-        DeviceAccuracy& made = accuracies.emplace_back(std::string(name) + changes, accuracyOf(*profile));
+        DeviceAccuracy& made =
+            accuracies.emplace_back(DeviceAccuracy{std::string(name) + changes, accuracyOf(*profile)});
         if (Status status = setAxes(made.accuracy, changes); !status) return status.error();
         if (name.size() == names.size()) return {};
         names.remove_prefix(name.size() + 1);

@@ -53,7 +53,7 @@ std::vector<uint32_t> initialContents(const KernelBuffer& buffer, uint32_t seed)
 class KernelRun {
   public:
     KernelRun(VulkanContext& context, const Kernel& kernel)
-        : context_(context), kernel_(kernel), resources_(context), device_(context.device()) {}
+        : kernel_(kernel), resources_(context), device_(context.device()) {}
 
     Status prepare() {
         VERNIER_TRY(resources_.create(Scene{}));
@@ -90,7 +90,6 @@ class KernelRun {
     Status record(bool oneGroup, VkCommandBuffer& commands);
     static void barrier(VkCommandBuffer commands, VkAccessFlags to, VkPipelineStageFlags stage);
 
-    VulkanContext& context_;
     const Kernel& kernel_;
     VulkanResources resources_;
     VkDevice device_;

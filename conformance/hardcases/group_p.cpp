@@ -154,7 +154,8 @@ void p08(CaseInput& input) {
                 ++seen;
                 const double observed = pixels.number(x, y, 0);
                 bool fits = false;
-                for (const auto& [a, b] : list) {
+                for (const auto& ends : list) {
+                    const End &a = ends[0], &b = ends[1];
                     const double dx = b.p.x - a.p.x, dy = b.p.y - a.p.y, length = std::hypot(dx, dy);
                     const double px = x + 0.5 - a.p.x, py = y + 0.5 - a.p.y;
                     if (std::abs(dx * py - dy * px) / length > 2) continue;

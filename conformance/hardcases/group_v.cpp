@@ -64,7 +64,9 @@ void v02(CaseInput& input) {
 void v03(CaseInput& input) {
     const WindowTriangles base = jitteredTiling(6, 8.5, 2.9, 256, 3);
     const std::vector<ClipPosition> positions = clipAt(base, viewportOf(kTarget));
-    for (const auto& [x, y, width] : {std::tuple{0.25, 0.5, 64.0}, {3.75, 1.125, 56.5}}) {
+    const struct { double x, y, width; } viewports[] = {{0.25, 0.5, 64}, {3.75, 1.125, 56.5}};
+    for (const auto& viewport : viewports) {
+        const double x = viewport.x, y = viewport.y, width = viewport.width;
         CountOptions options;
         options.extent = kTarget;
         options.viewport =

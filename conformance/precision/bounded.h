@@ -81,7 +81,7 @@ inline Bounded exp(const Bounded& x) {
 }
 /// 2^-21 in [1/2, 2], else 3 ULP.
 inline double logPrecision(double x, double value) {
-    return (x >= 0.5) & (x <= 2) ? 0x1p-21 : 3 * floatUlp(value);
+    return ((x >= 0.5) & (x <= 2)) ? 0x1p-21 : 3 * floatUlp(value);
 }
 inline Bounded log(const Bounded& x) {
     const double value = std::log(x.value);

@@ -82,8 +82,8 @@ void Chunk::fill(const Function& function, uint64_t first, uint64_t count, uint6
     if (function.permitted != nullptr) function.permitted(rows, calls, permitted.data());
     for (size_t i = 0; i < calls; ++i) {
         // Overflow is no error where the permitted interval reaches it.
-        const bool stated = (permitted[i] < overflow) & (std::fabs(approximate[i]) < overflow);
-        permitted[i] = stated ? permitted[i] : kUnknown;
+        const double allowed = permitted[i], size = std::fabs(approximate[i]);
+        permitted[i] = ((allowed < overflow) & (size < overflow)) ? allowed : kUnknown;
     }
     std::fill(scale.begin(), scale.end(), 1.0);
     for (size_t i = 0; function.scale != nullptr && i < calls; ++i) scale[i] = function.scale(call(i).data());

@@ -72,16 +72,17 @@ void Judge::screen(const Chunk& chunk, Figures& figures) {
     double sum = 0;
     uint64_t correct = 0, judged = 0;
     for (size_t i = 0; i < count; ++i) {
-        const double error = std::fabs(values_[i] - chunk.bounded[i]), ulps = error * chunk.inverseUlp[i];
+        const double value = values_[i], bounded = chunk.bounded[i];
+        const double error = std::fabs(value - bounded), ulps = error * chunk.inverseUlp[i];
         const double promise = chunk.scale[i] * std::max(promised * chunk.ulp[i], promisedAbsolute);
         const bool number = error == error;
-        const bool same = (error <= 0) | ((values_[i] != values_[i]) & (chunk.bounded[i] != chunk.bounded[i]));
+        const bool same = (error <= 0) | ((value != value) & (bounded != bounded));
         sum += number ? ulps : 0;
         judged += number ? 1 : 0;
         correct += ulps <= 0.5 ? 1 : 0;
         const bool within = (ulps <= most) & (error <= mostAbsolute) & !(error > mostLimit * chunk.permitted[i]) &
                             !(error > mostPromise * promise);
-        suspect_[i] = within | same ? 0 : 1;
+        suspect_[i] = (within | same) ? 0 : 1;
     }
     figures.ulpSum += sum;
     figures.calls += judged;

@@ -1,5 +1,7 @@
 #include "conformance/precision/measure.h"
 
+#include <mpfr.h>
+
 #include <algorithm>
 #include <atomic>
 #include <numeric>
@@ -70,6 +72,10 @@ Result<Measurement> measure(const Function& function, const MeasureOptions& opti
     ScatteredChunks chunks(callCount(function, options.stride, options.samples));
     std::vector<Measurement> parts(options.threads);
     const auto work = [&](Measurement& part) {
+        // MPFR keeps constants and memory per thread.
+        const struct Caches {
+            ~Caches() { mpfr_free_cache(); }
+        } caches;
         std::vector<BatchRunner> runners;
         std::vector<Judge> judges;
         for (size_t tier = 0; tier < kTiers.size(); ++tier) {

@@ -269,6 +269,7 @@ void resolveImage(const TransferContext& context, const Image& source, const Ima
     to.width = std::min(from.width, to.width);
     to.height = std::min(from.height, to.height);
     to.depth = std::min(from.depth, to.depth);
+    if (to.empty()) return;
     const FormatInfo& format = source.format();
     const auto aspect = static_cast<VkImageAspectFlags>(format.aspects & VK_IMAGE_ASPECT_COLOR_BIT);
     if (aspect == 0) return;

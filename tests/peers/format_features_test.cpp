@@ -94,7 +94,9 @@ TEST(FormatFeatures, AllOfLavapipesOrAReason) {
     ASSERT_FALSE(ours.empty());
     if (theirs.empty()) GTEST_SKIP() << "no lavapipe here";
     std::map<const char*, VkFormatFeatureFlags> used;
-    for (const auto& [format, peer] : theirs) {
+    for (const auto& entry : theirs) {
+        const VkFormat format = entry.first;
+        const VkFormatProperties& peer = entry.second;
         const VkFormatProperties& own = ours.at(format);
         const auto check = [&](Place place, const char* where, VkFormatFeatureFlags has, VkFormatFeatureFlags wanted) {
             const VkFormatFeatureFlags missing = wanted & ~has;

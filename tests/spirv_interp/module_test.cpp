@@ -78,7 +78,7 @@ TEST(Module, SpecConstantOps) {
         "%at = OpAccessChain %pint %var %c2\nOpStore %at %n\n%back = OpLoad %int "
         "%at\n";
     std::string sum = "%back";
-    int expected = 0;
+    uint32_t expected = 0;  // wraps around
     int next = 0;
     const auto addTo = [&](const std::string& value, int worth) {
         const std::string id = std::to_string(next++);
@@ -86,7 +86,7 @@ TEST(Module, SpecConstantOps) {
                 id + "\n";
         globals += "%k" + id + " = OpConstant %int " + std::to_string(next * 7919) + "\n";
         sum = "%s" + id;
-        expected += static_cast<int>(static_cast<uint32_t>(worth) * static_cast<uint32_t>(next * 7919));
+        expected += static_cast<uint32_t>(worth) * static_cast<uint32_t>(next * 7919);
     };
     for (size_t k = 0; k < std::size(ops); ++k) {
         globals += "%op" + std::to_string(k) + " = OpSpecConstantOp %int " + ops[k].text + "\n";
@@ -105,7 +105,7 @@ TEST(Module, SpecConstantOps) {
     for (const Isa isa : isas()) {
         ASSERT_TRUE(shader.run(isa));
         for (uint32_t lane = 0; lane < 64; ++lane) {
-            EXPECT_EQ(static_cast<int>(shader.output(0, lane)), expected + static_cast<int>(lane));
+            EXPECT_EQ(shader.output(0, lane), expected + lane);
             EXPECT_EQ(static_cast<int>(shader.output(2, lane)), ~13);
         }
     }

@@ -316,8 +316,7 @@ TEST_F(HostileTest, viewsOfAnotherDimensionThanTheShadersStayInside) {
         "layout(set=0,binding=0,rgba8) uniform image2D t; void s(int i) { imageStore(t, ivec2(i), vec4(1)); }",
         "layout(set=0,binding=0,rgba8) uniform image3D t; void s(int i) { imageStore(t, ivec3(i), vec4(1)); }",
         "layout(set=0,binding=0,rgba8) uniform imageCube t; void s(int i) { imageStore(t, ivec3(i), vec4(1)); }",
-        "layout(set=0,binding=0,rgba8) uniform image2DArray t; void s(int i) { imageStore(t, ivec3(0, 0, i), vec4(1)); "
-        "}",
+        "layout(set=0,binding=0,rgba8) uniform image2DArray t; void s(int i) { imageStore(t, ivec3(0,0,i), vec4(1)); }",
     };
     for (const char* body : stores) {
         runWithEach(makeCompute("#version 450\nlayout(local_size_x = 64) in;\n" + std::string(body) +
