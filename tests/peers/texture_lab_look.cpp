@@ -13,7 +13,7 @@ std::vector<Vec4> TextureLab::look(const LabImage& image, const LabSampler& samp
     const Texture texture = makeTexture(image, sampler);
     const Texture target = makeTarget(kTarget, extent);
     const Block in = allocate(std::max<size_t>(inputs.size(), 1) * sizeof(Vec4), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-    std::memcpy(in.data, inputs.data(), inputs.size() * sizeof(Vec4));
+    std::copy(inputs.begin(), inputs.end(), static_cast<Vec4*>(static_cast<void*>(in.data)));
     const Block out = allocate(count * sizeof(Vec4), VK_BUFFER_USAGE_TRANSFER_DST_BIT);
     const VkShaderModule vertex = makeShader(VK_SHADER_STAGE_VERTEX_BIT, R"(#version 450
 void main() { gl_Position = vec4(gl_VertexIndex == 1 ? 3 : -1, gl_VertexIndex == 2 ? 3 : -1, 0, 1); })");
