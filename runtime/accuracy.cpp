@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "runtime/settings.h"
+
 namespace vernier {
 namespace {
 
@@ -48,25 +50,19 @@ constexpr Axis kAxes[] = {
                                         kMathPositions, 1),
 };
 
-std::string list(std::span<const char* const> names) {
-    std::string text;
-    for (const char* const name : names) text += (text.empty() ? "" : ", ") + std::string(name);
-    return text;
-}
-
 Status setAxis(Accuracy& accuracy, std::string_view name, std::string_view position) {
     const Axis* const axis =
         std::find_if(std::begin(kAxes), std::end(kAxes), [&](const Axis& a) { return a.name == name; });
     if (axis == std::end(kAxes)) {
         std::array<const char*, std::size(kAxes)> names;
         std::transform(std::begin(kAxes), std::end(kAxes), names.begin(), [](const Axis& a) { return a.name; });
-        return invalidArgument("\"" + std::string(name) + "\" is no axis of accuracy; there are: " + list(names));
+        return invalidArgument("\"" + std::string(name) + "\" is no axis of accuracy; there are: " + listOf(names));
     }
     const auto found = std::find_if(axis->positions.begin(), axis->positions.end(),
                                     [&](std::string_view allowed) { return allowed == position; });
     if (found == axis->positions.end())
         return invalidArgument("axis \"" + std::string(name) + "\" is \"" + std::string(position) +
-                               "\"; allowed: " + list(axis->positions));
+                               "\"; allowed: " + listOf(axis->positions));
     axis->set(accuracy, static_cast<size_t>(found - axis->positions.begin()));
     return {};
 }
@@ -92,20 +88,9 @@ std::span<const Axis> axes() {
 }
 
 Status setAxes(Accuracy& accuracy, std::string_view text) {
-    constexpr std::string_view kSeparators = " ,";
     Accuracy result = accuracy;
-    while (true) {
-        const size_t start = text.find_first_not_of(kSeparators);
-        if (start == std::string_view::npos) break;
-        text.remove_prefix(start);
-        const std::string_view setting = text.substr(0, text.find_first_of(kSeparators));
-        const size_t equals = setting.find('=');
-        if (equals == std::string_view::npos)
-            return invalidArgument("\"" + std::string(setting) + "\" is not of the form axis=position");
-        if (Status status = setAxis(result, setting.substr(0, equals), setting.substr(equals + 1)); !status)
-            return status;
-        text.remove_prefix(setting.size());
-    }
+    const auto set = [&](std::string_view name, std::string_view value) { return setAxis(result, name, value); };
+    if (Status status = forEachSetting(text, "axis=position", set); !status) return status;
     accuracy = result;
     return {};
 }

@@ -39,6 +39,9 @@ VnResult createDevice(const VnDeviceDesc& desc, VnDevice* device) {
     if (!accuracy) return report(desc, VN_ERROR_INVALID_ARGUMENT, accuracy.error().message);
     runtime.accuracy = *accuracy;
     runtime.allocator = {desc.allocator.user, desc.allocator.allocate, desc.allocator.release};
+    const Result<Skips> skips = skipsFrom(desc.skips ? desc.skips : "");
+    if (!skips) return report(desc, VN_ERROR_INVALID_ARGUMENT, "skips: " + skips.error().message);
+    runtime.skips = *skips;
     if (desc.maxIsa) {
         const auto isa = isaFromName(desc.maxIsa);
         if (!isa) return report(desc, VN_ERROR_INVALID_ARGUMENT, std::string("maxIsa is \"") + desc.maxIsa + "\"");

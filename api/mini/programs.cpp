@@ -87,6 +87,7 @@ VnResult vnCreateProgram(VnDevice device, const VnProgramDesc* desc, VnProgram* 
         linked.fragment = fragment ? &fragment->program : nullptr;
         linked.accuracy = *accuracy;
         linked.isa = device->runtime->isa();
+        linked.skips = device->runtime->desc().skips;
         auto made = ShaderProgram::create(linked);
         if (!made) return failShader(device, "vnCreateProgram", made.error());
         program->id =

@@ -1,4 +1,4 @@
-// Moving data: updates, copies, blits, resolves, mip levels, reading back; statistics and explain.
+// Moving data: updates, copies, blits, resolves, mip levels, reading back.
 #include <algorithm>
 #include <cstring>
 
@@ -344,56 +344,6 @@ VnResult vnClearImage(VnContext context, VnImage image, const VkClearColorValue*
                                             object->image.info().arrayLayers};
         context->recording->commands.record(
             command::ClearColorImage{&context->recording->keep(object).image, *value, one(context, range)});
-        return VN_SUCCESS;
-    });
-}
-
-VnResult vnGetStatistics(VnContext context, VnStatistics* statistics) {
-    return guardedContext(context, __func__, [&] {
-        if (!statistics) return invalid(context->device, "vnGetStatistics", "statistics is NULL");
-        if (VnResult result = finish(context, "vnGetStatistics")) return result;
-        const PassStatistics& s = context->statistics;
-        *statistics = {.draws = context->draws,
-                       .inputVertices = s.inputVertices,
-                       .inputPrimitives = s.inputPrimitives,
-                       .vertexInvocations = s.vertexInvocations,
-                       .clippedPrimitives = s.clippedPrimitives,
-                       .rasterPrimitives = s.rasterPrimitives,
-                       .fragmentInvocations = s.fragmentInvocations,
-                       .helperInvocations = s.helperInvocations,
-                       .samplesPassed = s.samplesPassed,
-                       .perspectiveDivides = s.perspectiveDivides,
-                       .destinationReads = s.destinationReads,
-                       .depthReads = s.depthReads,
-                       .plans = context->plans,
-                       .dispatches = context->dispatches,
-                       .computeInvocations = s.computeInvocations,
-                       .fragmentBatches = s.batches,
-                       .clearedPixels = s.clearedPixels};
-        return VN_SUCCESS;
-    });
-}
-
-VnResult vnResetStatistics(VnContext context) {
-    return guardedContext(context, __func__, [&] {
-        if (VnResult result = finish(context, "vnResetStatistics")) return result;
-        context->statistics = {};
-        context->draws = context->dispatches = context->plans = 0;
-        return VN_SUCCESS;
-    });
-}
-
-VnResult vnExplain(VnContext context, char* text, size_t capacity, size_t* length) {
-    return guardedContext(context, __func__, [&] {
-        std::string facts;
-        if (!context->inPass && context->computeProgram) {
-            facts = context->computeProgram->compute->explain();
-        } else {
-            if (VnResult result = preparePipeline(context, "vnExplain")) return result;
-            facts = context->pipeline->explain(dynamicStateOf(*context));
-        }
-        const size_t full = copyText(facts, text, capacity);
-        if (length) *length = full;
         return VN_SUCCESS;
     });
 }

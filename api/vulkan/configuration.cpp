@@ -93,6 +93,9 @@ Result<Configuration> readConfiguration() {
         if (!isa) return badValue("VERNIER_ISA", text, "sse4, avx2, avx512");
         result.maxIsa = *isa;
     }
+    Result<Skips> skips = skipsFrom(variable("VERNIER_SKIP"));
+    if (!skips) return invalidArgument("VERNIER_SKIP: " + skips.error().message);
+    result.skips = *skips;
     const auto log = variable("VERNIER_LOG");
     result.log = !log.empty() && log != "0";
     return result;

@@ -7,6 +7,8 @@
 //   VERNIER_DEVICE_TYPE  cpu (default), integrated, discrete, virtual, other: some programs refuse a CPU device
 //   VERNIER_THREADS      a number of threads; default: as many as there are usable CPUs
 //   VERNIER_ISA          sse4, avx2, avx512: the best instruction set to use. The pictures are the same
+//   VERNIER_SKIP         off: what draws do not need is done all the same, with the same pictures; "hidden_work=off": one
+//                        rule of leaving out alone, see runtime/skips.h
 //   VERNIER_LOG          set and not 0: messages go to stderr, too
 #pragma once
 
@@ -19,6 +21,7 @@
 #include "base/result.h"
 #include "base/simd.h"
 #include "runtime/accuracy.h"
+#include "runtime/skips.h"
 
 namespace vernier::vulkan {
 
@@ -33,6 +36,7 @@ struct Configuration {
     VkPhysicalDeviceType deviceType = VK_PHYSICAL_DEVICE_TYPE_CPU;
     uint32_t threads = 0;
     Isa maxIsa = Isa::avx512;
+    Skips skips;
     bool log = false;
 };
 

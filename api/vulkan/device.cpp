@@ -51,6 +51,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateDevice(VkPhysicalDevice physicalDevice, con
         desc.threads = parent.configuration.threads;
         desc.maxIsa = parent.isa;
         desc.accuracy = parent.accuracy;
+        desc.skips = parent.configuration.skips;
         Result<std::unique_ptr<vernier::Device>> made = vernier::Device::create(desc);
         if (!made) return refuse(resultOf(made.error()), made.error().message);
         return createHandle(pAllocator, pDevice, parent, extensions, std::move(made).value());

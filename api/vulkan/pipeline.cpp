@@ -69,6 +69,7 @@ Result<std::shared_ptr<const ShaderProgram>> loadProgram(const Device& device, c
     desc.keptColors = keptColors(state);
     desc.accuracy = device.physicalDevice.accuracy;
     desc.isa = device.runtime->isa();
+    desc.skips = device.physicalDevice.configuration.skips;
     return ShaderProgram::create(desc);
 }
 

@@ -21,6 +21,8 @@ struct Finding {
     uint64_t count = 0;
 };
 inline constexpr std::string_view kNotRendered = "notRendered";
+// Against the same driver with nothing left out (runtime/skips.h).
+inline constexpr std::string_view kLeavingOutChangesBits = "leavingOutChangesBits";
 
 struct KnownGap {
     std::string scene, driver;

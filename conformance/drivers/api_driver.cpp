@@ -7,6 +7,9 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
+#include <sstream>
+#include <string_view>
 
 namespace vernier::conformance {
 namespace {
@@ -32,11 +35,14 @@ class SceneRun {
 
     Status runFrame();
     Result<std::vector<RenderedImage>> readBack();
+    /// Runs a frame and returns what its draws leave out.
+    Result<std::vector<std::string>> notNeeded();
 
   private:
     Status runPass(const ScenePass& pass);
     Status runDraw(const SceneDraw& draw);
     Status bindResources(const SceneDraw& draw);
+    Status explainDraw();
     Status runCopy(const SceneCopyImage& copy);
     Status runBlit(const SceneBlitImage& blit);
     Result<VnAttachment> attachment(const SceneAttachment& scene);
@@ -45,6 +51,10 @@ class SceneRun {
     VnContext context_;
     const Scene& scene_;
     ApiObjects objects_;
+    // While notNeeded() runs: facts of draws, and how many draws have them.
+    bool explaining_ = false;
+    uint32_t explainedDraws_ = 0;
+    std::map<std::string, uint32_t> leftOut_;
 };
 
 Status SceneRun::runFrame() {
@@ -147,6 +157,7 @@ Status SceneRun::runDraw(const SceneDraw& draw) {
         VERNIER_TRY_API(vnSetScissors(context_, i + 1, 1, &draw.moreViews[i].scissor));
     }
     VERNIER_TRY(bindResources(draw));
+    if (explaining_) VERNIER_TRY(explainDraw());
     if (draw.indexBuffer == kNone) {
         VERNIER_TRY_API(vnDraw(context_, draw.count, draw.instances, draw.first, draw.firstInstance));
         return {};
@@ -155,6 +166,32 @@ Status SceneRun::runDraw(const SceneDraw& draw) {
     VERNIER_TRY_API(
         vnDrawIndexed(context_, draw.count, draw.instances, draw.first, draw.vertexOffset, draw.firstInstance));
     return {};
+}
+
+Status SceneRun::explainDraw() {
+    size_t length = 0;
+    VERNIER_TRY_API(vnExplain(context_, VN_EXPLAIN_TEXT, nullptr, 0, &length));
+    std::string text(length, '\0');
+    VERNIER_TRY_API(vnExplain(context_, VN_EXPLAIN_TEXT, text.data(), length + 1, nullptr));
+    ++explainedDraws_;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+        constexpr std::string_view kLeftOut = "left out  ";
+        if (line.starts_with(kLeftOut)) ++leftOut_[line.substr(kLeftOut.size())];
+    }
+    return {};
+}
+
+Result<std::vector<std::string>> SceneRun::notNeeded() {
+    explaining_ = true;
+    VERNIER_TRY(runFrame());
+    explaining_ = false;
+    std::vector<std::string> lines;
+    for (const auto& [line, draws] : leftOut_) {
+        const std::string share = std::to_string(draws) + " of " + std::to_string(explainedDraws_);
+        lines.push_back(draws == explainedDraws_ ? line : line + " (" + share + " draws)");
+    }
+    return lines;
 }
 
 /// The region of one layer between two corners, in any order; a blit mirrors by VnRegion::mirror.
@@ -225,6 +262,7 @@ Result<std::unique_ptr<ApiDriver>> ApiDriver::create(const ApiOptions& options) 
     desc.profile = options.profile;
     desc.threads = options.threads;
     desc.maxIsa = options.maxIsa;
+    desc.skips = options.skips;
     desc.axes = options.axes;
     if (const VnResult result = vnCreateDevice(&desc, &driver->device_); result != VN_SUCCESS) {
         return apiError(nullptr, "vnCreateDevice", result);
@@ -269,6 +307,9 @@ Result<std::vector<RenderedImage>> ApiDriver::render(const Scene& scene, Timing*
     if (!frames) return frames.error();
     timing->frame = timing->warmFrame = frames.value().median;
     timing->frames = frames.value().count;
+    Result<std::vector<std::string>> facts = run.notNeeded();
+    if (!facts) return facts.error();
+    notNeeded_ = std::move(facts).value();
     return images;
 }
 

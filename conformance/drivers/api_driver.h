@@ -14,6 +14,7 @@ struct ApiOptions {
     uint32_t threads = 0;          // 0: one per usable CPU
     const char* maxIsa = nullptr;  // "sse4", "avx2", "avx512"; nullptr: the best of this CPU
     const char* axes = nullptr;    // VnDeviceDesc::axes
+    const char* skips = nullptr;   // VnDeviceDesc::skips
 };
 
 class ApiDriver final : public Driver {
@@ -28,6 +29,7 @@ class ApiDriver final : public Driver {
     /// Plans are made on first use, so that their time shows in the first image; Timing::pipelines is that of
     /// programs and state objects.
     Result<std::vector<RenderedImage>> render(const Scene& scene, Timing* timing) override;
+    std::vector<std::string> notNeeded() const override { return notNeeded_; }
 
   private:
     ApiDriver() = default;
@@ -35,6 +37,7 @@ class ApiDriver final : public Driver {
     VnDevice device_ = nullptr;
     VnDeviceInfo info_{};
     double startUp_ = 0;
+    std::vector<std::string> notNeeded_;
 };
 
 }  // namespace vernier::conformance

@@ -41,6 +41,10 @@ class Driver {
     /// run once only. A scene that needs what the implementation lacks is an `unsupported` error that names
     /// it.
     virtual Result<std::vector<RenderedImage>> render(const Scene& scene, Timing* timing) = 0;
+
+    /// What the scene rendered last with a timing did not need, "what: why" each. Empty where the implementation does
+    /// not say.
+    virtual std::vector<std::string> notNeeded() const { return {}; }
 };
 
 /// Checks what both kinds of driver rely on: indices in range, formats known, data sizes fitting. The error

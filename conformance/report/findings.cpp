@@ -60,6 +60,8 @@ std::vector<Finding> findingsOf(const ReportScene& scene, const std::vector<Repo
             findings.push_back({scene.scene.name, name, {}, std::string(kNotRendered), 1});
         }
     }
+    if (scene.everything && !scene.everything->failure.empty())
+        findings.push_back({scene.scene.name, "api", "everything", std::string(kLeavingOutChangesBits), 1});
     for (const ReportComparison& comparison : scene.comparisons) {
         if (!ours(comparison.ours)) continue;  // how others stand to each other is shown, not judged
         for (size_t i = 0; i < kPixelClassCount; ++i) {

@@ -28,7 +28,8 @@ struct ReportDriver {
 struct ReportRendering {
     std::vector<RenderedImage> images;
     Timing timing;
-    std::string failure;  // why there are no images; empty: there are
+    std::string failure;                 // why there are no images; empty: there are
+    std::vector<std::string> notNeeded;  // Driver::notNeeded()
 };
 
 /// One of our renderings against another driver's, or against the oracle, in one output.
@@ -44,6 +45,7 @@ struct ReportScene {
     std::vector<OracleImage> oracle;                    // empty: none
     std::string oracleAbsence;
     double oracleSeconds = 0;
+    std::optional<ReportRendering> everything;  // by Vernier's API with nothing left out; images are not kept
     std::vector<ReportComparison> comparisons;
     bool judged = false;  // at least one driver of ours was tried
     bool failed = false;  // a finding that no known gap covers

@@ -1,5 +1,6 @@
 #include "conformance/report/heat_map.h"
 #include "conformance/report/html.h"
+#include "conformance/report/not_needed.h"
 #include "conformance/scene/scene_format.h"
 
 #include <algorithm>
@@ -186,6 +187,7 @@ std::string scenePage(const Report& report, const ReportScene& scene) {
     html += outputViewers(report, scene);
     for (const ReportComparison& comparison : scene.comparisons) html += comparisonSection(report, scene, comparison);
     html += times(report, scene);
+    html += notNeededSection(scene);
     if (scene.oracle.empty()) html += "<p>Oracle: " + escapeHtml(scene.oracleAbsence) + ".</p>";
     html += "<h2>How to read it</h2>" + legend() + shaders(scene.scene);
     return page(scene.scene.name + " \u2013 Vernier conformance", html + "</main>\n");

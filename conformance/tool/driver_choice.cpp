@@ -43,7 +43,8 @@ Result<std::unique_ptr<Driver>> createApiDriver(const DriverPaths& paths) {
                                                                                {"reference", VN_PROFILE_REFERENCE}}};
     for (const auto& [name, value] : kProfiles) {
         if (name != paths.profile) continue;
-        Result<std::unique_ptr<ApiDriver>> driver = ApiDriver::create({value, 0, nullptr, paths.axes.c_str()});
+        Result<std::unique_ptr<ApiDriver>> driver =
+            ApiDriver::create({value, 0, nullptr, paths.axes.c_str(), paths.skips.c_str()});
         if (!driver) return driver.error();
         return std::unique_ptr<Driver>(std::move(driver).value());
     }

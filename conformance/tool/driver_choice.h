@@ -31,6 +31,7 @@ struct DriverPaths {
     std::filesystem::path swiftShader = "/usr/lib/chromium/vk_swiftshader_icd.json";
     std::string profile = "standard";  // of Vernier's API: draft, fast, standard, fine, reference
     std::string axes;                  // of Vernier's API: VnDeviceDesc::axes
+    std::string skips;                 // of Vernier's API: VnDeviceDesc::skips
     uint32_t cpus = 0;                 // that a driver's process may use; 0: all
 
     DriverPaths();

@@ -17,6 +17,7 @@ void addDriverOptions(CLI::App& app, DriverPaths& paths) {
     app.add_option("--swiftshader", paths.swiftShader, "Manifest of SwiftShader")->capture_default_str();
     app.add_option("--profile", paths.profile, "Accuracy of the api driver: draft, fast, standard, fine or reference");
     app.add_option("--axes", paths.axes, "Axes of accuracy of the api driver: \"axis=position ...\"");
+    app.add_option("--skips", paths.skips, "What the api driver leaves out: on, off, or \"rule=off ...\"");
     app.add_option("--cpus", paths.cpus, "CPUs a driver's process may use (0: all)");
 }
 
@@ -26,6 +27,7 @@ std::vector<std::string> driverArguments(const DriverPaths& paths) {
             "--swiftshader", paths.swiftShader.string(),
             "--profile",     paths.profile,
             "--axes",        paths.axes,
+            "--skips",       paths.skips,
             "--cpus",        std::to_string(paths.cpus)};
 }
 
@@ -71,6 +73,7 @@ Result<Rendering> renderScene(const DriverPaths& paths, const std::string& drive
     Result<std::vector<RenderedImage>> images = made.value()->render(scene, &rendering.timing);
     if (!images) return images.error();
     rendering.libraries = loadedLibraryBytes() - librariesBefore;
+    rendering.notNeeded = made.value()->notNeeded();
     rendering.images = std::move(images).value();
     return rendering;
 }

@@ -58,6 +58,7 @@ Status saveRendering(const Rendering& rendering, const std::filesystem::path& di
                                        {"frame", timing.frame}}},
                                      {"frames", timing.frames},
                                      {"libraries", rendering.libraries},
+                                     {"notNeeded", rendering.notNeeded},
                                      {"images", images}};
     const std::string text = document.dump(2) + "\n";
     return writeFile(directory / (rendering.scene + ".json"), text.data(), text.size());
@@ -75,6 +76,7 @@ Result<Rendering> loadRendering(const std::filesystem::path& directory, const st
         rendering.version = document.at("version").get<std::string>();
         rendering.limits = document.at("limits").get<std::string>();
         rendering.libraries = document.at("libraries").get<uint64_t>();
+        rendering.notNeeded = document.at("notNeeded").get<std::vector<std::string>>();
         const nlohmann::json& times = document.at("milliseconds");
         rendering.timing = {.startUp = times.at("startUp"),
                             .modules = times.at("modules"),

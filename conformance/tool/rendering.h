@@ -17,6 +17,7 @@ struct Rendering {
     Timing timing;
     uint64_t libraries = 0;   // bytes of the shared libraries that came with the driver: it, and what it needs
     uint64_t peakMemory = 0;  // bytes resident at most in the process that drew; 0: not measured; not saved
+    std::vector<std::string> notNeeded;  // Driver::notNeeded()
     std::vector<RenderedImage> images;
 };
 

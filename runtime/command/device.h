@@ -16,6 +16,7 @@
 #include "runtime/command/command_buffer.h"
 #include "runtime/command/sync.h"
 #include "runtime/resource/memory.h"
+#include "runtime/skips.h"
 
 namespace vernier {
 
@@ -23,6 +24,7 @@ struct DeviceDesc {
     uint32_t threads = 0;  // 0: as many as there are usable CPUs
     Isa maxIsa = Isa::avx512;
     Accuracy accuracy;
+    Skips skips;
     HostAllocator allocator;
 };
 

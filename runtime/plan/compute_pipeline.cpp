@@ -53,30 +53,32 @@ Result<std::shared_ptr<const ComputePipeline>> ComputePipeline::create(const Com
     return std::shared_ptr<const ComputePipeline>(std::move(pipeline));
 }
 
-std::string ComputePipeline::explain() const {
-    std::string text;
-    const auto line = [&](bool runs, const std::string& what, const std::string& why) {
-        text += (runs ? "runs      " : "left out  ") + what + ": " + why + "\n";
+std::vector<Fact> ComputePipeline::explain() const {
+    std::vector<Fact> facts;
+    const auto add = [&](bool runs, const std::string& what, const std::string& why) {
+        facts.push_back({runs, what, why, {}, 0, 0, 0});
     };
     const BatchStatistics& statistics = program_->statistics();
     const auto& size = ir().localSize;
-    line(true, "compute program, once per invocation, " + std::to_string(statistics.lanes) + " at a time",
-         "work-groups of " + std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " +
-             std::to_string(size[2]) + "; " + std::to_string(statistics.instructions) + " instructions; " +
-             tierName(accuracy_.math) + " maths");
+    add(true, "compute program, once per invocation, " + std::to_string(statistics.lanes) + " at a time",
+        "work-groups of " + std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " +
+            std::to_string(size[2]) + "; " + std::to_string(statistics.instructions) + " instructions; " +
+            tierName(accuracy_.math) + " maths");
+    facts.back().instructions = statistics.instructions;
+    facts.back().lanes = statistics.lanes;
     if (statistics.drawRateInstructions > 0)
-        line(true, std::to_string(statistics.drawRateInstructions) + " instructions, once per dispatch and thread",
-             "their values are the same for all invocations");
+        add(true, std::to_string(statistics.drawRateInstructions) + " instructions, once per dispatch and thread",
+            "their values are the same for all invocations");
     if (statistics.workGroupRateInstructions > 0)
-        line(true, std::to_string(statistics.workGroupRateInstructions) + " instructions, once per work-group",
-             "their values are the same for its invocations");
-    if (!ir().hasBarriers) line(false, "waiting at barriers", "there are none");
+        add(true, std::to_string(statistics.workGroupRateInstructions) + " instructions, once per work-group",
+            "their values are the same for its invocations");
+    if (!ir().hasBarriers) add(false, "waiting at barriers", "there are none");
     if (const uint32_t bytes = sharedBytes(ir()); bytes > 0)
-        line(true, "memory of the work-group, " + std::to_string(bytes) + " bytes", "the invocations share variables");
+        add(true, "memory of the work-group, " + std::to_string(bytes) + " bytes", "the invocations share variables");
     else
-        line(false, "memory of the work-group", "no variable is shared");
-    if (!ir().hasSideEffects) line(false, "the whole program", "it writes nothing that can be read");
-    return text;
+        add(false, "memory of the work-group", "no variable is shared");
+    if (!ir().hasSideEffects) add(false, "the whole program", "it writes nothing that can be read");
+    return facts;
 }
 
 Status checkGroupCounts(const std::array<uint32_t, 3>& counts) {

@@ -5,11 +5,12 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <string>
+#include <vector>
 
 #include "base/result.h"
 #include "base/simd.h"
 #include "runtime/accuracy.h"
+#include "runtime/plan/fact.h"
 #include "spirv_interp/program.h"
 
 namespace vernier {
@@ -33,8 +34,8 @@ class ComputePipeline {
     const std::array<uint32_t, 3>& localSize() const { return ir().localSize; }
     uint32_t invocations() const { return localSize()[0] * localSize()[1] * localSize()[2]; }  // of a work-group
 
-    /// What a dispatch with this pipeline will run, at what rate and accuracy, and why; one fact a line.
-    std::string explain() const;
+    /// What a dispatch with this pipeline will run, at what rate and accuracy, and why.
+    std::vector<Fact> explain() const;
 
   private:
     ComputePipeline() = default;

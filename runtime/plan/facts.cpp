@@ -10,15 +10,21 @@ namespace {
 class FactWriter {
   public:
     explicit FactWriter(Plan& plan) : plan_(plan) {}
-    void runs(std::string what, std::string why) { add(PlanFact::Kind::runs, std::move(what), std::move(why)); }
-    void leftOut(std::string what, std::string why) { add(PlanFact::Kind::leftOut, std::move(what), std::move(why)); }
+    Fact& runs(std::string what, std::string why) { return add(true, std::move(what), std::move(why)); }
+    void leftOut(std::string what, std::string why) { add(false, std::move(what), std::move(why)); }
 
   private:
-    void add(PlanFact::Kind kind, std::string what, std::string why) {
-        plan_.facts.push_back({kind, std::move(what), std::move(why)});
+    Fact& add(bool runs, std::string what, std::string why) {
+        Fact& fact = plan_.facts.emplace_back();
+        fact.runs = runs;
+        fact.what = std::move(what);
+        fact.why = std::move(why);
+        return fact;
     }
     Plan& plan_;
 };
+
+constexpr const char* kSwitchedOff = "leaving them out is switched off";
 
 std::string count(size_t n, const std::string& thing) {
     return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
@@ -78,7 +84,8 @@ void fragmentFacts(const ir::Program* fragment, const Plan& plan, FactWriter& fa
         facts.runs("a part of it once per pixel, " + count(plan.carried.size(), "value") + " handed on",
                    "it is the same for all samples");
     if (plan.usesQuads) {
-        facts.runs("helper invocations, to whole 2x2 quads", "the program takes derivatives");
+        facts.runs("helper invocations, to whole 2x2 quads",
+                   plan.skips.has(Skip::helperInvocations) ? "the program takes derivatives" : kSwitchedOff);
     } else {
         facts.leftOut("helper invocations", "the program takes no derivatives");
     }
@@ -96,18 +103,25 @@ void fragmentFacts(const ir::Program* fragment, const Plan& plan, FactWriter& fa
 /// How often what is computed, in a program of `stage`.
 void rateFacts(const std::string& stage, const std::string& item, const ir::Program& program,
                const BatchStatistics& statistics, FactWriter& facts) {
-    std::string rates;
+    std::vector<RateShare> rates;
+    std::string text;
     const auto counts = ir::countByRate(program), costs = ir::costByRate(program);
     for (size_t rate = 0; rate < ir::kRateCount; ++rate) {
         if (counts[rate] == 0) continue;
-        rates += (rates.empty() ? "" : ", ") + std::string(ir::rateName(static_cast<ir::Rate>(rate))) + " " +
-                 std::to_string(counts[rate]) + " (cost " + std::to_string(costs[rate]) + ")";
+        const RateShare& share = rates.emplace_back(
+            RateShare{std::string(ir::rateName(static_cast<ir::Rate>(rate))), counts[rate], costs[rate]});
+        text += (text.empty() ? "" : ", ") + share.rate + " " + std::to_string(share.operations) + " (cost " +
+                std::to_string(share.cost) + ")";
     }
-    if (!rates.empty())
-        facts.runs("operations of the " + stage + " by rate: " + rates,
-                   "how often their values can change, and what they cost, in additions; " +
-                       count(statistics.instructions, "instruction") + " per " + std::to_string(statistics.lanes) +
-                       " lanes");
+    if (!rates.empty()) {
+        Fact& fact = facts.runs("operations of the " + stage + " by rate: " + text,
+                                "how often their values can change, and what they cost, in additions; " +
+                                    count(statistics.instructions, "instruction") + " per " +
+                                    std::to_string(statistics.lanes) + " lanes");
+        fact.rates = std::move(rates);
+        fact.instructions = statistics.instructions;
+        fact.lanes = statistics.lanes;
+    }
     if (statistics.drawRateInstructions > 0)
         facts.runs(
             count(statistics.drawRateInstructions, "instruction") + " of the " + stage + ", once per draw and thread",
@@ -151,6 +165,9 @@ const char* tierName(MathTier tier) {
 
 void collectFacts(const GraphicsState& state, const ShaderProgram& program, Plan& plan) {
     FactWriter facts(plan);
+    for (size_t rule = 0; rule < skipRules().size(); ++rule)
+        if (!plan.skips.has(static_cast<Skip>(rule)))
+            facts.runs(skipRules()[rule].meaning, std::string("rule ") + skipRules()[rule].name + " is off");
     geometryFacts(state, plan, program.accuracy(), facts);
     rateFacts("vertex program", "vertex", program.vertexIr(), program.vertex()->statistics(), facts);
     if (program.lifted().flat > 0)

@@ -1,4 +1,4 @@
-// The plan in words.
+// The plan, told fact by fact.
 #pragma once
 
 #include "runtime/plan/plan.h"

@@ -20,21 +20,16 @@ Result<std::shared_ptr<const GraphicsPipeline>> GraphicsPipeline::create(const G
     return std::shared_ptr<const GraphicsPipeline>(std::move(pipeline));
 }
 
-std::string GraphicsPipeline::explain(const DynamicState& dynamic) const {
-    std::string text;
-    const auto line = [&](const char* verb, const std::string& what, const std::string& why) {
-        text += verb + what + ": " + why + "\n";
-    };
-    for (const PlanFact& fact : plan_->facts)
-        line(fact.kind == PlanFact::Kind::runs ? "runs      " : "left out  ", fact.what, fact.why);
+std::vector<Fact> GraphicsPipeline::explain(const DynamicState& dynamic) const {
+    std::vector<Fact> facts = plan_->facts;
+    const auto leftOut = [&](const char* what, const char* why) { facts.push_back({false, what, why, {}, 0, 0, 0}); };
     const auto& viewport = dynamic.viewports[0];
-    if (viewport.width == 0 || viewport.height == 0) line("left out  ", "rasterisation", "the viewport is empty");
+    if (viewport.width == 0 || viewport.height == 0) leftOut("rasterisation", "the viewport is empty");
     const auto& scissor = dynamic.scissors[0];
-    if (scissor.extent.width == 0 || scissor.extent.height == 0)
-        line("left out  ", "rasterisation", "the scissor is empty");
+    if (scissor.extent.width == 0 || scissor.extent.height == 0) leftOut("rasterisation", "the scissor is empty");
     if (state_.depthBiasEnable && dynamic.depthBiasConstant == 0 && dynamic.depthBiasSlope == 0)
-        line("left out  ", "depth bias", "both factors are zero");
-    return text;
+        leftOut("depth bias", "both factors are zero");
+    return facts;
 }
 
 }  // namespace vernier

@@ -1,13 +1,13 @@
 // A graphics pipeline: state and shaders, planned once. The plan says which stages run, at what rate and accuracy, and
-// why; explain() tells it in words.
+// why; explain() tells it.
 #pragma once
 
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "base/result.h"
+#include "runtime/plan/fact.h"
 #include "runtime/plan/graphics_state.h"
 #include "runtime/plan/shader_program.h"
 
@@ -36,8 +36,8 @@ class GraphicsPipeline {
     const std::shared_ptr<const BatchProgram>& fragmentProgram() const { return program_->fragment(); }
     const Plan& plan() const { return *plan_; }
 
-    /// What a draw with this pipeline will run, at what rate and accuracy, what it leaves out and why; one fact a line.
-    std::string explain(const DynamicState& dynamic) const;
+    /// What a draw with this pipeline will run, at what rate and accuracy, what it leaves out and why.
+    std::vector<Fact> explain(const DynamicState& dynamic) const;
 
   private:
     GraphicsPipeline();

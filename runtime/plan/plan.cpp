@@ -190,9 +190,11 @@ void planDepth(const GraphicsState& state, const ir::Program* fragment, Plan& pl
     depth.test = hasDepth && state.depthTest;
     depth.write = depth.test && state.depthWrite;
     depth.bounds = hasDepth && state.depthBoundsTest;
-    depth.stencil = depth.hasStencil && state.stencilTest && !(isIdle(state.stencilFront) && isIdle(state.stencilBack));
+    const bool skipIdle = plan.skips.has(Skip::idleState);
+    depth.stencil =
+        depth.hasStencil && state.stencilTest && !(skipIdle && isIdle(state.stencilFront) && isIdle(state.stencilBack));
     depth.compare = static_cast<uint8_t>(state.depthCompare & 7);
-    if (depth.test && state.depthCompare == VK_COMPARE_OP_ALWAYS && !depth.write) depth.test = false;
+    if (skipIdle && state.depthCompare == VK_COMPARE_OP_ALWAYS && !depth.write) depth.test = false;
     if (fragment == nullptr || fragment->earlyFragmentTests) return;
     // Testing early must not be visible: not through writes for fragments that the program then drops, nor
     // through side effects of fragments that should have run.
@@ -227,6 +229,7 @@ void planColor(const GraphicsState& state, const ir::Program& fragment, uint32_t
     }
     if (!written) return;  // undefined by the specification: left as it is
     const FormatInfo& info = *findFormat(format);
+    const bool skipIdle = plan.skips.has(Skip::idleState);
     color.attachment = attachment;
     color.format = format;
     color.ops = formatOps(format, isa);
@@ -235,10 +238,10 @@ void planColor(const GraphicsState& state, const ir::Program& fragment, uint32_t
     const bool isSrgb = info.color.rgba[0].kind == ComponentKind::srgb;
     if (state.logicOpEnable && (!isFloat(info) || (!isSrgb && info.color.rgba[0].kind == ComponentKind::unorm) ||
                                 info.color.rgba[0].kind == ComponentKind::snorm)) {
-        if (state.logicOp == VK_LOGIC_OP_NO_OP) return;
+        if (skipIdle && state.logicOp == VK_LOGIC_OP_NO_OP) return;
         color.logicOp = state.logicOp;
-        if (state.logicOp != VK_LOGIC_OP_COPY) color.path = ColorPath::logic;
-    } else if (blend.blendEnable && !state.logicOpEnable && isFloat(info) && !isReplace(blend)) {
+        if (!skipIdle || state.logicOp != VK_LOGIC_OP_COPY) color.path = ColorPath::logic;
+    } else if (blend.blendEnable && !state.logicOpEnable && isFloat(info) && !(skipIdle && isReplace(blend))) {
         color.path = ColorPath::blend;
     }
     const ComponentKind kind = info.color.rgba[0].kind;
@@ -264,8 +267,9 @@ void planFragments(const GraphicsState& state, const ir::Program& fragment, Isa 
             plan.alphaSlot = slot;
     }
     const bool decidesTests = (plan.depth.any() || plan.depth.write) && !plan.depth.early;
-    plan.runsFragments = !plan.colors.empty() || fragment.hasSideEffects || decidesTests || fragment.canDiscard;
-    plan.usesQuads = fragment.usesQuads;
+    plan.runsFragments = !plan.colors.empty() || fragment.hasSideEffects || decidesTests || fragment.canDiscard ||
+                         !plan.skips.has(Skip::unkeptFragments);
+    plan.usesQuads = fragment.usesQuads || !plan.skips.has(Skip::helperInvocations);
     plan.keepsCoverage =
         !fragment.canDiscard && plan.sampleMaskSlot == kNoSlot && !plan.alphaToCoverage && !decidesTests;
     plan.countsEarly = fragment.earlyFragmentTests;
@@ -303,6 +307,7 @@ Plan makePlan(const GraphicsState& state, const ShaderProgram& program) {
     const ir::Program* fragment = state.rasterizerDiscard ? nullptr : program.fragmentIr();
     const Accuracy& accuracy = program.accuracy();
     Plan plan;
+    plan.skips = program.skips();
     plan.samples = state.samples;
     plan.sampleMask = state.sampleMask;
     plan.alphaToCoverage = state.alphaToCoverage && fragment != nullptr;

@@ -8,25 +8,19 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "runtime/format/format.h"
 #include "runtime/limits.h"
+#include "runtime/plan/fact.h"
 #include "runtime/plan/graphics_state.h"
 #include "runtime/plan/shader_program.h"
+#include "runtime/skips.h"
 #include "spirv_interp/ir/ir.h"
 
 namespace vernier {
 
 inline constexpr uint32_t kNoSlot = ~0u;
-
-/// One fact about a draw, for people.
-struct PlanFact {
-    enum class Kind : uint8_t { runs, leftOut };
-    Kind kind = Kind::runs;
-    std::string what, why;
-};
 
 /// How one vertex attribute reaches the inputs of the vertex program.
 struct AttributeFetch {
@@ -137,7 +131,8 @@ struct Plan {
     DepthPlan depth;
     std::vector<ColorPlan> colors;  // the attachments that change
 
-    std::vector<PlanFact> facts;
+    Skips skips;  // which of what is not needed is left out
+    std::vector<Fact> facts;
 };
 
 /// The state and the program have passed check_state.h.

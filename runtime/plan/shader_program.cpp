@@ -31,12 +31,17 @@ Result<std::shared_ptr<const ShaderProgram>> ShaderProgram::create(const ShaderP
     const std::shared_ptr<ShaderProgram> program(new ShaderProgram);
     program->accuracy_ = desc.accuracy;
     program->isa_ = desc.isa;
+    program->skips_ = desc.skips;
+    const bool dropUnread = desc.skips.has(Skip::unreadOutputs);
     const bool hasFragment = desc.fragment != nullptr;
     ir::Program vertexIr = *desc.vertex, fragmentIr = hasFragment ? *desc.fragment : emptyFragment();
-    if (hasFragment) dropColors(fragmentIr, desc.keptColors);
+    if (hasFragment && dropUnread) dropColors(fragmentIr, desc.keptColors);
     ir::LinkFacts facts;
     ir::LinkOptions linking;
+    // Where linear work is lifted, bits change: that belongs to the accuracy in force, and nobody can leave it.
     linking.liftLinear = desc.accuracy.math == MathTier::fast;
+    linking.lift = linking.liftLinear || desc.skips.has(Skip::perVertexWork);
+    linking.dropUnread = !hasFragment || dropUnread;
     if (Status status = ir::linkStages(vertexIr, fragmentIr, &facts, linking); !status) return status.error();
     program->removedVaryings_ = facts.removedOutputs;
     program->lifted_ = facts.lifted;
@@ -50,7 +55,7 @@ Result<std::shared_ptr<const ShaderProgram>> ShaderProgram::create(const ShaderP
         return {};
     };
     if (Status status = compile(vertexIr, "vertex", program->vertex_); !status) return status.error();
-    if (auto split = desc.splitSamples ? ir::splitSamples(fragmentIr) : std::nullopt) {
+    if (auto split = desc.skips.has(Skip::sharedSamples) ? ir::splitSamples(fragmentIr) : std::nullopt) {
         if (Status status = compile(split->pixel, "fragment", program->pixelPart_); !status) return status.error();
         if (Status status = compile(split->sample, "fragment", program->samplePart_); !status) return status.error();
     }

@@ -7,6 +7,7 @@
 #include "base/result.h"
 #include "base/simd.h"
 #include "runtime/accuracy.h"
+#include "runtime/skips.h"
 #include "spirv_interp/ir/lift.h"
 #include "spirv_interp/program.h"
 
@@ -20,8 +21,7 @@ struct ShaderProgramDesc {
     uint32_t keptColors = ~0u;
     Accuracy accuracy;
     Isa isa = Isa::sse4;
-    // What a fragment program that asks for samples computes the same for all samples of a pixel runs once per pixel.
-    bool splitSamples = true;
+    Skips skips;
 };
 
 /// Immutable; shared between threads.
@@ -32,6 +32,7 @@ class ShaderProgram {
 
     const Accuracy& accuracy() const { return accuracy_; }
     Isa isa() const { return isa_; }
+    const Skips& skips() const { return skips_; }
     const ir::Program& vertexIr() const { return vertex_->source(); }
     /// nullptr without a fragment stage.
     const ir::Program* fragmentIr() const { return fragment_ ? &fragment_->source() : nullptr; }
@@ -49,6 +50,7 @@ class ShaderProgram {
     ShaderProgram() = default;
     Accuracy accuracy_;
     Isa isa_ = Isa::sse4;
+    Skips skips_;
     std::shared_ptr<const BatchProgram> vertex_, fragment_, pixelPart_, samplePart_;
     uint32_t removedVaryings_ = 0;
     ir::LiftFacts lifted_;

@@ -54,7 +54,7 @@ DrawEffect effectOf(const PassTargets& targets, const PreparedDraw& draw) {
     effect.tracesOnly = (fragment == nullptr || !fragment->hasSideEffects) && !(hasDepth(targets) && depth.stencil);
     effect.writesDepth = hasDepth(targets) && depth.write;
     effect.depthKnown = plan.fragDepthSlot == kNoSlot;
-    if (!effect.tracesOnly || !replacesColors(targets, draw)) return effect;
+    if (!plan.skips.has(Skip::hiddenWork) || !effect.tracesOnly || !replacesColors(targets, draw)) return effect;
     effect.replaces = true;
     if (!hasDepth(targets) || !depth.any()) return effect;
     const bool ordered =

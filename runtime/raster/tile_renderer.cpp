@@ -114,7 +114,7 @@ uint32_t TileRenderer::testEarly(const PreparedDraw& draw, const TrianglePlanes&
     const DepthStencilState& state = fragments_.depthState();
     PassStatistics& statistics = fragments_.statistics();
     // Stencil operations happen for hidden samples, too.
-    const bool coarse = plan.depth.test && !plan.depth.stencil;
+    const bool coarse = plan.depth.test && !plan.depth.stencil && plan.skips.has(Skip::coarseDepth);
     uint64_t certain = 0;
     if (coarse) {
         const uint32_t left =

@@ -107,7 +107,7 @@ Status linkStages(Program& vertex, Program& fragment, LinkFacts* facts, const Li
     const LiftFacts lifted = options.lift ? lift(vertex, fragment, options.liftLinear) : LiftFacts{};
     const bool changed = lifted.flat + lifted.linear != 0;
     if (changed) optimise(fragment);
-    const uint32_t removed = dropUnreadOutputs(vertex, fragment);
+    const uint32_t removed = options.dropUnread ? dropUnreadOutputs(vertex, fragment) : 0;
     if (facts != nullptr) *facts = {removed, lifted};
     if (vertexChanged || changed || removed != 0) optimise(vertex);
     return {};

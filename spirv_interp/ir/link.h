@@ -8,6 +8,7 @@
 namespace vernier::ir {
 
 struct LinkOptions {
+    bool dropUnread = true;   // outputs that nobody reads
     bool lift = true;         // work moves from `fragment` to `vertex` where that pays (ir/lift.h)
     bool liftLinear = false;  // also where the result differs in its last bits
 };
@@ -17,7 +18,8 @@ struct LinkFacts {
     LiftFacts lifted;             // from the fragment program, now done per vertex
 };
 
-/// Outputs of `vertex` that `fragment` does not read are removed with the code behind them (built-in ones stay). Inputs
+/// Outputs of `vertex` that `fragment` does not read are removed with the code behind them (built-in ones stay) unless
+/// `options` keep them. Inputs
 /// of `fragment` that nothing writes become 0; where such an input is part of an array indexed at run time, `vertex`
 /// gets an output that is 0 instead, so that afterwards every user input of `fragment` has the output of the same
 /// location, component and type. Both programs come as optimise() leaves them, go so, and verify. An invalidArgument

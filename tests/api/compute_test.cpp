@@ -206,7 +206,7 @@ void main() {
               VN_SUCCESS);
     std::string text(4096, '\0');
     size_t length = 0;
-    ASSERT_EQ(vnExplain(context_, text.data(), text.size(), &length), VN_SUCCESS) << lastError();
+    ASSERT_EQ(vnExplain(context_, VN_EXPLAIN_TEXT, text.data(), text.size(), &length), VN_SUCCESS) << lastError();
     text.resize(length);
     EXPECT_THAT(text, HasSubstr("work-groups of 32 x 2 x 1"));
     EXPECT_THAT(text, HasSubstr("256 bytes"));

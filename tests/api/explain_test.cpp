@@ -1,6 +1,8 @@
 // A draw runs what the scene calls for and nothing else: explain() says what is left out, and the counters show that it
 // cost nothing.
+#include <algorithm>
 #include <array>
+#include <nlohmann/json.hpp>
 
 #include "tests/api/fixture.h"
 
@@ -11,11 +13,12 @@ using testing::HasSubstr;
 
 class Explain : public ApiTest {
   protected:
-    std::string explain() {
+    using ExplainFunction = VnResult (*)(VnContext, VnExplainFormat, char*, size_t, size_t*);
+    std::string explain(VnExplainFormat format = VN_EXPLAIN_TEXT, ExplainFunction function = vnExplain) {
         size_t length = 0;
-        EXPECT_EQ(vnExplain(context_, nullptr, 0, &length), VN_SUCCESS) << lastError();
+        EXPECT_EQ(function(context_, format, nullptr, 0, &length), VN_SUCCESS) << lastError();
         std::string text(length, '\0');
-        EXPECT_EQ(vnExplain(context_, text.data(), length + 1, nullptr), VN_SUCCESS);
+        EXPECT_EQ(function(context_, format, text.data(), length + 1, nullptr), VN_SUCCESS);
         return text;
     }
     /// Draws one full-screen triangle and returns what it took.
@@ -39,6 +42,10 @@ class Explain : public ApiTest {
         return statistics;
     }
 
+    // A triangle whose borders cut 2x2 quads.
+    static constexpr const char* kOddVertex = R"(#version 450
+layout(location = 0) out vec2 uv;
+void main() { uv = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1); gl_Position = vec4(uv * 1.3 - 0.9, 0.5, 1.0); })";
     static constexpr uint32_t kSize = 64, kPixels = kSize * kSize;
 };
 
@@ -71,14 +78,11 @@ TEST_F(Explain, NoDepthTestReadsNoDepth) {
 }
 
 TEST_F(Explain, HelperLanesRunOnlyForDerivatives) {
-    const char* oddTriangle = R"(#version 450
-layout(location = 0) out vec2 uv;
-void main() { uv = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1); gl_Position = vec4(uv * 1.3 - 0.9, 0.5, 1.0); })";
-    const VnProgram plain = program(oddTriangle, R"(#version 450
+    const VnProgram plain = program(kOddVertex, R"(#version 450
 layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 color;
 void main() { color = vec4(uv, 0, 1); })");
-    const VnProgram derivatives = program(oddTriangle, R"(#version 450
+    const VnProgram derivatives = program(kOddVertex, R"(#version 450
 layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 color;
 void main() { color = vec4(fwidth(uv), 0, 1); })");
@@ -217,6 +221,86 @@ void main() {
     EXPECT_THAT(read(target, kSize, kSize), testing::Each(0xFF00FFFFu));
 }
 
+TEST_F(Explain, JsonTellsTheSameFacts) {
+    const VnProgram white = program(kFullScreenVertex, kWhiteFragment);
+    const VnImage target = image(VK_FORMAT_R8G8B8A8_UNORM, kSize, kSize);
+    const VnPassDesc pass = passOn(target);
+    ASSERT_EQ(vnBeginPass(context_, &pass), VN_SUCCESS);
+    ASSERT_EQ(vnBindProgram(context_, white), VN_SUCCESS);
+    std::string lines;
+    const nlohmann::json facts = nlohmann::json::parse(explain(VN_EXPLAIN_JSON));
+    for (const auto& fact : facts)
+        lines += (fact["runs"] ? "runs      " : "left out  ") + fact["what"].get<std::string>() + ": " +
+                 fact["why"].get<std::string>() + "\n";
+    EXPECT_EQ(lines, explain());
+    const bool rated = std::any_of(facts.begin(), facts.end(), [](const nlohmann::json& fact) {
+        return fact.contains("rates") && fact["rates"].contains("invocation") &&
+               fact["rates"]["invocation"]["cost"].get<int>() > 0 && fact["lanes"].get<int>() > 0;
+    });
+    EXPECT_TRUE(rated) << "what a program costs per invocation";
+    ASSERT_EQ(vnEndPass(context_), VN_SUCCESS);
+}
+
+TEST_F(Explain, AFrameTellsWhatItCounted) {
+    const VnStatistics statistics = run(program(kFullScreenVertex, kWhiteFragment));
+    const nlohmann::json facts = nlohmann::json::parse(explain(VN_EXPLAIN_JSON, vnExplainFrame));
+    const auto countOf = [&](const std::string& what) -> int64_t {
+        for (const auto& fact : facts)
+            if (fact["what"].get<std::string>().starts_with(what))
+                return fact["runs"] ? fact["count"].get<int64_t>() : 0;
+        ADD_FAILURE() << "nothing is said of " << what;
+        return -1;
+    };
+    EXPECT_EQ(countOf("draws"), 1);
+    EXPECT_EQ(countOf("dispatches"), 0);
+    EXPECT_EQ(countOf("fragment programs"), static_cast<int64_t>(statistics.fragmentInvocations));
+    EXPECT_EQ(countOf("helper invocations"), 0);
+    EXPECT_EQ(countOf("reading colours back"), 0);
+    EXPECT_THAT(explain(VN_EXPLAIN_TEXT, vnExplainFrame), HasSubstr("left out  dividing by w: "));
+}
+
+TEST_F(Explain, UnknownFormatsAreRefused) {
+    EXPECT_EQ(vnExplainFrame(context_, static_cast<VnExplainFormat>(2), nullptr, 0, nullptr),
+              VN_ERROR_INVALID_ARGUMENT);
+    EXPECT_THAT(lastError(), HasSubstr("format is 2"));
+}
+
+TEST_F(Explain, RulesOfLeavingOutCanBeSwitchedOff) {
+    VnDeviceDesc desc{};
+    desc.skips = "helper_invocations=off, idle_state=off";
+    VnDevice device = nullptr;
+    ASSERT_EQ(vnCreateDevice(&desc, &device), VN_SUCCESS);
+    std::swap(device, device_);
+    VnContext context = context_;
+    ASSERT_EQ(vnCreateContext(device_, nullptr, &context_), VN_SUCCESS);
+    VnBlendStateDesc replace{};
+    replace.attachments[0] = {1,
+                              VK_BLEND_FACTOR_ONE,
+                              VK_BLEND_FACTOR_ZERO,
+                              VK_BLEND_OP_ADD,
+                              VK_BLEND_FACTOR_ONE,
+                              VK_BLEND_FACTOR_ZERO,
+                              VK_BLEND_OP_ADD,
+                              0};
+    VnBlendState blend{};
+    ASSERT_EQ(vnCreateBlendState(device_, &replace, &blend), VN_SUCCESS);
+    std::string text;
+    const VnStatistics statistics = run(program(kOddVertex, kWhiteFragment), blend, {}, &text);
+    EXPECT_GT(statistics.helperInvocations, 0u);
+    EXPECT_GT(statistics.destinationReads, 0u);
+    EXPECT_THAT(text, HasSubstr("rule helper_invocations is off"));
+    vnDestroyDevice(device_);
+    device_ = device;
+    context_ = context;
+
+    std::string message;
+    desc.skips = "hidden_works=off";
+    desc.messageUser = &message;
+    desc.message = [](void* user, VnSeverity, const char* error) { *static_cast<std::string*>(user) = error; };
+    EXPECT_EQ(vnCreateDevice(&desc, &device), VN_ERROR_INVALID_ARGUMENT);
+    EXPECT_THAT(message, HasSubstr("\"hidden_works\" is no rule of what is left out; there are: unread_outputs, "));
+}
+
 TEST_F(Explain, ACombinationIsPlannedOnce) {
     const VnProgram white = program(kFullScreenVertex, kWhiteFragment);
     EXPECT_EQ(run(white).plans, 1u);
@@ -224,7 +308,7 @@ TEST_F(Explain, ACombinationIsPlannedOnce) {
 }
 
 TEST_F(Explain, NeedsAPassAndAProgram) {
-    EXPECT_EQ(vnExplain(context_, nullptr, 0, nullptr), VN_ERROR_INVALID_STATE);
+    EXPECT_EQ(vnExplain(context_, VN_EXPLAIN_TEXT, nullptr, 0, nullptr), VN_ERROR_INVALID_STATE);
     EXPECT_THAT(lastError(), HasSubstr("no pass is open"));
 }
 

@@ -83,14 +83,24 @@ TEST(Findings, UnexplainedPixelsAndMissingImagesAreFound) {
     EXPECT_FALSE(test.report.judgement.passed());
 
     TestReport crashed(100, 100);
-    crashed.report.scenes[0].renderings["icd"] = {{}, {}, "signal 11"};
+    crashed.report.scenes[0].renderings["icd"] = {{}, {}, "signal 11", {}};
     findings = crashed.compare();
     ASSERT_THAT(findings, SizeIs(1));
     EXPECT_EQ(findings[0].kind, kNotRendered);
 
     TestReport otherCrashed(100, 100);
-    otherCrashed.report.scenes[0].renderings["lavapipe"] = {{}, {}, "signal 11"};
+    otherCrashed.report.scenes[0].renderings["lavapipe"] = {{}, {}, "signal 11", {}};
     EXPECT_THAT(otherCrashed.compare(), IsEmpty()) << "another driver's crash is not ours";
+}
+
+TEST(Findings, LeavingOutMustChangeNoBit) {
+    TestReport test(100, 100);
+    test.report.scenes[0].everything = ReportRendering{};
+    EXPECT_THAT(test.compare(), IsEmpty());
+    test.report.scenes[0].everything->failure = "the pictures differ";
+    const std::vector<Finding> findings = test.compare();
+    ASSERT_THAT(findings, SizeIs(1));
+    EXPECT_EQ(findings[0].kind, kLeavingOutChangesBits);
 }
 
 TEST(Findings, TheOracleJudgesEvenWithoutAnotherDriver) {

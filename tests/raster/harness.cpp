@@ -112,7 +112,7 @@ std::shared_ptr<const GraphicsPipeline> makePipeline(const PipelineOptions& opti
                                           .fragment = options.fragment.empty() ? nullptr : &fragment,
                                           .accuracy = options.accuracy,
                                           .isa = options.isa,
-                                          .splitSamples = options.splitSamples});
+                                          .skips = options.skips});
     if (!program) {
         ADD_FAILURE() << program.error().message;
         std::abort();

@@ -56,7 +56,7 @@ struct PipelineOptions {
     GraphicsState state;
     Accuracy accuracy;
     Isa isa = bestIsa();
-    bool splitSamples = true;
+    Skips skips;
 };
 
 /// State for one colour attachment, no blending, everything written.

@@ -25,7 +25,7 @@ class Multisample : public testing::Test {
         options.fragment = fragment;
         options.state = plainState(format);
         options.state.samples = samples;
-        options.splitSamples = splitSamples_;
+        options.skips = skips_;
         if (change) change(options.state);
         Result result{std::make_unique<Surface>(format, kSize, kSize, samples),
                       std::make_unique<Surface>(format, kSize, kSize),
@@ -39,7 +39,7 @@ class Multisample : public testing::Test {
         return result;
     }
     ThreadPool pool_{2};
-    bool splitSamples_ = true;
+    Skips skips_;
 };
 
 const std::vector<Vertex> kWhole{at(-5, -5, kSize, kSize), at(200, -5, kSize, kSize), at(-5, 200, kSize, kSize)};
@@ -195,9 +195,9 @@ TEST_F(Multisample, PartsThatRunPerPixelChangeNoBit) {
                 const auto change = [&](GraphicsState& state) {
                     if (blending) setAdditive(state);
                 };
-                splitSamples_ = false;
+                skips_.set(Skip::sharedSamples, false);
                 const Result whole = draw(VK_FORMAT_R32G32B32A32_SFLOAT, samples, v, change, fragment);
-                splitSamples_ = true;
+                skips_ = {};
                 const Result parts = draw(VK_FORMAT_R32G32B32A32_SFLOAT, samples, v, change, fragment);
                 EXPECT_EQ(parts.statistics.fragmentInvocations, whole.statistics.fragmentInvocations);
                 EXPECT_EQ(parts.statistics.samplesPassed, whole.statistics.samplesPassed);

@@ -47,6 +47,9 @@ TEST_F(DriverTest, environmentChoosesTypeAndProfile) {
     setenv("VERNIER_PROFILE", "standard,", 1);
     EXPECT_NE(create(&other), VK_SUCCESS) << "an empty name must be refused";
     unsetenv("VERNIER_PROFILE");
+    setenv("VERNIER_SKIP", "everything=off", 1);
+    EXPECT_NE(create(&other), VK_SUCCESS) << "an unknown rule must be refused";
+    unsetenv("VERNIER_SKIP");
     unsetenv("VERNIER_DEVICE_TYPE");
 }
 

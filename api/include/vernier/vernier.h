@@ -128,6 +128,9 @@ typedef struct VnDeviceDesc {
     void* messageUser;
     VnAllocator allocator; /* both functions NULL: the C++ heap */
     const char* maxIsa;    /* NULL: the best of this CPU; "sse4", "avx2" or "avx512" limits it (for tests) */
+    const char* skips;     /* NULL or "on": what draws do not need is left out. "off": it is done all the same, with the
+                              same pictures (to see what it would cost). "hidden_work=off ...": one rule alone; an
+                              unknown name's error lists them */
     uint32_t _end;
 } VnDeviceDesc;
 
@@ -583,10 +586,19 @@ VN_API VnResult vnWriteTimestamp(VnContext context, VnQuery query);
 /* Waits for the context's work. A query that was never ended or written is VN_ERROR_INVALID_STATE. */
 VN_API VnResult vnGetQueryResult(VnContext context, VnQuery query, VnQueryResult* result);
 
+typedef enum VnExplainFormat {
+    VN_EXPLAIN_TEXT = 0, /* a line each: "runs      what: why" or "left out  what: why" */
+    VN_EXPLAIN_JSON = 1  /* an array of objects: "runs" (true or false), "what", "why"; of programs "instructions" per
+                            "lanes" and "rates" (operations and their cost, by how often they run); of what a frame
+                            counts "count" */
+} VnExplainFormat;
+
 /* What the next draw with the bound state would run (outside a pass: the next dispatch), at what rate and accuracy,
- * what is left out and why: lines of text, zero-terminated, cut to `capacity` bytes. `length` (may be NULL) receives
- * the full length without the zero. */
-VN_API VnResult vnExplain(VnContext context, char* text, size_t capacity, size_t* length);
+ * what is left out and why. Zero-terminated, cut to `capacity` bytes; `length` (may be NULL) receives the full length
+ * without the zero. */
+VN_API VnResult vnExplain(VnContext context, VnExplainFormat format, char* text, size_t capacity, size_t* length);
+/* What was run and left out since vnResetStatistics, and how often. Waits for the context's work. */
+VN_API VnResult vnExplainFrame(VnContext context, VnExplainFormat format, char* text, size_t capacity, size_t* length);
 
 #ifdef __cplusplus
 }

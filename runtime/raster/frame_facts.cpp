@@ -1,0 +1,55 @@
+#include "runtime/raster/frame_facts.h"
+
+namespace vernier {
+namespace {
+
+/// A counter, and what to say when it is 0 and when it is not.
+struct Counter {
+    uint64_t count;
+    const char *what, *unit, *whenRun, *whenLeftOut;
+};
+
+Fact factOf(const Counter& counter) {
+    Fact fact;
+    fact.runs = counter.count != 0;
+    fact.what = counter.what;
+    if (fact.runs) fact.what += ", " + std::to_string(counter.count) + " " + counter.unit;
+    fact.why = fact.runs ? counter.whenRun : counter.whenLeftOut;
+    fact.count = counter.count;
+    return fact;
+}
+
+}  // namespace
+
+std::vector<Fact> frameFacts(const FrameCommands& commands, const PassStatistics& s) {
+    std::vector<Fact> facts;
+    const auto add = [&](const Counter& counter) { facts.push_back(factOf(counter)); };
+    add({commands.draws, "draws", "times", "they were recorded", "there were none"});
+    add({commands.dispatches, "dispatches", "times", "they were recorded", "there were none"});
+    add({s.computeInvocations, "compute programs", "invocations", "of the dispatches", "nothing was dispatched"});
+    if (commands.draws == 0) return facts;
+    add({s.vertexInvocations, "vertex programs", "vertices", "once per vertex and chunk", "no vertex was drawn"});
+    add({s.clippedPrimitives, "cutting primitives", "of them", "they cross a clip plane", "none crosses a clip plane"});
+    add({s.rasterPrimitives, "rasterising", "primitives", "they are neither culled nor outside",
+         "all are culled or outside"});
+    add({s.clearedPixels, "clearing attachments", "pixels", "load operations ask for it",
+         "no load operation asks for it, or all is drawn over"});
+    add({s.coarseDepthRejects, "rejecting blocks of 8 x 8 pixels as wholes", "blocks",
+         "all in them is behind what is there", "no block is known to be hidden"});
+    add({s.depthReads, "reading depth and stencil", "samples", "tests need them",
+         "no test is on, or bounds of whole blocks decide it"});
+    add({s.fragmentInvocations, "fragment programs", "pixels or samples", "what they write is kept",
+         "nothing they write is kept, or nothing is covered"});
+    add({s.batches, "batches of fragments", "runs", "many pixels at a time, of any primitive and draw of one state",
+         "no fragment program runs"});
+    add({s.helperInvocations, "helper invocations", "lanes", "programs take derivatives",
+         "no program takes derivatives"});
+    add({s.perspectiveDivides, "dividing by w", "pixels", "vertices of a primitive differ in w",
+         "no input needs it, or the vertices have equal w"});
+    add({s.destinationReads, "reading colours back", "pixels", "blending, logic operations or partial write masks",
+         "all colours are replaced"});
+    add({s.samplesPassed, "samples that passed all tests", "samples", "they were covered", "none did"});
+    return facts;
+}
+
+}  // namespace vernier
