@@ -1,6 +1,7 @@
 // Compute pipelines.
 #include "api/vulkan/device.h"
 #include "api/vulkan/entry_points.h"
+#include "api/vulkan/instance.h"
 #include "api/vulkan/pipeline.h"
 
 namespace vernier::vulkan {
@@ -15,6 +16,8 @@ VkResult createOne(const Device& device, const VkComputePipelineCreateInfo& info
     if (!program) return fail(program.error());
     auto pipeline = ComputePipeline::create({&*program, device.physicalDevice.accuracy, device.runtime->isa()});
     if (!pipeline) return fail(pipeline.error());
+    if (ExplainLog& log = device.physicalDevice.instance.explainLog; log.enabled())
+        log.pipeline("compute", (*pipeline)->explain());
     return createHandle(callbacks, out, std::move(pipeline).value());
 }
 

@@ -96,6 +96,7 @@ Result<Configuration> readConfiguration() {
     Result<Skips> skips = skipsFrom(variable("VERNIER_SKIP"));
     if (!skips) return invalidArgument("VERNIER_SKIP: " + skips.error().message);
     result.skips = *skips;
+    result.explain = variable("VERNIER_EXPLAIN");
     const auto log = variable("VERNIER_LOG");
     result.log = !log.empty() && log != "0";
     return result;

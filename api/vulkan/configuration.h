@@ -7,8 +7,11 @@
 //   VERNIER_DEVICE_TYPE  cpu (default), integrated, discrete, virtual, other: some programs refuse a CPU device
 //   VERNIER_THREADS      a number of threads; default: as many as there are usable CPUs
 //   VERNIER_ISA          sse4, avx2, avx512: the best instruction set to use. The pictures are the same
-//   VERNIER_SKIP         off: what draws do not need is done all the same, with the same pictures; "hidden_work=off": one
+//   VERNIER_SKIP         off: what draws do not need is done all the same, with the same pictures; "hidden_work=off":
+//   one
 //                        rule of leaving out alone, see runtime/skips.h
+//   VERNIER_EXPLAIN      stderr, or a file that is appended to: what every pipeline runs and leaves out, and why; an
+//                        object a line where its name ends in .json
 //   VERNIER_LOG          set and not 0: messages go to stderr, too
 #pragma once
 
@@ -37,6 +40,7 @@ struct Configuration {
     uint32_t threads = 0;
     Isa maxIsa = Isa::avx512;
     Skips skips;
+    std::string explain;
     bool log = false;
 };
 

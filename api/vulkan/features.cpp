@@ -94,6 +94,7 @@ namespace {
     X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderSharedFloat32AtomicAdd, true)                  \
     X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderSharedFloat64Atomics, true)                    \
     X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderSharedFloat64AtomicAdd, true)                  \
+    X(VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR, pipelineExecutableInfo, true)             \
     X(VkPhysicalDeviceCustomBorderColorFeaturesEXT, customBorderColors, true)                            \
     X(VkPhysicalDeviceCustomBorderColorFeaturesEXT, customBorderColorWithoutFormat, true)                \
     X(VkPhysicalDeviceBorderColorSwizzleFeaturesEXT, borderColorSwizzle, true)                           \

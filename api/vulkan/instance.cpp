@@ -43,6 +43,11 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateInstance(const VkInstanceCreateInfo* pCreat
         if (created != VK_SUCCESS) return created;
         object(*pInstance)->extensions = extensions;
         object(*pInstance)->messages.setLog(configuration->log);
+        if (Status status = object(*pInstance)->explainLog.open(configuration->explain); !status) {
+            std::fprintf(stderr, "vernier: %s\n", status.error().message.c_str());
+            destroyHandle(pAllocator, *pInstance);
+            return VK_ERROR_INITIALIZATION_FAILED;
+        }
         return VK_SUCCESS;
     });
 }

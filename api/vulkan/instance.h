@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "api/vulkan/configuration.h"
+#include "api/vulkan/explain_log.h"
 #include "api/vulkan/extension.h"
 #include "api/vulkan/handle.h"
 #include "api/vulkan/message.h"
@@ -21,6 +22,7 @@ struct Instance : Dispatchable {
     Configuration configuration;
     ExtensionSet extensions = 0;
     Messages messages;
+    ExplainLog explainLog;
     std::vector<std::unique_ptr<PhysicalDevice>> physicalDevices;
 };
 

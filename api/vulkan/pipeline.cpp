@@ -5,6 +5,7 @@
 
 #include "api/vulkan/device.h"
 #include "api/vulkan/entry_points.h"
+#include "api/vulkan/instance.h"
 #include "spirv_interp/program.h"
 
 namespace vernier::vulkan {
@@ -81,6 +82,7 @@ VkResult createOne(const Device& device, const VkGraphicsPipelineCreateInfo& inf
     if (!program) return device.report("vkCreateGraphicsPipelines", program.error());
     auto graphics = GraphicsPipeline::create({std::move(state->state), std::move(program).value()});
     if (!graphics) return device.report("vkCreateGraphicsPipelines", graphics.error());
+    device.physicalDevice.instance.explainLog.pipeline("graphics", (*graphics)->plan().facts);
     return createHandle(callbacks, out, std::move(graphics).value(), state->fixed, state->dynamicMask);
 }
 
