@@ -30,7 +30,27 @@ float moderateOperand(const Function& function, uint64_t call, uint32_t k) {
                                                               : static_cast<float>(16 * unit - 8);
 }
 
-uint32_t operandBits(const Function& function, uint64_t call, uint32_t k, uint64_t stride) {
+/// Operands of 64 bits: integers of any length, doubles as above, with all their digits.
+uint64_t wideOperand(const Function& function, uint64_t call, uint32_t k) {
+    const uint64_t random = scrambled(call * kMaxOperands + k), digits = scrambled(random);
+    if (function.operand == Word::int64) return static_cast<uint64_t>(static_cast<int64_t>(digits) >> random % 64);
+    if (function.operand == Word::uint64) return digits >> random % 64;
+    const double unit = static_cast<double>(digits >> 11) * 0x1p-53, sign = (random & 1) != 0 ? -1 : 1;
+    const uint64_t stratum = call % 4;
+    const bool exponent = function.name == "double ldexp" && k == 1;
+    const auto number = [&]() -> double {
+        if (exponent) return static_cast<double>(random % 2049) - 1024;
+        if (function.domain == Domain::stratified && stratum == 1) {
+            return k == 0 ? 1 + sign * std::exp2(-53 * unit) : sign * std::exp2(40 * unit - 20);
+        }
+        return stratum == 2 ? sign * std::exp2(20 * unit - 10) : 16 * unit - 8;
+    };
+    const bool anyBits = function.domain == Domain::stratified && stratum == 0 && !exponent;
+    return anyBits ? digits : std::bit_cast<uint64_t>(number());
+}
+
+uint64_t operandBits(const Function& function, uint64_t call, uint32_t k, uint64_t stride) {
+    if (wordsOf(function.operand) == 2) return wideOperand(function, call, k);
     switch (function.domain) {
         case Domain::floats:
             return static_cast<uint32_t>(call * stride);
@@ -46,27 +66,27 @@ uint32_t operandBits(const Function& function, uint64_t call, uint32_t k, uint64
 }  // namespace
 
 void Chunk::fill(const Function& function, uint64_t first, uint64_t count, uint64_t stride) {
-    for (uint32_t k = 0; k < function.operands; ++k) {
-        operands[k].resize(count);
-        values[k].resize(count);
-    }
+    const uint32_t words = wordsOf(function.operand);
+    const auto resize = [&](size_t size) {
+        for (uint32_t k = 0; k < function.operands * words; ++k) operands[k].resize(size);
+        for (uint32_t k = 0; k < function.operands; ++k) values[k].resize(size);
+    };
+    resize(count);
     size_t calls = 0;
     for (uint64_t index = first; index < first + count; ++index) {
         double x[kMaxOperands] = {};
         bool usable = true;
         for (uint32_t k = 0; k < function.operands; ++k) {
-            const uint32_t bits = operandBits(function, index, k, stride);
-            operands[k][calls] = std::bit_cast<float>(bits);
+            const uint64_t bits = operandBits(function, index, k, stride);
+            operands[k * words][calls] = std::bit_cast<float>(static_cast<uint32_t>(bits));
+            if (words == 2) operands[k * 2 + 1][calls] = std::bit_cast<float>(static_cast<uint32_t>(bits >> 32));
             x[k] = values[k][calls] = operandValue(function.operand, bits);
             usable = usable & ((std::fabs(x[k]) < kUnknown) | (function.exact == nullptr));
         }
         usable = usable && (function.covers == nullptr || function.covers(x));
         calls += usable ? 1 : 0;
     }
-    for (uint32_t k = 0; k < function.operands; ++k) {
-        operands[k].resize(calls);
-        values[k].resize(calls);
-    }
+    resize(calls);
     const double* rows[kMaxOperands];
     for (size_t k = 0; k < kMaxOperands; ++k) rows[k] = values[k < function.operands ? k : 0].data();
     for (auto* row : {&approximate, &bounded, &ulp, &inverseUlp, &permitted, &scale}) row->resize(calls);
@@ -92,6 +112,16 @@ void Chunk::fill(const Function& function, uint64_t first, uint64_t count, uint6
 std::array<double, kMaxOperands> Chunk::call(size_t i) const {
     std::array<double, kMaxOperands> result{};
     for (size_t k = 0; k < kMaxOperands && !values[k].empty(); ++k) result[k] = values[k][i];
+    return result;
+}
+
+std::array<uint64_t, kMaxOperands> Chunk::callBits(const Function& function, size_t i) const {
+    std::array<uint64_t, kMaxOperands> result{};
+    const uint32_t words = wordsOf(function.operand);
+    for (uint32_t k = 0; k < function.operands; ++k) {
+        result[k] = std::bit_cast<uint32_t>(operands[k * words][i]);
+        if (words == 2) result[k] |= uint64_t{std::bit_cast<uint32_t>(operands[k * 2 + 1][i])} << 32;
+    }
     return result;
 }
 

@@ -24,6 +24,8 @@ struct Chunk {
     void fill(const Function& function, uint64_t first, uint64_t count, uint64_t stride);
     size_t size() const { return approximate.size(); }
     std::array<double, kMaxOperands> call(size_t i) const;
+    /// The bits of the call's operands, of either width.
+    std::array<uint64_t, kMaxOperands> callBits(const Function& function, size_t i) const;
 };
 
 /// Calls in a function's domain: `samples` of those domains that are too large to be gone through.

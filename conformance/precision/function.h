@@ -29,7 +29,7 @@ struct Promise {
 enum class Domain : uint8_t {
     floats,      // every float, by stride (one operand)
     codes,       // all 2^16 (one operand)
-    stratified,  // random bits, moderate numbers, all magnitudes, near one
+    stratified,  // random bits, moderate numbers, all magnitudes, near one; integers of any length
     moderate,    // [-8, 8] and magnitudes 2^-10 to 2^10
     halves,      // random codes of halves
 };
@@ -47,19 +47,21 @@ Row valueRow(Formula) {
         }
     };
 }
-template <class Formula>
+template <class B = Bounded, class Formula>
 Row errorRow(Formula) {
     return [](const double* const* x, size_t count, double* results) {
         for (size_t i = 0; i < count; ++i) {
-            const Bounded call[kMaxOperands] = {x[0][i], x[1][i], x[2][i], x[3][i], x[4][i], x[5][i]};
-            results[i] = Formula{}(static_cast<const Bounded*>(call)).error;
+            const B call[kMaxOperands] = {x[0][i], x[1][i], x[2][i], x[3][i], x[4][i], x[5][i]};
+            results[i] = Formula{}(static_cast<const B*>(call)).error;
         }
     };
 }
 
 struct Function {
     std::string name;
-    std::string glsl;  // a float (or the bits of the result as one) in the floats a, b, c or the vectors u and v
+    /// A value of the result's type in the floats a, b, c or the vectors u and v; in p, q and r where operands are no
+    /// floats.
+    std::string glsl;
     uint32_t operands = 1;
     Domain domain = Domain::floats;
     Word operand = Word::float32, result = Word::float32;
@@ -74,12 +76,20 @@ struct Function {
     std::array<Promise, 4> promises;          // by tier
     /// Multiplies the promises: errors that grow with the operands by nature (pow).
     double (*scale)(const double*) = nullptr;
+    std::string scaleText;  // in words
 };
 
 std::span<const Function> functions();
 
-/// Appends the conversions between formats, and the functions of 16-bit floats.
+/// Of pow: errors of y * log2(x) grow with it.
+inline double powScale(const double* x) {
+    return 1 + std::fabs(x[1] * std::log2(x[0]));
+}
+inline constexpr const char* kPowScale = "(1 + abs(y * log2(x)))";
+
+/// Appends the conversions between formats, and the functions of 16-bit and of 64-bit floats.
 void addConversions(std::vector<Function>& all);
 void addHalves(std::vector<Function>& all);
+void addDoubles(std::vector<Function>& all);
 
 }  // namespace vernier::precision

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <type_traits>
 
 namespace vernier::precision {
 namespace {
@@ -13,17 +14,31 @@ using reference::Real;
 /// are MPFR's.
 constexpr double kDoubt = 0x1p-22;
 
-bool isDenormal(double x) {
-    return x != 0 && std::fabs(x) < 0x1p-126;
+bool isDenormal(Word word, double x) {
+    return x != 0 && std::fabs(x) < leastNormalOf(resultFormat(word));
 }
 
-Real exactly(const Function& function, const std::array<double, kMaxOperands>& x) {
+uint64_t bitsOf(const Results& results, Word word, size_t i) {
+    const uint64_t low = std::bit_cast<uint32_t>(results[0][i]);
+    return wordsOf(word) == 1 ? low : low | uint64_t{std::bit_cast<uint32_t>(results[1][i])} << 32;
+}
+
+/// The number that bits stand for; `word` is no float16.
+Real numberOf(Word word, uint64_t bits) {
+    if (word == Word::int64) return static_cast<int64_t>(bits);
+    return word == Word::uint64 ? Real(bits) : Real(operandValue(word, bits));
+}
+
+Real exactly(const Function& function, const std::array<uint64_t, kMaxOperands>& bits) {
     Real operands[kMaxOperands];
-    for (uint32_t k = 0; k < function.operands; ++k) operands[k] = Real(x[k]);
+    for (uint32_t k = 0; k < function.operands; ++k) {
+        const Word word = function.operand;
+        operands[k] = word == Word::float16 ? Real(operandValue(word, bits[k])) : numberOf(word, bits[k]);
+    }
     return function.exact(operands);
 }
 
-void raise(Worst& worst, double value, const std::array<double, kMaxOperands>& operands) {
+void raise(Worst& worst, double value, const std::array<uint64_t, kMaxOperands>& operands) {
     if (value > worst.value) worst = {value, operands};
 }
 
@@ -35,23 +50,28 @@ Judge::Judge(const Function& function, size_t tier, bool flushes)
       flushes_(flushes),
       overflow_(overflowOf(function.result)) {}
 
-void Judge::add(const Chunk& chunk, std::span<const float> results, Figures& figures) {
+void Judge::add(const Chunk& chunk, const Results& results, Figures& figures) {
     values_.resize(chunk.size());
-    const auto decode = [&](Word word) {
+    // One loop for each format, without a choice inside.
+    const auto decode = [&](auto word) {
         for (size_t i = 0; i < chunk.size(); ++i) {
-            const double value = resultValue(word, std::bit_cast<uint32_t>(results[i]));
+            const double value = resultValue(word, bitsOf(results, word, i));
             values_[i] = value > overflow_ ? overflow_ : value < -overflow_ ? -overflow_ : value;
         }
     };
     switch (function_.result) {
-        case Word::int32:
-            decode(Word::int32);
-            break;
-        case Word::uint32:
-            decode(Word::uint32);
-            break;
-        default:
-            decode(Word::float32);
+#define VERNIER_DECODE(word)                                \
+    case Word::word:                                        \
+        decode(std::integral_constant<Word, Word::word>()); \
+        break;
+        VERNIER_DECODE(float32)
+        VERNIER_DECODE(float16)
+        VERNIER_DECODE(int32)
+        VERNIER_DECODE(uint32)
+        VERNIER_DECODE(float64)
+        VERNIER_DECODE(int64)
+        VERNIER_DECODE(uint64)
+#undef VERNIER_DECODE
     }
     if (function_.cancels || flushes_) {
         suspect_.assign(chunk.size(), 1);
@@ -59,7 +79,7 @@ void Judge::add(const Chunk& chunk, std::span<const float> results, Figures& fig
         screen(chunk, figures);
     }
     for (size_t i = 0; i < chunk.size(); ++i)
-        if (suspect_[i] != 0 && !leftOut(chunk, i)) addOne(chunk, i, figures);
+        if (suspect_[i] != 0 && !leftOut(chunk, i)) addOne(chunk, results, i, figures);
 }
 
 void Judge::screen(const Chunk& chunk, Figures& figures) {
@@ -91,26 +111,30 @@ void Judge::screen(const Chunk& chunk, Figures& figures) {
 
 bool Judge::leftOut(const Chunk& chunk, size_t i) const {
     if (!flushes_) return false;
-    bool denormal = isDenormal(chunk.approximate[i]);
-    for (uint32_t k = 0; k < function_.operands; ++k) denormal = denormal || isDenormal(chunk.values[k][i]);
+    bool denormal = isDenormal(function_.result, chunk.approximate[i]);
+    for (uint32_t k = 0; k < function_.operands; ++k) {
+        denormal = denormal || isDenormal(function_.operand, chunk.values[k][i]);
+    }
     return denormal || std::isnan(chunk.approximate[i]);
 }
 
-void Judge::addOne(const Chunk& chunk, size_t i, Figures& figures) const {
-    const auto operands = chunk.call(i);
+void Judge::addOne(const Chunk& chunk, const Results& results, size_t i, Figures& figures) const {
+    const auto operands = chunk.callBits(function_, i);
     double exact = chunk.bounded[i], ulp = chunk.ulp[i];
-    double error = std::fabs(values_[i] - exact);
+    double error = std::fabs(values_[i] - exact), ulps = error / ulp;
     const bool screened = !function_.cancels && !flushes_;
-    std::optional<Real> real;
     // A maximum that doubles raise already, within their doubt, is MPFR's to decide.
     const bool close = error > 0 && error + kDoubt * ulp > figures.ulp.value * ulp;
-    if (function_.exact != nullptr && (function_.cancels || close)) real = exactly(function_, operands);
-    if (real) {
-        exact = std::clamp(static_cast<double>(*real), -overflow_, overflow_);
+    if (function_.exact != nullptr && (function_.cancels || close)) {
+        const Real overflow = ldexp(Real(1), overflowExponentOf(function_.result));
+        const auto bounded = [&](const Real& x) { return x > overflow ? overflow : x < -overflow ? -overflow : x; };
+        const Real number = exactly(function_, operands);
+        const Word format = resultFormat(function_.result);
+        const Real got = bounded(numberOf(format, bitsOf(results, format, i))), wanted = bounded(number);
+        exact = static_cast<double>(wanted);
         ulp = ulpOf(function_.result, exact);
-        const Real limit(overflow_);
-        const Real bounded = *real > limit ? limit : *real < -limit ? -limit : *real;
-        error = static_cast<double>(fabs(bounded - Real(values_[i])));
+        error = static_cast<double>(fabs(wanted - got));
+        ulps = static_cast<double>(fabs(wanted - got) / Real(ulp));
     }
     const bool none = std::isnan(exact);
     if (none || std::isnan(values_[i])) {
@@ -119,14 +143,16 @@ void Judge::addOne(const Chunk& chunk, size_t i, Figures& figures) const {
     }
     if (!screened) {
         ++figures.calls;
-        figures.ulpSum += error / ulp;
-        if (error <= 0.5 * ulp) ++figures.correct;
+        figures.ulpSum += ulps;
+        if (ulps <= 0.5) ++figures.correct;
     }
-    raise(figures.ulp, error / ulp, operands);
+    raise(figures.ulp, ulps, operands);
     raise(figures.absolute, error, operands);
     if (error > 0) raise(figures.limit, error / chunk.permitted[i], operands);
-    if (promise_.ulp >= 0 && error > 0) {
-        raise(figures.promise, error / (chunk.scale[i] * std::max(promise_.ulp * ulp, promise_.absolute)), operands);
+    if (promise_.ulp >= 0 && ulps > 0) {
+        // In ULP, for those of doubles may be too small for a double.
+        const double promised = std::max(promise_.ulp, promise_.absolute / ulp);
+        raise(figures.promise, ulps / (chunk.scale[i] * promised), operands);
     }
 }
 

@@ -1,7 +1,6 @@
 // Holds the results of one implementation of a function against the exact ones.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "conformance/precision/chunk.h"
@@ -15,12 +14,12 @@ class Judge {
   public:
     /// `flushes`: denormal operands and results are not judged.
     Judge(const Function& function, size_t tier, bool flushes);
-    /// results[i] belongs to call i of the chunk.
-    void add(const Chunk& chunk, std::span<const float> results, Figures& figures);
+    /// The results belong to the calls of the chunk.
+    void add(const Chunk& chunk, const Results& results, Figures& figures);
 
   private:
     void screen(const Chunk& chunk, Figures& figures);
-    void addOne(const Chunk& chunk, size_t i, Figures& figures) const;
+    void addOne(const Chunk& chunk, const Results& results, size_t i, Figures& figures) const;
     bool leftOut(const Chunk& chunk, size_t i) const;
 
     const Function& function_;

@@ -44,8 +44,8 @@ Result<Figures> measureDriver(const Function& function, const MeasureOptions& op
         function.domain == Domain::floats ? std::max<uint64_t>(1, calls / options.driverSamples) : 1;
     Chunk chunk;
     chunk.fill(function, 0, std::min(calls / thinning, options.driverSamples), options.stride * thinning);
-    std::vector<float> results(chunk.size());
-    VERNIER_TRY(options.driver->run(function, chunk.operands, results));
+    Results results;
+    VERNIER_TRY(options.driver->run(function, chunk.operands, chunk.size(), results));
     Figures figures;
     Judge(function, 0, true).add(chunk, results, figures);
     return figures;
@@ -83,12 +83,11 @@ Result<Measurement> measure(const Function& function, const MeasureOptions& opti
             judges.emplace_back(function, tier, false);
         }
         Chunk chunk;
-        std::vector<float> results;
+        Results results;
         for (uint64_t first, count; chunks.next(first, count);) {
             chunk.fill(function, first, count, options.stride);
-            results.resize(chunk.size());
             for (size_t tier = 0; tier < kTiers.size(); ++tier) {
-                runners[tier].run(chunk.operands, results);
+                runners[tier].run(chunk.operands, chunk.size(), results);
                 judges[tier].add(chunk, results, part.tiers[tier]);
             }
         }

@@ -10,7 +10,7 @@ namespace vernier::precision {
 
 struct Worst {
     double value = 0;
-    std::array<double, kMaxOperands> operands{};
+    std::array<uint64_t, kMaxOperands> operands{};  // their bits
 };
 
 /// Errors of one implementation of a function. ULP are those of the exact result; an infinite result counts as 2^128.

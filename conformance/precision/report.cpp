@@ -25,16 +25,25 @@ std::string worstText(const Function& function, const Worst& worst) {
     std::string text;
     for (uint32_t k = 0; k < function.operands; ++k) {
         if (k > 0) text += ", ";
-        text += format("%a", worst.operands[k]);
+        switch (function.operand) {
+            case Word::int64:
+                text += std::to_string(static_cast<int64_t>(worst.operands[k]));
+                break;
+            case Word::uint64:
+                text += std::to_string(worst.operands[k]);
+                break;
+            default:
+                text += format("%a", operandValue(function.operand, worst.operands[k]));
+        }
     }
     return text;
 }
 
-std::string promiseText(const Promise& promise) {
+std::string promiseText(const Function& function, const Promise& promise) {
     if (promise.ulp < 0) return "the formula's";
     std::string text = format("%g ULP", promise.ulp);
     if (promise.absolute > 0) text += " or 2^" + format("%g", std::log2(promise.absolute));
-    return text;
+    return function.scaleText.empty() ? text : text + ", times " + function.scaleText;
 }
 
 std::string shareText(const Figures& figures) {
@@ -66,8 +75,9 @@ multiply-add, fast and standard compute it in double with a check, and cost seve
 
 Errors are against MPFR (128 bits); operands whose error in double cannot be the greatest are left to double, so that means
 are right to 2^-22 ULP. An ULP is the distance between the two numbers of the result's format around the exact result;
-denormal results count in units of 2^-149 (halves: 2^-24). Conversions to integers truncate, exactly. Functions of halves
-(16-bit floats) are those of floats, rounded once more.
+denormal results count in units of 2^-149 (halves: 2^-24, doubles: 2^-1074). Conversions to integers truncate, exactly. Functions of halves
+(16-bit floats) are those of floats, rounded once more. Of doubles Vulkan demands no more than of floats; they are correctly
+rounded but for `inversesqrt`, the quotient 1 / sqrt(x), and formulas.
 
 ## Special operands
 
@@ -159,7 +169,7 @@ std::string writeReport(std::span<const Measurement> measurements, const ReportT
                 << figures.calls << " |\n";
         };
         for (size_t tier = 0; tier < kTiers.size(); ++tier) {
-            row(kTierNames[tier], promiseText(function.promises[tier]), m->tiers[tier]);
+            row(kTierNames[tier], promiseText(function, function.promises[tier]), m->tiers[tier]);
         }
         if (m->driver) row("lavapipe", "", *m->driver);
     }

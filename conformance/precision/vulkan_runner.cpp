@@ -20,6 +20,7 @@ struct VulkanRunner::Impl {
 
     static constexpr size_t kCalls = size_t{1} << 16;
     static constexpr uint32_t kGroup = 64;
+    static constexpr size_t kResultWords = std::tuple_size_v<Results>;
 
     Status create() {
         VERNIER_TRY(context.create({}));
@@ -28,7 +29,7 @@ struct VulkanRunner::Impl {
             resources.createHostBuffer(kCalls * kMaxOperands * sizeof(float), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
         if (!buffer) return buffer.error();
         input = *buffer;
-        buffer = resources.createHostBuffer(kCalls * sizeof(float), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+        buffer = resources.createHostBuffer(kCalls * kResultWords * sizeof(float), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
         if (!buffer) return buffer.error();
         output = *buffer;
         return createLayout();
@@ -86,16 +87,14 @@ struct VulkanRunner::Impl {
 
     Result<VkPipeline> createPipeline(const Function& function, Cleanup& cleanup) {
         const VkDevice device = context.device();
-        const std::string source = R"(#version 450
+        const std::string source = std::string("#version 450\n") + kGlslExtensions + R"(
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 0) readonly buffer Input { float x[]; };
 layout(set = 0, binding = 1) writeonly buffer Output { float results[]; };
 void main() {
     const uint i = gl_GlobalInvocationID.x, n = 65536u;
     vec3 u = vec3(x[i], x[n + i], x[2u * n + i]), v = vec3(x[3u * n + i], x[4u * n + i], x[5u * n + i]);
-    float a = u.x, b = u.y, c = u.z;
-    results[i] = )" + function.glsl +
-                                   ";\n}\n";
+)" + callText(function) + "results[i] = low; results[n + i] = high;\n}\n";
         const auto words = compileGlsl(VK_SHADER_STAGE_COMPUTE_BIT, source);
         if (!words) return words.error();
         VkShaderModuleCreateInfo moduleInfo{};
@@ -118,13 +117,14 @@ void main() {
         return pipeline;
     }
 
-    Status run(const Function& function, const Operands& operands, std::span<float> results) {
+    Status run(const Function& function, const Operands& operands, size_t calls, Results& results) {
         Cleanup cleanup;
+        for (std::vector<float>& row : results) row.resize(calls);
         const auto pipeline = createPipeline(function, cleanup);
         if (!pipeline) return pipeline.error();
-        for (size_t first = 0; first < results.size(); first += kCalls) {
-            const size_t count = std::min(kCalls, results.size() - first);
-            for (uint32_t k = 0; k < function.operands; ++k) {
+        for (size_t first = 0; first < calls; first += kCalls) {
+            const size_t count = std::min(kCalls, calls - first);
+            for (uint32_t k = 0; k < function.operands * wordsOf(function.operand); ++k) {
                 std::copy_n(operands[k].data() + first, count, static_cast<float*>(input.mapped) + k * kCalls);
             }
             const auto commands = resources.beginCommands();
@@ -140,7 +140,10 @@ void main() {
                                  &barrier, 0, nullptr, 0, nullptr);
             VERNIER_TRY_VK(vkEndCommandBuffer(*commands));
             VERNIER_TRY(resources.run(*commands));
-            std::copy_n(static_cast<const float*>(output.mapped), count, results.data() + first);
+            for (size_t word = 0; word < kResultWords; ++word) {
+                std::copy_n(static_cast<const float*>(output.mapped) + word * kCalls, count,
+                            results[word].data() + first);
+            }
         }
         return {};
     }
@@ -155,8 +158,8 @@ Status VulkanRunner::create() {
 std::string VulkanRunner::name() const {
     return impl_->context.properties().deviceName;
 }
-Status VulkanRunner::run(const Function& function, const Operands& operands, std::span<float> results) {
-    return impl_->run(function, operands, results);
+Status VulkanRunner::run(const Function& function, const Operands& operands, size_t calls, Results& results) {
+    return impl_->run(function, operands, calls, results);
 }
 
 }  // namespace vernier::precision
