@@ -5,6 +5,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "spirv_interp/batch/half.h"
 #include "spirv_interp/batch/handlers.h"
 #include "spirv_interp/ir/ir.h"
 
@@ -88,6 +89,9 @@ VERNIER_REDUCE(ior, 0, a | b)
 VERNIER_REDUCE(ixor, 0, a ^ b)
 VERNIER_REDUCE(fadd, 0, a + b)
 VERNIER_REDUCE(fmul, 1, a* b)
+// Sums and products of two halves are exact in double.
+VERNIER_REDUCE(hadd, 0, nearestHalf(double{a} + double{b}))
+VERNIER_REDUCE(hmul, 1, nearestHalf(double{a} * double{b}))
 // A NaN gives way to a number.
 VERNIER_REDUCE(fmin, std::numeric_limits<T>::infinity(), b != b || a < b ? a : b)
 VERNIER_REDUCE(fmax, -std::numeric_limits<T>::infinity(), b != b || a > b ? a : b)
@@ -148,6 +152,8 @@ void reduceAs(const Frame& frame, const Inst* inst) {
         VERNIER_REDUCE(fmul, Float)
         VERNIER_REDUCE(fmin, Float)
         VERNIER_REDUCE(fmax, Float)
+        VERNIER_REDUCE(hadd, float)
+        VERNIER_REDUCE(hmul, float)
 #undef VERNIER_REDUCE
     }
 }

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "spirv_interp/batch/element-inl.h"
+#include "spirv_interp/batch/half.h"
 #include "spirv_interp/batch/handlers.h"
 #include "spirv_interp/batch/scalar-inl.h"
 
@@ -272,10 +273,10 @@ F ftofTo64(float a) {
     return a;
 }
 float ftohFrom64(F a) {
-    return scalar::nearestHalf(a);
+    return nearestHalf(a);
 }
 float ftohZeroFrom64(F a) {
-    return scalar::halfTowardsZero(a);
+    return halfTowardsZero(a);
 }
 S sextTo64(int32_t a) {
     return a;

@@ -113,12 +113,13 @@ void Lowering::lowerReduction(const Instruction& inst, ir::ReduceOp op) {
     const Leaves values = leavesOf(inst[5]);
     const std::span<ir::ValueId> leaves = newLeaves(values.size());
     const std::vector<LeafType>& types = leafTypes(inst[1]);
+    const auto ofHalves = [](ir::ReduceOp of) {
+        return of == ir::ReduceOp::fadd ? ir::ReduceOp::hadd : of == ir::ReduceOp::fmul ? ir::ReduceOp::hmul : of;
+    };
     const bool looksAtSign = op == ir::ReduceOp::smin || op == ir::ReduceOp::smax;
     for (size_t i = 0; i < leaves.size(); ++i) {
-        if (types[i].isHalf() && (op == ir::ReduceOp::fadd || op == ir::ReduceOp::fmul)) {
-            refuse(inst, "sums and products of 16-bit floats over a subgroup are not supported");
-        }
         const ir::ValueId value = looksAtSign ? signExtended(values[i], types[i]) : values[i];
+        reduction.op = types[i].isHalf() ? ofHalves(op) : op;
         ir::ValueId result = emitter_.emit(Op::subgroupReduce, types[i], {value}, ir::immOf(reduction));
         if (looksAtSign && types[i].isNarrowInteger()) {
             // The identity of 32 bits becomes that of the type.
@@ -126,7 +127,7 @@ void Lowering::lowerReduction(const Instruction& inst, ir::ReduceOp op) {
             result = binary(Op::smin, result, emitter_.constantI32(largest));
             result = binary(Op::smax, result, emitter_.constantI32(~largest));
         }
-        leaves[i] = normalised(result, types[i]);
+        leaves[i] = types[i].isNarrowInteger() ? normalised(result, types[i]) : result;
     }
     setValue(inst[2], inst[1], leaves);
 }

@@ -186,8 +186,25 @@ enum class AtomicOp : uint8_t {
     fmax,
 };
 
-/// How the values of a subgroup are brought together.
-enum class ReduceOp : uint8_t { iadd, fadd, imul, fmul, smin, umin, fmin, smax, umax, fmax, iand, ior, ixor };
+/// How the values of a subgroup are brought together. hadd and hmul are of floats that hold halves: every step is
+/// rounded to a half, to nearest even.
+enum class ReduceOp : uint8_t {
+    iadd,
+    fadd,
+    imul,
+    fmul,
+    smin,
+    umin,
+    fmin,
+    smax,
+    umax,
+    fmax,
+    iand,
+    ior,
+    ixor,
+    hadd,
+    hmul
+};
 /// All values of a cluster; those up to a lane's own; those before its own, where the first gets the identity.
 enum class ReduceMode : uint8_t { reduce, inclusive, exclusive };
 

@@ -305,7 +305,7 @@ class Verifier {
 
     static const char* badReduction(const Inst& inst) {
         const Reduction reduction = reductionOf(inst);
-        if (inst.imm != immOf(reduction) || reduction.op > ReduceOp::ixor || reduction.mode > ReduceMode::exclusive) {
+        if (inst.imm != immOf(reduction) || reduction.op > ReduceOp::hmul || reduction.mode > ReduceMode::exclusive) {
             return "an unknown reduction";
         }
         const uint32_t cluster = reduction.cluster;
@@ -316,7 +316,10 @@ class Verifier {
             reduction.op == ReduceOp::iand || reduction.op == ReduceOp::ior || reduction.op == ReduceOp::ixor;
         const bool floating = reduction.op == ReduceOp::fadd || reduction.op == ReduceOp::fmul ||
                               reduction.op == ReduceOp::fmin || reduction.op == ReduceOp::fmax;
-        const bool fits = inst.type == Type::b1 ? logic : isFloat(inst.type) == floating;
+        const bool ofHalves = reduction.op == ReduceOp::hadd || reduction.op == ReduceOp::hmul;
+        const bool fits = ofHalves                ? inst.type == Type::f32
+                          : inst.type == Type::b1 ? logic
+                                                  : isFloat(inst.type) == floating;
         return fits ? nullptr : "a reduction that is not defined for the type";
     }
 

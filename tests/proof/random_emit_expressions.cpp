@@ -19,8 +19,12 @@ Id Emitter::subgroup(const Expression& e) {
         b_.capability(spv::CapabilityGroupNonUniformVote);
     }
     std::vector<uint32_t> words{constantU32(spv::ScopeSubgroup)};
-    if (e.literal != ~0ull) words.push_back(static_cast<uint32_t>(e.literal));
+    if (e.literal != ~0ull) words.push_back(static_cast<uint32_t>(e.literal & 0xFF));
     for (const Id id : arguments(e)) words.push_back(id);
+    if (e.literal != ~0ull && e.literal >> 8 != 0) {
+        b_.capability(spv::CapabilityGroupNonUniformClustered);
+        words.push_back(constantU32(static_cast<uint32_t>(e.literal >> 8)));
+    }
     return b_.value(static_cast<spv::Op>(e.op), typeId(e.type), words);
 }
 Id Emitter::image(const Expression& e) {

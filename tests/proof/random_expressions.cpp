@@ -423,7 +423,7 @@ ExpressionPtr Generator::subgroup(ValueType type, uint32_t d) {
             case 0:
                 return group(spv::OpGroupNonUniformElect, {});
             case 1:
-                return group(spv::OpGroupNonUniformAllEqual, {expression({Base::i32, 1, 1}, d)});
+                return group(spv::OpGroupNonUniformAllEqual, {expression({anyBase(), 1, 1}, d)});
             case 2:
                 return group(spv::OpGroupNonUniformInverseBallot, {expression(kBallot, d)});
             default:
@@ -434,28 +434,29 @@ ExpressionPtr Generator::subgroup(ValueType type, uint32_t d) {
     if (type == kBallot.scalar() && chance(25))
         return group(spv::OpGroupNonUniformBallotBitCount, {expression(kBallot, d)}, below(3));
     if (chance(20)) return group(spv::OpGroupNonUniformBroadcastFirst, {expression(type, d)});
-    switch (type.base) {
-        case Base::boolean: {
-            constexpr uint32_t kOps[] = {spv::OpGroupNonUniformLogicalAnd, spv::OpGroupNonUniformLogicalOr,
-                                         spv::OpGroupNonUniformLogicalXor};
-            return group(pick(kOps), {expression(type, d)}, below(3));
-        }
-        case Base::f32: {
-            constexpr uint32_t kOps[] = {spv::OpGroupNonUniformFAdd, spv::OpGroupNonUniformFMul,
-                                         spv::OpGroupNonUniformFMin, spv::OpGroupNonUniformFMax};
-            return group(pick(kOps), {expression(type, d)}, below(3));
-        }
-        case Base::i32:
-        case Base::u32: {
-            constexpr uint32_t kOps[] = {
-                spv::OpGroupNonUniformIAdd,       spv::OpGroupNonUniformIMul,      spv::OpGroupNonUniformSMin,
-                spv::OpGroupNonUniformUMin,       spv::OpGroupNonUniformSMax,      spv::OpGroupNonUniformUMax,
-                spv::OpGroupNonUniformBitwiseAnd, spv::OpGroupNonUniformBitwiseOr, spv::OpGroupNonUniformBitwiseXor};
-            return group(pick(kOps), {expression(type, d)}, below(3));
-        }
-        default:
-            return nullptr;
+    if (chance(20)) {
+        ExpressionPtr mask = make(Kind::constant, {Base::u32, 1, 1});
+        mask->literal = below(32);
+        return group(spv::OpGroupNonUniformShuffleXor, {expression(type, d), std::move(mask)});
     }
+    // All, inclusive, exclusive, or in clusters of so many.
+    const uint64_t operation =
+        chance(75) ? below(3) : spv::GroupOperationClusteredReduce | uint64_t{1} << (8 + below(6));
+    if (type.base == Base::boolean) {
+        constexpr uint32_t kOps[] = {spv::OpGroupNonUniformLogicalAnd, spv::OpGroupNonUniformLogicalOr,
+                                     spv::OpGroupNonUniformLogicalXor};
+        return group(pick(kOps), {expression(type, d)}, operation);
+    }
+    if (isFloat(type.base)) {
+        constexpr uint32_t kOps[] = {spv::OpGroupNonUniformFAdd, spv::OpGroupNonUniformFMul, spv::OpGroupNonUniformFMin,
+                                     spv::OpGroupNonUniformFMax};
+        return group(pick(kOps), {expression(type, d)}, operation);
+    }
+    constexpr uint32_t kOps[] = {
+        spv::OpGroupNonUniformIAdd,       spv::OpGroupNonUniformIMul,      spv::OpGroupNonUniformSMin,
+        spv::OpGroupNonUniformUMin,       spv::OpGroupNonUniformSMax,      spv::OpGroupNonUniformUMax,
+        spv::OpGroupNonUniformBitwiseAnd, spv::OpGroupNonUniformBitwiseOr, spv::OpGroupNonUniformBitwiseXor};
+    return group(pick(kOps), {expression(type, d)}, operation);
 }
 
 /// From an image: outside, the images of the test repeat.

@@ -45,7 +45,7 @@ struct Expression {
         call,       // function `index`; args by value, then a pointer to variable `literal`
         both,       // arg 0 and arg 1 or (literal) or: with a branch and a phi
         choose,     // arg 0 ? arg 1 : arg 2, with branches and a phi
-        subgroup,   // group instruction `op` on args; literal: its group operation, or ~0
+        subgroup,   // group instruction `op` on args; literal: its group operation (size of clusters << 8), or ~0
         fetch,      // the texel at arg 0, an ivec2, of level of detail arg 1; index 0: floats, 1: integers
         sample,     // the image of floats at arg 0, a vec2, with level of detail arg 1
     };

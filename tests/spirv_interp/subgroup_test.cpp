@@ -11,6 +11,7 @@
 #include "tests/spirv_interp/batch_harness.h"
 #include "tests/spirv_interp/compute_harness.h"
 #include "tests/spirv_interp/front_support.h"
+#include "tests/spirv_interp/half_model.h"
 
 namespace vernier::test {
 namespace {
@@ -49,9 +50,16 @@ T reduced(const Group& g, uint32_t lane, Mode mode, uint32_t cluster, T identity
     return sum;
 }
 
+struct Half {
+    uint16_t bits = 0;
+    double value() const { return test::valueOf(bits); }
+};
+
 template <class T>
-T valueOf(const Group& g, uint32_t lane) {
-    if constexpr (std::is_floating_point_v<T>) {
+T laneValue(const Group& g, uint32_t lane) {
+    if constexpr (std::is_same_v<T, Half>) {
+        return {halfOf(g.f[lane])};
+    } else if constexpr (std::is_floating_point_v<T>) {
         return static_cast<T>(g.f[lane]);
     } else if constexpr (sizeof(T) == 8) {
         return static_cast<T>(g.u[lane]) << 20;
@@ -60,11 +68,13 @@ T valueOf(const Group& g, uint32_t lane) {
     }
 }
 
-uint32_t wordOf(uint32_t x) {
-    return x;
-}
-uint32_t wordOf(int32_t x) {
+/// Narrow integers as uint(x) of GLSL.
+template <class T>
+uint32_t wordOf(T x) {
     return static_cast<uint32_t>(x);
+}
+uint32_t wordOf(Half x) {
+    return x.bits;
 }
 uint32_t wordOf(float x) {
     return std::bit_cast<uint32_t>(x);
@@ -83,7 +93,7 @@ void addArithmetic(std::vector<Case>& cases, const std::string& glsl, const std:
                    const std::pair<std::string, std::string>& word, T identity, Op op) {
     const auto add = [&](const std::string& call, Mode mode, uint32_t cluster) {
         cases.push_back({word.first + call + word.second, [=](const Group& g, uint32_t lane) {
-                             return wordOf(reduced<T>(g, lane, mode, cluster, identity, valueOf<T>, op));
+                             return wordOf(reduced<T>(g, lane, mode, cluster, identity, laneValue<T>, op));
                          }});
     };
     add("subgroup" + glsl + "(" + value + ")", Mode::reduce, kSize);
@@ -130,6 +140,76 @@ std::vector<Case> wideIntegerCases() {
     addArithmetic<uint64_t>(cases, "Max", value, word, 0, [](uint64_t a, uint64_t b) { return std::max(a, b); });
     addArithmetic<uint64_t>(cases, "And", value, word, ~uint64_t{0}, [](uint64_t a, uint64_t b) { return a & b; });
     return cases;
+}
+
+/// Every arithmetic operation on an integer of another width than 32; `type` is its GLSL name.
+template <class T>
+std::vector<Case> narrowIntegerCases(const std::string& type) {
+    using Limits = std::numeric_limits<T>;
+    std::vector<Case> cases;
+    const std::pair<std::string, std::string> word{"uint(", ")"};
+    const std::string value = type + "(u)";
+    const auto add = [&](const char* glsl, T identity, auto op) {
+        addArithmetic<T>(cases, glsl, value, word, identity, [op](T a, T b) { return static_cast<T>(op(a, b)); });
+    };
+    add("Add", 0, [](T a, T b) { return wordOf(a) + wordOf(b); });
+    add("Mul", 1, [](T a, T b) { return wordOf(a) * wordOf(b); });
+    add("Min", Limits::max(), [](T a, T b) { return std::min(a, b); });
+    add("Max", Limits::min(), [](T a, T b) { return std::max(a, b); });
+    add("And", static_cast<T>(-1), [](T a, T b) { return a & b; });
+    add("Or", 0, [](T a, T b) { return a | b; });
+    add("Xor", 0, [](T a, T b) { return a ^ b; });
+    return cases;
+}
+
+std::vector<Case> halfCases() {
+    std::vector<Case> cases;
+    const std::pair<std::string, std::string> word{"uint(float16BitsToUint16(", "))"};
+    const auto add = [&](const char* glsl, double identity, auto op) {
+        addArithmetic<Half>(cases, glsl, "float16_t(f)", word, Half{halfOf(identity)},
+                            [op](Half a, Half b) { return Half{halfOf(op(a.value(), b.value()))}; });
+    };
+    // Every step is rounded: a double holds sums and products of two halves exactly.
+    add("Add", 0, [](double a, double b) { return a + b; });
+    add("Mul", 1, [](double a, double b) { return a * b; });
+    add("Min", HUGE_VAL, [](double a, double b) { return std::min(a, b); });
+    add("Max", -HUGE_VAL, [](double a, double b) { return std::max(a, b); });
+    return cases;
+}
+
+/// Votes and exchanges of values of 8, 16 and 64 bits.
+std::vector<Case> otherWidthCases() {
+    const auto allEqual = [](auto value) {
+        return [value](const Group& g, uint32_t) {
+            bool same = true;
+            for (uint32_t k = 0; k < kSize; ++k)
+                same = same && (!g.runs(k) || value(g, k) == value(g, g.first() % kSize));
+            return same ? 1u : 0u;
+        };
+    };
+    const auto halfBits = [](const Group& g, uint32_t lane) { return g.runs(lane) ? halfOf(g.f[lane]) : 0u; };
+    return {
+        {"uint(subgroupAllEqual(uint8_t(u & 1)))", allEqual([](const Group& g, uint32_t k) { return g.u[k] & 1; })},
+        {"uint(subgroupAllEqual(int16_t(0x7F00 + (u & 0x10000))))", [](const Group&, uint32_t) { return 1u; }},
+        {"uint(subgroupAllEqual(uint64_t(u & 2) << 40))",
+         allEqual([](const Group& g, uint32_t k) { return g.u[k] & 2; })},
+        {"uint(subgroupAllEqual(float16_t(f)))", allEqual([](const Group& g, uint32_t k) { return halfOf(g.f[k]); })},
+        {"uint(subgroupBroadcast(uint8_t(u), 5))", [](const Group& g, uint32_t) { return g.taken(5) & 0xFF; }},
+        {"fold64(subgroupBroadcastFirst(uint64_t(u) << 20))",
+         [](const Group& g, uint32_t) { return wordOf(uint64_t{g.taken(g.first())} << 20); }},
+        {"uint(subgroupShuffle(int8_t(u), place))",
+         [](const Group& g, uint32_t l) { return wordOf(static_cast<int8_t>(g.taken(g.u[l] % kSize))); }},
+        {"uint(subgroupShuffle(u16vec2(7, u), place).y)",
+         [](const Group& g, uint32_t l) { return g.taken(g.u[l] % kSize) & 0xFFFF; }},
+        {"uint(float16BitsToUint16(subgroupShuffleXor(float16_t(f), 3)))",
+         [=](const Group& g, uint32_t l) { return halfBits(g, l ^ 3); }},
+        {"uint(float16BitsToUint16(subgroupShuffleDown(float16_t(f), 6)))",
+         [=](const Group& g, uint32_t l) { return halfBits(g, l + 6); }},
+        {"uint(subgroupQuadSwapDiagonal(int16_t(u)))",
+         [](const Group& g, uint32_t l) { return wordOf(static_cast<int16_t>(g.taken(l ^ 3))); }},
+        {"fold64(subgroupQuadBroadcast(int64_t(u) << 31, 1))",
+         [](const Group& g, uint32_t l) { return wordOf(uint64_t{g.taken((l & ~3u) + 1)} << 31); }},
+    };
 }
 
 uint32_t maskOf(const Group& g, const std::function<bool(uint32_t)>& condition) {
@@ -233,7 +313,11 @@ constexpr const char* kExtensions = R"(#version 450
 #extension GL_KHR_shader_subgroup_shuffle_relative : require
 #extension GL_KHR_shader_subgroup_clustered : require
 #extension GL_KHR_shader_subgroup_quad : require
+#extension GL_EXT_shader_subgroup_extended_types_int8 : require
+#extension GL_EXT_shader_subgroup_extended_types_int16 : require
 #extension GL_EXT_shader_subgroup_extended_types_int64 : require
+#extension GL_EXT_shader_subgroup_extended_types_float16 : require
+#extension GL_EXT_shader_explicit_arithmetic_types : require
 #extension GL_ARB_gpu_shader_int64 : require
 )";
 
@@ -242,6 +326,7 @@ layout(set = 0, binding = 0) readonly buffer A { uint a[]; };
 layout(set = 0, binding = 1) readonly buffer F { float b[]; };
 layout(set = 0, binding = 2) buffer O { uint o[]; };
 uint fold64(uint64_t x) { return uint(x) ^ uint(x >> 32); }
+uint fold64(int64_t x) { return fold64(uint64_t(x)); }
 uint fold64(double x) { uvec2 w = unpackDouble2x32(x); return w.x ^ w.y; }
 uint fold64(double x, const int lane) { return fold64(subgroupBroadcast(x, 6)); }
 void main() {
@@ -319,6 +404,21 @@ TEST(Subgroup, DoubleArithmetic) {
 
 TEST(Subgroup, WideIntegerArithmetic) {
     check(wideIntegerCases());
+}
+
+TEST(Subgroup, NarrowIntegerArithmetic) {
+    check(narrowIntegerCases<int8_t>("int8_t"));
+    check(narrowIntegerCases<uint8_t>("uint8_t"));
+    check(narrowIntegerCases<int16_t>("int16_t"));
+    check(narrowIntegerCases<uint16_t>("uint16_t"));
+}
+
+TEST(Subgroup, HalfArithmetic) {
+    check(halfCases());
+}
+
+TEST(Subgroup, OtherWidths) {
+    check(otherWidthCases());
 }
 
 TEST(Subgroup, VotesBallotsShufflesAndQuads) {

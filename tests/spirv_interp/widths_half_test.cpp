@@ -7,6 +7,7 @@
 #include <random>
 
 #include "tests/spirv_interp/batch_harness.h"
+#include "tests/spirv_interp/half_model.h"
 #include "tests/spirv_interp/shader_run.h"
 
 namespace vernier::test {
@@ -15,36 +16,6 @@ namespace {
 constexpr const char* kExtensions =
     "#extension GL_EXT_shader_explicit_arithmetic_types : require\n"
     "#extension GL_EXT_shader_8bit_storage : require\n#extension GL_EXT_shader_16bit_storage : require\n";
-
-double valueOf(uint16_t half) {
-    const int exponent = half >> 10 & 31, mantissa = half & 1023;
-    double value = exponent == 0 ? std::ldexp(mantissa, -24) : std::ldexp(mantissa + 1024, exponent - 25);
-    if (exponent == 31) value = mantissa == 0 ? HUGE_VAL : std::nan("");
-    return (half & 0x8000) != 0 ? -value : value;
-}
-
-bool isNan(uint16_t half) {
-    return (half & 0x7FFF) > 0x7C00;
-}
-
-/// The half next to an exact value, by trying the neighbours; ties to even, or towards zero.
-uint16_t halfOf(long double x, bool towardsZero = false) {
-    if (std::isnan(x)) return 0x7E00;
-    const uint16_t sign = std::signbit(x) ? 0x8000 : 0;
-    const long double magnitude = std::fabs(x);
-    if (std::isinf(x)) return sign | 0x7C00;
-    // The largest half not above: halves are ordered like their bits.
-    uint16_t below = 0;
-    for (int bit = 14; bit >= 0; --bit) {
-        const auto next = static_cast<uint16_t>(below | 1 << bit);
-        if (next < 0x7C00 && valueOf(next) <= static_cast<double>(magnitude) && valueOf(next) <= magnitude)
-            below = next;
-    }
-    if (towardsZero) return sign | below;
-    const long double low = valueOf(below), high = below == 0x7BFF ? 65536.0L : valueOf(below + 1);
-    const bool up = magnitude - low > high - magnitude || (magnitude - low == high - magnitude && (below & 1) != 0);
-    return static_cast<uint16_t>(sign | (below + (up ? 1 : 0)));
-}
 
 struct Case {
     const char* glsl;
