@@ -114,10 +114,22 @@ namespace {
     X(VkPhysicalDeviceImage2DViewOf3DFeaturesEXT, sampler2DViewOf3D, true)                               \
     X(VkPhysicalDevice4444FormatsFeaturesEXT, formatA4R4G4B4, true)                                      \
     X(VkPhysicalDevice4444FormatsFeaturesEXT, formatA4B4G4R4, true)                                      \
-    X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderImageFloat32Atomics, false)                    \
-    X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderImageFloat32AtomicAdd, false)                  \
+    X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderImageFloat32Atomics, true)                     \
+    X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderImageFloat32AtomicAdd, true)                   \
     X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, sparseImageFloat32Atomics, false)                    \
-    X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, sparseImageFloat32AtomicAdd, false)
+    X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, sparseImageFloat32AtomicAdd, false)                  \
+    X(VkPhysicalDeviceShaderAtomicFloat2FeaturesEXT, shaderBufferFloat16Atomics, false)                  \
+    X(VkPhysicalDeviceShaderAtomicFloat2FeaturesEXT, shaderBufferFloat16AtomicAdd, false)                \
+    X(VkPhysicalDeviceShaderAtomicFloat2FeaturesEXT, shaderBufferFloat16AtomicMinMax, false)             \
+    X(VkPhysicalDeviceShaderAtomicFloat2FeaturesEXT, shaderBufferFloat32AtomicMinMax, true)              \
+    X(VkPhysicalDeviceShaderAtomicFloat2FeaturesEXT, shaderBufferFloat64AtomicMinMax, true)              \
+    X(VkPhysicalDeviceShaderAtomicFloat2FeaturesEXT, shaderSharedFloat16Atomics, false)                  \
+    X(VkPhysicalDeviceShaderAtomicFloat2FeaturesEXT, shaderSharedFloat16AtomicAdd, false)                \
+    X(VkPhysicalDeviceShaderAtomicFloat2FeaturesEXT, shaderSharedFloat16AtomicMinMax, false)             \
+    X(VkPhysicalDeviceShaderAtomicFloat2FeaturesEXT, shaderSharedFloat32AtomicMinMax, true)              \
+    X(VkPhysicalDeviceShaderAtomicFloat2FeaturesEXT, shaderSharedFloat64AtomicMinMax, true)              \
+    X(VkPhysicalDeviceShaderAtomicFloat2FeaturesEXT, shaderImageFloat32AtomicMinMax, true)               \
+    X(VkPhysicalDeviceShaderAtomicFloat2FeaturesEXT, sparseImageFloat32AtomicMinMax, false)
 
 // VkPhysicalDeviceFeatures is nothing but VkBool32 members.
 constexpr size_t kFeatureCount = sizeof(VkPhysicalDeviceFeatures) / sizeof(VkBool32);

@@ -80,6 +80,8 @@ constexpr Uses kIntegerTexture{kReadable, kBuffer};
 constexpr Uses kIntegerStorage{kInteger.image | kStorage, kBuffer | kStorageBuffer};
 constexpr Uses kIntegerAtomic{kIntegerStorage.image | VK_FORMAT_FEATURE_STORAGE_IMAGE_ATOMIC_BIT,
                               kIntegerStorage.buffer | VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_ATOMIC_BIT};
+constexpr Uses kColorAtomic{kColorStorage.image | VK_FORMAT_FEATURE_STORAGE_IMAGE_ATOMIC_BIT,
+                            kColorStorage.buffer | VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_ATOMIC_BIT};
 constexpr VkFormatFeatureFlags kDepthStencil =
     kReadable | VK_FORMAT_FEATURE_BLIT_DST_BIT | VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT;
 
@@ -272,7 +274,7 @@ constexpr std::array kPlainFormats{
     INT(R16G16B16A16, kRgba16, , kIntegerStorage),
     COLOR(R16G16B16A16_SFLOAT, kRgba16, sfloat, kColorStorage),
     INT(R32, kR32, , kIntegerAtomic),
-    COLOR(R32_SFLOAT, kR32, sfloat, kColorStorage),
+    COLOR(R32_SFLOAT, kR32, sfloat, kColorAtomic),
     INT(R32G32, kRg32, , kIntegerStorage),
     COLOR(R32G32_SFLOAT, kRg32, sfloat, kColorStorage),
     INT(R32G32B32, kRgb32, , kIntegerTexture),

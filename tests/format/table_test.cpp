@@ -104,7 +104,7 @@ TEST(FormatTable, MandatoryFeatures) {
         {VK_FORMAT_R16G16B16A16_SFLOAT, kS | kL | kC | kB | kI, kV | kU | kT},
         {VK_FORMAT_R32_UINT, kS | kC | kI | kA, kV | kU | kT | kTA},
         {VK_FORMAT_R32_SINT, kS | kC | kI | kA, kV | kU | kT | kTA},
-        {VK_FORMAT_R32_SFLOAT, kS | kC | kI, kV | kU | kT},
+        {VK_FORMAT_R32_SFLOAT, kS | kC | kI | kA, kV | kU | kT | kTA},  // shaderImageFloat32Atomics asks for it
         {VK_FORMAT_R32G32_UINT, kS | kC | kI, kV | kU | kT},
         {VK_FORMAT_R32G32_SFLOAT, kS | kC | kI, kV | kU | kT},
         {VK_FORMAT_R32G32B32_UINT, 0, kV},

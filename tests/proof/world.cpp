@@ -127,6 +127,7 @@ std::array<uint32_t, 4> TestImage::storage(const ImageAccess& a) {
     if (a.kind != ir::ImageKind::atomic) return old;
     const uint32_t v = a.value[0];
     const auto sv = static_cast<int32_t>(v), so = static_cast<int32_t>(old[0]);
+    const auto fv = std::bit_cast<float>(v), fo = std::bit_cast<float>(old[0]);
     switch (a.atomic) {
         case ir::AtomicOp::add:
             texel[0] += v;
@@ -154,6 +155,15 @@ std::array<uint32_t, 4> TestImage::storage(const ImageAccess& a) {
             break;
         case ir::AtomicOp::ixor:
             texel[0] ^= v;
+            break;
+        case ir::AtomicOp::fadd:
+            texel[0] = std::bit_cast<uint32_t>(fo + fv);
+            break;
+        case ir::AtomicOp::fmin:
+            texel[0] = fv != fv || fo < fv ? old[0] : v;
+            break;
+        case ir::AtomicOp::fmax:
+            texel[0] = fv != fv || fo > fv ? old[0] : v;
             break;
         case ir::AtomicOp::exchange:
         case ir::AtomicOp::store:

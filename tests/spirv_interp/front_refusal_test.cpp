@@ -45,6 +45,14 @@ TEST(Refusal, NamesInstructionIdAndLine) {
               std::string::npos);
 }
 
+// Images of 64-bit texels, and with them their atomics.
+TEST(Refusal, WideImages) {
+    EXPECT_EQ(errorOfGlsl("imageAtomicAdd(i, ivec2(0), 1ul);",
+                          "#extension GL_EXT_shader_image_int64 : require\n#extension GL_ARB_gpu_shader_int64 : "
+                          "require\nlayout(set=0,binding=0,r64ui) uniform u64image2D i;"),
+              "SPIR-V: capability Int64ImageEXT is not supported");
+}
+
 TEST(Refusal, EntryPoint) {
     const Words words = compileGlsl(ir::Stage::vertex, "#version 450\nvoid main() {}\n");
     EXPECT_EQ(errorOf(words), "SPIR-V: the module has no fragment entry point named 'main'");

@@ -33,7 +33,22 @@ struct FeatureChain {
     VkPhysicalDeviceShaderIntegerDotProductFeatures dot{
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_INTEGER_DOT_PRODUCT_FEATURES, &terminate, 1};
     VkPhysicalDeviceShaderAtomicFloatFeaturesEXT floats{
-        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_ATOMIC_FLOAT_FEATURES_EXT, &dot, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0};
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_ATOMIC_FLOAT_FEATURES_EXT, &dot, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0};
+    VkPhysicalDeviceShaderAtomicFloat2FeaturesEXT moreFloats{
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_ATOMIC_FLOAT_2_FEATURES_EXT,
+        &floats,
+        0,
+        0,
+        0,
+        1,
+        1,
+        0,
+        0,
+        0,
+        1,
+        1,
+        1,
+        0};
 
     FeatureChain() = default;
     FeatureChain(const FeatureChain&) = delete;
@@ -55,10 +70,11 @@ class ShaderFeaturesTest : public ComputeTest {
                 VK_KHR_SHADER_TERMINATE_INVOCATION_EXTENSION_NAME,
                 VK_KHR_SHADER_INTEGER_DOT_PRODUCT_EXTENSION_NAME,
                 VK_EXT_SHADER_ATOMIC_FLOAT_EXTENSION_NAME,
+                VK_EXT_SHADER_ATOMIC_FLOAT_2_EXTENSION_NAME,
                 VK_KHR_SHADER_FLOAT_CONTROLS_EXTENSION_NAME,
                 VK_KHR_SHADER_NON_SEMANTIC_INFO_EXTENSION_NAME};
     }
-    void* moreFeatures() override { return &wanted_.floats; }
+    void* moreFeatures() override { return &wanted_.moreFloats; }
     FeatureChain wanted_;
 };
 
@@ -69,8 +85,9 @@ TEST_F(ShaderFeaturesTest, areReported) {
     ASSERT_NE(query, nullptr);
     FeatureChain reported;
     auto features = make<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
-    features.pNext = &reported.floats;
-    reported.floats.shaderImageFloat32Atomics = 1;
+    features.pNext = &reported.moreFloats;
+    reported.floats.sparseImageFloat32Atomics = reported.moreFloats.shaderBufferFloat16AtomicAdd = 1;
+    reported.floats.shaderImageFloat32Atomics = reported.moreFloats.shaderImageFloat32AtomicMinMax = 0;
     reported.scalar.scalarBlockLayout = reported.storage16.storageInputOutput16 = reported.dot.shaderIntegerDotProduct =
         0;
     reported.narrow.shaderInt8 = reported.atomics.shaderSharedInt64Atomics =
@@ -80,7 +97,9 @@ TEST_F(ShaderFeaturesTest, areReported) {
     EXPECT_TRUE(reported.storage16.storageBuffer16BitAccess && reported.storage16.uniformAndStorageBuffer16BitAccess &&
                 reported.storage16.storagePushConstant16 && reported.storage16.storageInputOutput16);
     EXPECT_TRUE(reported.floats.shaderBufferFloat32AtomicAdd && reported.floats.shaderSharedFloat64AtomicAdd);
-    EXPECT_FALSE(reported.floats.shaderImageFloat32Atomics || reported.floats.sparseImageFloat32Atomics);
+    EXPECT_TRUE(reported.floats.shaderImageFloat32Atomics && reported.floats.shaderImageFloat32AtomicAdd &&
+                reported.moreFloats.shaderImageFloat32AtomicMinMax);
+    EXPECT_FALSE(reported.floats.sparseImageFloat32Atomics || reported.moreFloats.shaderBufferFloat16AtomicAdd);
     EXPECT_TRUE(reported.storage8.storagePushConstant8 && reported.narrow.shaderInt8 && reported.narrow.shaderFloat16);
     EXPECT_TRUE(reported.atomics.shaderBufferInt64Atomics && reported.atomics.shaderSharedInt64Atomics);
     EXPECT_TRUE(reported.pointers.variablePointers && reported.uniforms.uniformBufferStandardLayout &&
@@ -169,6 +188,64 @@ void main() {
     EXPECT_EQ(longs[1], last);
     EXPECT_EQ(std::bit_cast<float>(words(out)[4]), 3200.0f);
     EXPECT_EQ(std::bit_cast<double>(longs[3]), 6399.0 * 3200);
+}
+
+// On texels of images and of buffers; a lane outside changes nothing.
+TEST_F(ShaderFeaturesTest, floatAtomicsOnTexels) {
+    VkFormatProperties properties{};
+    vkGetPhysicalDeviceFormatProperties(physicalDevice, VK_FORMAT_R32_SFLOAT, &properties);
+    EXPECT_TRUE((properties.optimalTilingFeatures & VK_FORMAT_FEATURE_STORAGE_IMAGE_ATOMIC_BIT) != 0 &&
+                (properties.bufferFeatures & VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_ATOMIC_BIT) != 0);
+    const TestImage picture = makeImage(VK_FORMAT_R32_SFLOAT, {4, 2}, VK_IMAGE_USAGE_STORAGE_BIT);
+    const TestBuffer texels = makeBuffer(16, VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT);
+    const float nan = std::nanf("");
+    const float initial[4] = {100, -100, nan, 7};
+    std::memcpy(texels.data, initial, sizeof initial);
+    const TestBuffer out = makeStorage(8);
+    const std::string head = std::string(kTypes) + R"(
+#extension GL_EXT_shader_atomic_float2 : require
+layout(set = 0, binding = 0, r32f) uniform image2D picture;
+layout(set = 0, binding = 1, r32f) uniform imageBuffer texels;
+layout(set = 0, binding = 2) buffer Out { float o[8]; };
+)";
+    const std::vector<TestDescriptor> descriptors{
+        storageImage(picture), texelBuffer(makeTexels(texels, VK_FORMAT_R32_SFLOAT), true), storageBuffer(out)};
+    const Compute clear = makeCompute(head + R"(
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (i < 8) imageStore(picture, ivec2(i % 4, i / 4), vec4(i));
+})",
+                                      descriptors);
+    const Compute add = makeCompute(head + R"(
+void main() {
+    int i = int(gl_GlobalInvocationID.x);
+    imageAtomicAdd(picture, ivec2(i % 5, i % 2), 0.5);
+    imageAtomicMin(texels, 0, float(i) - 3.25);
+    imageAtomicMax(texels, 1, i == 9 ? 0.0 / float(i - i) : float(i));
+    imageAtomicMin(texels, 2, float(i + 1));
+    imageAtomicMax(texels, i + 4, 1.0);
+    if (i == 0) imageAtomicExchange(texels, 3, 0.125);
+})",
+                                    descriptors);
+    const Compute read = makeCompute(head + R"(
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (i < 8) o[i] = imageLoad(picture, ivec2(i % 4, i / 4)).x;
+})",
+                                     descriptors);
+    const VkCommandBuffer commands = begin();
+    toGeneral(commands, picture);
+    dispatch(commands, clear, 1);
+    dispatch(commands, add, 10);
+    dispatch(commands, read, 1);
+    submit(commands);
+    // Of 640 invocations every tenth adds to each place in the five columns, the last of which is outside.
+    for (uint32_t i = 0; i < 8; ++i) EXPECT_EQ(std::bit_cast<float>(words(out)[i]), static_cast<float>(i) + 32.0f) << i;
+    const auto* texel = static_cast<const float*>(texels.data);
+    EXPECT_EQ(texel[0], -3.25f);
+    EXPECT_EQ(texel[1], 639.0f);
+    EXPECT_EQ(texel[2], 1.0f);
+    EXPECT_EQ(texel[3], 0.125f);
 }
 
 TEST_F(ShaderFeaturesTest, layoutsAreTakenAsTheyAre) {
