@@ -167,16 +167,22 @@ class AddressSpace {
     /// The T at an address, which is aligned by dropping low bits; nullptr where there is no memory.
     template <class T>
     T* at(uint64_t address) {
-        address &= ~uint64_t{sizeof(T) - 1};
-        if (!holds(address, sizeof(T))) {
-            if (resolver_.find == nullptr) return nullptr;
-            range_ = resolver_.find(resolver_.self, address);
-            if (!holds(address, sizeof(T))) return nullptr;
-        }
-        return reinterpret_cast<T*>(range_.data + (address - range_.address));
+        return reinterpret_cast<T*>(bytesAt(address & ~uint64_t{sizeof(T) - 1}, sizeof(T)));
+    }
+    /// The two words at an address; nullptr where one of them is no memory.
+    uint32_t* wordsAt(uint64_t address) {
+        return reinterpret_cast<uint32_t*>(bytesAt(address & ~uint64_t{3}, 2 * sizeof(uint32_t)));
     }
 
   private:
+    std::byte* bytesAt(uint64_t address, uint64_t bytes) {
+        if (!holds(address, bytes)) {
+            if (resolver_.find == nullptr) return nullptr;
+            range_ = resolver_.find(resolver_.self, address);
+            if (!holds(address, bytes)) return nullptr;
+        }
+        return range_.data + (address - range_.address);
+    }
     bool holds(uint64_t address, uint64_t bytes) const {
         return range_.data != nullptr && address >= range_.address && range_.size >= bytes &&
                address - range_.address <= range_.size - bytes;
@@ -185,7 +191,27 @@ class AddressSpace {
     AddressRange range_;
 };
 
-/// Calls run(T()) for the unsigned type of an access of that many bytes.
+/// Values of 64 bits, at any word.
+void loadWideAddress(Frame& frame, const Inst* inst) {
+    AddressSpace memory(frame);
+    for (uint32_t lane = 0; lane < frame.lanes; ++lane) writeLane<uint64_t>(frame, inst->operand[0], lane, 0);
+    frame.masks[kCurrentMask].forEach([&](uint32_t lane) {
+        const uint32_t* words = memory.wordsAt(readLane<uint64_t>(frame, inst->operand[1], lane));
+        if (words != nullptr) writeLane<uint64_t>(frame, inst->operand[0], lane, uint64_t{words[1]} << 32 | words[0]);
+    });
+}
+void storeWideAddress(Frame& frame, const Inst* inst) {
+    AddressSpace memory(frame);
+    effectLanes(frame).forEach([&](uint32_t lane) {
+        uint32_t* words = memory.wordsAt(readLane<uint64_t>(frame, inst->operand[0], lane));
+        if (words == nullptr) return;
+        const auto value = readLane<uint64_t>(frame, inst->operand[1], lane);
+        std::atomic_ref(words[0]).store(static_cast<uint32_t>(value), std::memory_order_relaxed);
+        std::atomic_ref(words[1]).store(static_cast<uint32_t>(value >> 32), std::memory_order_relaxed);
+    });
+}
+
+/// Calls run(T()) for the unsigned type of an access of at most 4 bytes.
 template <class Run>
 void withWidth(uint32_t bytes, Run&& run) {
     if (bytes == 1) {
@@ -198,6 +224,10 @@ void withWidth(uint32_t bytes, Run&& run) {
 }
 
 const Inst* loadAddress(Frame& frame, const Inst* inst) {
+    if (inst->operand[2] == 8) {
+        loadWideAddress(frame, inst);
+        return inst + 1;
+    }
     AddressSpace memory(frame);
     auto* results = frame.row<uint32_t>(inst->operand[0]);
     const LaneMask& active = frame.masks[kCurrentMask];
@@ -213,6 +243,10 @@ const Inst* loadAddress(Frame& frame, const Inst* inst) {
 }
 
 const Inst* storeAddress(Frame& frame, const Inst* inst) {
+    if (inst->operand[2] == 8) {
+        storeWideAddress(frame, inst);
+        return inst + 1;
+    }
     AddressSpace memory(frame);
     const auto* values = frame.row<uint32_t>(inst->operand[1]);
     withWidth(inst->operand[2], [&](auto width) {

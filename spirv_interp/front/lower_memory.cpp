@@ -76,6 +76,9 @@ Pointer Lowering::wholly(const Pointer& pointer, uint32_t at) {
 }
 
 ir::ValueId Lowering::loadScalar(const Pointer& pointer, uint32_t at, const LeafType& type) {
+    if (ir::isWide(type) && pointer.base == Base::address) {
+        return emitter_.emit(ir::Op::loadAddress, type, {place(pointer, at)}, 8);
+    }
     if (ir::isWide(type)) {
         const uint32_t word = pointer.inBytes() ? 4 : 1;
         const Pointer whole = wholly(pointer, at);
@@ -94,7 +97,9 @@ ir::ValueId Lowering::loadScalar(const Pointer& pointer, uint32_t at, const Leaf
 }
 
 void Lowering::storeScalar(const Pointer& pointer, uint32_t at, ir::ValueId value, const LeafType& type) {
-    if (ir::isWide(type)) {
+    if (ir::isWide(type) && pointer.base == Base::address) {
+        emitter_.emit(ir::Op::storeAddress, ir::Type::none, {place(pointer, at), value}, 8);
+    } else if (ir::isWide(type)) {
         const uint32_t word = pointer.inBytes() ? 4 : 1;
         const Pointer whole = wholly(pointer, at);
         storeWord(whole, at, emitter_.emit(ir::Op::lowWord, ir::Type::i32, {value}));

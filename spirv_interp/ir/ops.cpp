@@ -174,7 +174,8 @@ uint32_t operandTypes(const Program& program, const Inst& inst, uint32_t index) 
         case Op::loadAddress:
             return bit(Type::i64);
         case Op::storeAddress:
-            return index < 1 ? bit(Type::i64) : immLow(inst) != 4 ? bit(Type::i32) : kWords;
+            if (index < 1) return bit(Type::i64);
+            return immLow(inst) == 8 ? kWide : immLow(inst) == 4 ? kWords : bit(Type::i32);
         case Op::storeLocal:
             return index < 1 ? bit(Type::i32) : kWords;
         case Op::atomicBuffer:
@@ -265,6 +266,8 @@ uint32_t resultTypes(Op op) {
             return kInts | kFloats;
         case Op::subgroupReduce:
             return kAll;
+        case Op::loadAddress:
+            return kWords | kWide;
         default:
             return kWords;
     }

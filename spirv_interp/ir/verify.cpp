@@ -1,6 +1,7 @@
 #include "spirv_interp/ir/verify.h"
 
 #include <algorithm>
+#include <bit>
 #include <optional>
 
 #include "spirv_interp/ir/cfg.h"
@@ -335,8 +336,11 @@ class Verifier {
                 return immHigh(inst) == 0 || end > program_.localWords ? "outside the local memory" : nullptr;
             case Op::loadAddress:
             case Op::storeAddress:
-                if (immLow(inst) != 1 && immLow(inst) != 2 && immLow(inst) != 4) return "an access of another width";
-                if (immLow(inst) != 4 && inst.op == Op::loadAddress && inst.type != Type::i32) {
+                if (immLow(inst) > 8 || !std::has_single_bit(immLow(inst))) return "an access of another width";
+                if (inst.op == Op::loadAddress && isWide(inst.type) != (immLow(inst) == 8)) {
+                    return "the type does not have the width of the access";
+                }
+                if (immLow(inst) < 4 && inst.op == Op::loadAddress && inst.type != Type::i32) {
                     return "a part of a word that is no i32";
                 }
                 return immHigh(inst) != 0 ? "an atomic operation where there is none" : nullptr;

@@ -49,6 +49,7 @@ void callImage(const ImageBinding& binding, const ImageCall& call) {
             a.offset[k] = intAt(call.offset[k], lane);
         }
         (op.hasBias ? a.bias : a.lod) = floatAt(call.lodOrBias, lane);
+        if (op.hasMinLod) a.minLod = floatAt(call.minLod, lane);
         a.level = intAt(call.lodOrBias, lane);
         a.reference = floatAt(call.dref, lane);
         a.sample = intAt(call.sample, lane);

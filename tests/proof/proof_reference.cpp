@@ -367,6 +367,7 @@ class ReferenceRun final : public reference::Resources<Number> {
         }
         a.lod = static_cast<float>(r.lod);
         a.bias = static_cast<float>(r.bias);
+        if (r.minLod) a.minLod = static_cast<float>(*r.minLod);
         a.level = r.texelLod;
         a.offset = r.offset;
         if (r.dref) a.reference = static_cast<float>(*r.dref);

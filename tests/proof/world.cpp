@@ -192,9 +192,9 @@ std::array<uint32_t, 4> TestImage::access(const ImageAccess& a) {
     const auto bits = [](const std::array<float, 4>& v) { return std::bit_cast<std::array<uint32_t, 4>>(v); };
     switch (a.kind) {
         case ir::ImageKind::sampleImplicit:
-            return bits(sample(a, levelOfDetail() + a.bias));
+            return bits(sample(a, std::max(levelOfDetail() + a.bias, a.minLod)));
         case ir::ImageKind::sampleGrad:
-            return bits(sample(a, levelOfDetail()));
+            return bits(sample(a, std::max(levelOfDetail(), a.minLod)));
         case ir::ImageKind::sampleLod:
             return bits(sample(a, a.lod));
         case ir::ImageKind::gather:
@@ -268,6 +268,10 @@ uint32_t World::input(uint32_t invocation, const ir::InterfaceSlot& slot) const 
             return invocation / 5;
         case ir::Builtin::baseVertex:
             return 3;
+        case ir::Builtin::baseInstance:
+            return 2;
+        case ir::Builtin::drawIndex:
+            return 5;
         default:
             return 0;
     }

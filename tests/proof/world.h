@@ -47,6 +47,7 @@ struct ImageAccess {
     std::array<int32_t, 4> texel{};
     std::array<float, 3> ddx{}, ddy{};  // sampleImplicit, sampleGrad and queryLod
     float lod = 0, bias = 0;            // sampleLod: lod; sampleImplicit: bias
+    float minLod = -1000;               // sampleImplicit, sampleGrad
     int32_t level = 0;                  // fetch, querySize
     std::array<int32_t, 3> offset{};
     float reference = 0;

@@ -53,6 +53,37 @@ TEST(Refusal, WideImages) {
               "SPIR-V: capability Int64ImageEXT is not supported");
 }
 
+// Vulkan has bit operations on 32-bit integers only (VUID-StandaloneSpirv-Base-04781).
+TEST(Refusal, BitOperationsOfOtherWidths) {
+    struct Width {
+        const char *capability, *type;
+    };
+    const std::string operations[] = {"OpBitCount %t %x", "OpBitReverse %t %x", "OpBitFieldUExtract %t %x %one %one",
+                                      "OpBitFieldSExtract %t %x %one %one", "OpBitFieldInsert %t %x %x %one %one"};
+    for (const Width& width : {Width{"Shader", "OpTypeInt 32 0"}, Width{"Int8", "OpTypeInt 8 0"},
+                               Width{"Int16", "OpTypeInt 16 0"}, Width{"Int64", "OpTypeInt 64 0"}}) {
+        for (const std::string& operation : operations) {
+            const bool plain = std::string_view(width.capability) == "Shader";
+            const Words words = assemble("OpCapability Shader\nOpCapability " + std::string(width.capability) + R"(
+OpMemoryModel Logical GLSL450
+OpEntryPoint Fragment %main "main"
+OpExecutionMode %main OriginUpperLeft
+%void = OpTypeVoid
+%fn = OpTypeFunction %void
+%int = OpTypeInt 32 1
+%one = OpConstant %int 1
+%t = )" + width.type + R"(
+%x = OpConstant %t 77
+%main = OpFunction %void None %fn
+%entry = OpLabel
+%r = )" + operation + "\nOpReturn\nOpFunctionEnd\n");
+            const std::string error = errorOf(words);
+            EXPECT_EQ(error.find("Expected 32-bit int type for Base operand") != std::string::npos, !plain)
+                << operation << " " << width.type << ": " << error;
+        }
+    }
+}
+
 TEST(Refusal, EntryPoint) {
     const Words words = compileGlsl(ir::Stage::vertex, "#version 450\nvoid main() {}\n");
     EXPECT_EQ(errorOf(words), "SPIR-V: the module has no fragment entry point named 'main'");

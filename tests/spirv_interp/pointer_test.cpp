@@ -283,6 +283,63 @@ w = matrices.r * matrices.m[1];
     }
 }
 
+// Values of 64 bits at any word; one that is only half in memory is outside as a whole.
+TEST(PhysicalStorageBuffers, WideValuesAtAnyWord) {
+    ShaderRun shader;
+    shader.words = laneShader(
+        "#extension GL_EXT_buffer_reference : require\n#extension GL_EXT_shader_explicit_arithmetic_types : require\n",
+        R"(
+layout(buffer_reference, std430, buffer_reference_align = 8) buffer Long { uint64_t v; };
+layout(buffer_reference, std430, buffer_reference_align = 8) buffer Double { double v; };
+layout(push_constant) uniform P { uint64_t middle, end; };
+layout(location = 0) out uvec4 o;
+)",
+        R"(
+// Lanes 0 .. 7: the last word but one, and on across the end, a word at a time; then whole values from an odd word.
+uint64_t at = lane < 8 ? end + 4ul * uint64_t(lane) - 16ul : middle + 8ul * uint64_t(lane);
+uint64_t before = Long(at).v;
+Long(at).v = before + (1ul << 32);
+Double(at).v = Double(at).v * 2.0lf;
+if (lane >= 8) o = uvec4(unpackUint2x32(before), unpackUint2x32(doubleBitsToUint64(Double(at).v)));
+else o = uvec4(unpackUint2x32(before), 0, 0);
+)");
+    DeviceMemory memory;
+    shader.addresses = memory.resolver();
+    const uint64_t push[2] = {DeviceMemory::kSecond + 4, DeviceMemory::kFirst + 64 * 8};
+    shader.push.resize(sizeof push);
+    std::memcpy(shader.push.data(), push, sizeof push);
+    const auto wordsOf = [](std::vector<uint64_t>& longs) { return reinterpret_cast<uint32_t*>(longs.data()); };
+    for (const Isa isa : isas()) {
+        memory = {};
+        for (uint32_t k = 0; k < 512; ++k) wordsOf(memory.second)[k] = 0x3FF00000u + k;
+        for (uint32_t k = 0; k < 128; ++k) wordsOf(memory.first)[k] = 0x3FE00000u + k;
+        DeviceMemory expected = memory;
+        ASSERT_TRUE(shader.run(isa));
+        const auto change = [](uint32_t* words) {
+            uint64_t value = 0;
+            std::memcpy(&value, words, sizeof value);
+            const double doubled = std::bit_cast<double>(value + (uint64_t{1} << 32)) * 2;
+            std::memcpy(words, &doubled, sizeof doubled);
+        };
+        for (uint32_t lane = 8; lane < 64; ++lane) {
+            uint32_t* words = wordsOf(expected.second) + 1 + 2 * lane;
+            EXPECT_EQ(shader.output(0, lane), words[0]) << lane;
+            EXPECT_EQ(shader.output(1, lane), words[1]);
+            change(words);
+            EXPECT_EQ(shader.output(2, lane), words[0]) << lane;
+            EXPECT_EQ(shader.output(3, lane), words[1]);
+        }
+        // The last words that hold a value are two before the end; from one before it, reads give 0.
+        for (uint32_t lane = 3; lane < 8; ++lane) {
+            EXPECT_EQ(shader.output(0, lane), 0u) << lane;
+            EXPECT_EQ(shader.output(1, lane), 0u) << lane;
+        }
+        EXPECT_EQ(shader.output(0, 2), 0x3FE00000u + 126);
+        EXPECT_EQ(memory.second, expected.second);
+        EXPECT_TRUE(std::equal(memory.first.begin(), memory.first.begin() + 62, expected.first.begin()));
+    }
+}
+
 // Without a resolver there is no memory at all.
 TEST(PhysicalStorageBuffers, NoMemory) {
     ShaderRun shader;
