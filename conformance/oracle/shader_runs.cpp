@@ -107,7 +107,7 @@ std::optional<Interval> rangeOf(const ShaderRuns& runs, size_t lane, const Inter
 }  // namespace
 
 bool isIntegerVariable(const InterfaceVariable& variable) {
-    return variable.kind != reference::ScalarKind::float32 && variable.kind != reference::ScalarKind::float64;
+    return !isFloating(variable.kind);
 }
 
 FragmentResult combineRuns(const ShaderRuns& runs, size_t lane, std::span<const InterfaceVariable> outputs,

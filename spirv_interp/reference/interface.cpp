@@ -28,7 +28,7 @@ void Machine<Number>::createInterface(const InterfaceValues<Number>& inputs) {
             const Type& type = module_.types[cell.type];
             target.bits &= widthMask(type.width);
             if (type.kind == TypeKind::boolean) target.bits = target.bits != 0 ? 1 : 0;
-            if (type.width == 32) target.number = rounded(target.number);
+            if (type.kind == TypeKind::floating) round(target, type.width);
         }
     }
 }
@@ -52,6 +52,9 @@ Outcome<Number> Machine<Number>::outcome() const {
                 Texel<Number>& texel = result.outputs.locations[cell.location];
                 texel[cell.component] = scalar;
                 const Type& type = module_.types[cell.type];
+                if (type.kind == TypeKind::integer && type.isSigned && type.width < 32) {
+                    texel[cell.component].bits = static_cast<uint32_t>(asSigned(scalar.bits, type.width));
+                }
                 if (type.kind == TypeKind::integer && type.width == 64 && cell.component < 3) {
                     texel[cell.component].bits &= 0xFFFFFFFFu;
                     texel[cell.component + 1].bits = scalar.bits >> 32;

@@ -61,7 +61,27 @@ struct EntryPoint {
     ExecutionModes modes;
 };
 
-enum class ScalarKind : uint8_t { boolean, int32, uint32, int64, uint64, float32, float64 };
+enum class ScalarKind : uint8_t {
+    boolean,
+    int8,
+    uint8,
+    int16,
+    uint16,
+    int32,
+    uint32,
+    int64,
+    uint64,
+    float16,
+    float32,
+    float64,
+};
+constexpr bool isFloating(ScalarKind kind) {
+    return kind >= ScalarKind::float16;
+}
+/// Of 64 bits.
+constexpr bool isWide(ScalarKind kind) {
+    return kind == ScalarKind::int64 || kind == ScalarKind::uint64 || kind == ScalarKind::float64;
+}
 
 /// One input or output of an entry point, or one member of an input or output block. Matrices and arrays take
 /// one location per column and element (two for three or four 64-bit components), one after the other.
@@ -80,6 +100,17 @@ struct InterfaceVariable {
     bool isArray = false;
     bool flat = false, noPerspective = false, centroid = false, sample = false;
     uint32_t locations = 1;  // taken up
+
+    uint32_t scalars() const { return components * columns * elements; }
+    /// Where scalar k stands, in the order of the value's scalars; one of 64 bits takes the next component, too.
+    struct Place {
+        uint32_t location = 0, component = 0;
+    };
+    Place placeOf(uint32_t k) const {
+        const uint32_t size = isWide(kind) ? 2 : 1, at = component + k % components * size;
+        return {location + k / components * locationsPerColumn() + at / 4, at % 4};
+    }
+    uint32_t locationsPerColumn() const { return component + components * (isWide(kind) ? 2 : 1) > 4 ? 2 : 1; }
 };
 
 enum class DescriptorKind : uint8_t {
@@ -142,8 +173,9 @@ struct Location {
 };
 
 /// The values on one side of an invocation. Inputs that are missing read as 0. Outputs hold exactly the
-/// locations and built-ins of which the invocation has written a component. 64-bit components take two: the
-/// value in the even one.
+/// locations and built-ins of which the invocation has written a component. 64-bit components take two: a float's
+/// value is in the even one, of an integer each has 32 bits. Integers of 8 and 16 bits come out as the 32 of their
+/// value.
 template <class Number>
 struct InterfaceValues {
     std::map<Location, Texel<Number>> locations;

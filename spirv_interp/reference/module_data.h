@@ -222,6 +222,9 @@ struct ModuleData {
     uint64_t byteSize(const Type& type, uint32_t matrixStride, bool rowMajor) const;
 };
 
+/// Of a scalar type.
+ScalarKind scalarKind(const Type& type);
+
 /// The stages of parsing, in order.
 void parseModule(ModuleData& module);                                    // parse.cpp
 void parseType(ModuleData& module, const Instruction& instruction);      // types.cpp

@@ -6,22 +6,6 @@
 namespace vernier::reference {
 namespace {
 
-ScalarKind scalarKind(const Type& type) {
-    if (type.width < 32) failUnsupported("an input or output of " + std::to_string(type.width) + " bits");
-    const bool wide = type.width == 64;
-    switch (type.kind) {
-        case TypeKind::boolean:
-            return ScalarKind::boolean;
-        case TypeKind::integer:
-            if (type.isSigned) return wide ? ScalarKind::int64 : ScalarKind::int32;
-            return wide ? ScalarKind::uint64 : ScalarKind::uint32;
-        case TypeKind::floating:
-            return wide ? ScalarKind::float64 : ScalarKind::float32;
-        default:
-            fail("type " + name(type.id) + " cannot be an input or output");
-    }
-}
-
 /// Walks one input or output variable down to scalars, vectors, matrices and arrays of them, and gives each
 /// its place.
 class InterfaceWalker {
@@ -93,9 +77,8 @@ class InterfaceWalker {
         place.components = static_cast<uint32_t>(type.scalars) / place.columns;
         const Type& scalar = module_.scalarType(type);
         place.kind = scalarKind(scalar);
-        const uint32_t size = scalar.width == 64 ? 2 : 1;  // components taken by one scalar
-        const uint32_t perColumn = place.component + place.components * size > 4 ? 2 : 1;
-        if (!place.isBuiltin && (place.component > 3 || (size == 1 && perColumn == 2)))
+        const uint32_t perColumn = place.locationsPerColumn();
+        if (!place.isBuiltin && (place.component > 3 || (!isWide(place.kind) && perColumn == 2)))
             fail("input or output at location " + std::to_string(place.location) + " runs over component 3");
         place.locations = place.isBuiltin ? 0 : place.elements * place.columns * perColumn;
         for (uint32_t k = 0; k < place.elements * static_cast<uint32_t>(type.scalars); ++k) {
@@ -105,10 +88,9 @@ class InterfaceWalker {
             cell.isBuiltin = place.isBuiltin;
             cell.builtin = place.builtin;
             cell.element = k;
-            const uint32_t column = k / place.components;
-            const uint32_t component = place.component + k % place.components * size;
-            cell.location = Location(place.location + column * perColumn + component / 4, place.index);
-            cell.component = component % 4;
+            const InterfaceVariable::Place at = place.placeOf(k);
+            cell.location = Location(at.location, place.index);
+            cell.component = at.component;
         }
         if (!place.isBuiltin) next_ = place.location + place.locations;
         entry_.variables.push_back(std::move(place));
@@ -182,6 +164,24 @@ DescriptorBinding reflectBinding(const ModuleData& module, const Variable& varia
 }
 
 }  // namespace
+
+ScalarKind scalarKind(const Type& type) {
+    const auto ofWidth = [&](ScalarKind w8, ScalarKind w16, ScalarKind w32, ScalarKind w64) {
+        return type.width == 8 ? w8 : type.width == 16 ? w16 : type.width == 64 ? w64 : w32;
+    };
+    switch (type.kind) {
+        case TypeKind::boolean:
+            return ScalarKind::boolean;
+        case TypeKind::integer:
+            return type.isSigned
+                       ? ofWidth(ScalarKind::int8, ScalarKind::int16, ScalarKind::int32, ScalarKind::int64)
+                       : ofWidth(ScalarKind::uint8, ScalarKind::uint16, ScalarKind::uint32, ScalarKind::uint64);
+        case TypeKind::floating:
+            return ofWidth(ScalarKind::float16, ScalarKind::float16, ScalarKind::float32, ScalarKind::float64);
+        default:
+            fail("type " + name(type.id) + " cannot be an input or output");
+    }
+}
 
 void reflect(ModuleData& module) {
     for (EntryPointData& entry : module.entryPointData) reflectEntryPoint(module, entry);

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <fstream>
 
+#include "spirv_interp/reference/number_ops.h"
+
 namespace vernier::tool {
 namespace {
 
@@ -31,6 +33,12 @@ std::vector<std::string> split(const std::string& text) {
     return parts;
 }
 
+uint64_t parseInteger(const std::string& text) {
+    const bool negative = text.starts_with('-');
+    return negative ? static_cast<uint64_t>(std::strtoll(text.c_str(), nullptr, 0))
+                    : std::strtoull(text.c_str(), nullptr, 0);
+}
+
 template <class T>
 void append(std::vector<std::byte>& bytes, T value) {
     const size_t at = bytes.size();
@@ -54,12 +62,21 @@ Result<std::vector<std::byte>> parseBytes(const std::string& text) {
             append(bytes, std::strtof(item.c_str(), nullptr));
         } else if (kind == "d") {
             append(bytes, std::strtod(item.c_str(), nullptr));
+        } else if (kind == "h") {
+            append(bytes, static_cast<uint16_t>(reference::doubleToHalf(std::strtod(item.c_str(), nullptr))));
         } else if (kind == "i" || kind == "u") {
-            append(bytes, static_cast<uint32_t>(std::strtoll(item.c_str(), nullptr, 0)));
+            append(bytes, static_cast<uint32_t>(parseInteger(item)));
+        } else if (kind == "b") {
+            append(bytes, static_cast<uint8_t>(parseInteger(item)));
+        } else if (kind == "s") {
+            append(bytes, static_cast<uint16_t>(parseInteger(item)));
+        } else if (kind == "l") {
+            append(bytes, parseInteger(item));
         } else {
-            return invalidArgument("bytes are f:, d:, i:, u: or zero:, not \"" + kind + ":\"");
+            return invalidArgument("bytes are h:, f:, d:, b:, s:, i:, u:, l: or zero:, not \"" + kind + ":\"");
         }
     }
+    bytes.resize((bytes.size() + 3) / 4 * 4);
     return bytes;
 }
 
@@ -70,15 +87,16 @@ reference::Scalar<Number> scalarOf(reference::ScalarKind kind, const std::string
     switch (kind) {
         case ScalarKind::boolean:
             return Scalar::ofBits(text == "true" || (text != "false" && std::strtol(text.c_str(), nullptr, 0) != 0));
+        case ScalarKind::float16:
         case ScalarKind::float32:
             return Scalar::ofNumber(Number(std::strtof(text.c_str(), nullptr)));
         case ScalarKind::float64:
             return Scalar::ofNumber(static_cast<Number>(std::strtod(text.c_str(), nullptr)));
         case ScalarKind::int64:
         case ScalarKind::uint64:
-            return Scalar::ofBits(static_cast<uint64_t>(std::strtoll(text.c_str(), nullptr, 0)));
+            return Scalar::ofBits(parseInteger(text));
         default:
-            return Scalar::ofBits(static_cast<uint32_t>(std::strtoll(text.c_str(), nullptr, 0)));
+            return Scalar::ofBits(static_cast<uint32_t>(parseInteger(text)));
     }
 }
 
@@ -155,14 +173,18 @@ Result<reference::InterfaceValues<Number>> interfaceValues(const Invocation& inv
             if (isNamed(variable, name)) found = &variable;
         }
         if (found == nullptr) return invalidArgument("no input \"" + name + "\"; there are:" + known);
-        for (uint32_t k = 0; k < items.size(); ++k) {
+        for (uint32_t k = 0; k < items.size() && k < found->scalars(); ++k) {
             const auto scalar = scalarOf<Number>(found->kind, items[k]);
             if (found->isBuiltin) {
                 values.builtins[found->builtin].push_back(scalar);
             } else {
-                const uint32_t location = found->location + k / found->components;
-                const uint32_t component = found->component + k % found->components;
-                if (component < 4) values.locations[{location, found->index}][component] = scalar;
+                const auto at = found->placeOf(k);
+                auto& texel = values.locations[{at.location, found->index}];
+                texel[at.component] = scalar;
+                if (isWide(found->kind) && !isFloating(found->kind)) {
+                    texel[at.component].bits &= 0xFFFFFFFFu;
+                    texel[at.component + 1].bits = scalar.bits >> 32;
+                }
             }
         }
     }

@@ -18,8 +18,9 @@ struct Invocation {
     std::array<uint32_t, 3> groups{1, 1, 1};
 };
 
-/// One setting: `name=1,2,3`, `buffer 0.1=f:1,2,3`, `push=f:1,2`, `groups=4,1,1`. Bytes are f: floats, i: or u: 32-bit
-/// integers, d: doubles, zero:N. Lines of a description file are settings; `#` begins a comment.
+/// One setting: `name=1,2,3`, `buffer 0.1=f:1,2,3`, `push=f:1,2`, `groups=4,1,1`. Bytes are h:, f: or d: floats of 16,
+/// 32 or 64 bits, b:, s:, i: (or u:) or l: integers of 8 to 64 bits, zero:N. Lines of a description file are settings;
+/// `#` begins a comment.
 Status applySetting(const std::string& setting, Invocation& invocation);
 Status readDescription(const std::string& path, Invocation& invocation);
 

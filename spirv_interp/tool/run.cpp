@@ -1,10 +1,14 @@
 // run: an invocation, or the work-groups of a dispatch, on the batch engine and on the reference interpreter.
+#include <algorithm>
 #include <bit>
 #include <cstdio>
-#include <cstring>
 #include <memory>
+#include <tuple>
 
+#include "spirv_interp/reference/module_data.h"
+#include "spirv_interp/reference/number_ops.h"
 #include "spirv_interp/tool/reference_run.h"
+#include "spirv_interp/tool/scalar_text.h"
 #include "spirv_interp/tool/tool.h"
 
 namespace vernier::tool {
@@ -25,26 +29,51 @@ constexpr std::pair<ir::Builtin, spv::BuiltIn> kBuiltins[] = {
     {ir::Builtin::primitiveId, spv::BuiltInPrimitiveId},   {ir::Builtin::fragDepth, spv::BuiltInFragDepth},
 };
 
-std::string scalarText(ScalarKind kind, uint32_t word) {
-    char text[40];
-    if (kind == ScalarKind::float32) {
-        std::snprintf(text, sizeof text, "%.9g", static_cast<double>(std::bit_cast<float>(word)));
-    } else if (kind == ScalarKind::boolean) {
-        return word != 0 ? "true" : "false";
-    } else if (kind == ScalarKind::uint32) {
-        std::snprintf(text, sizeof text, "%u", word);
-    } else {
-        std::snprintf(text, sizeof text, "%d", static_cast<int32_t>(word));
-    }
-    return text;
-}
-
-/// The words of every output, by the place that the reference interpreter gives it.
-struct Outputs {
-    std::map<std::pair<uint32_t, uint32_t>, uint32_t> locations;  // location, component
+/// The words of inputs or outputs, by place; a scalar of 64 bits has two, one of less is held in one. Halves are
+/// floats.
+struct Words {
+    std::map<std::tuple<uint32_t, uint32_t, uint32_t>, uint32_t> locations;  // location, index, component
     std::map<std::pair<spv::BuiltIn, uint32_t>, uint32_t> builtins;
+};
+
+struct Outputs {
+    Words words;
     bool discarded = false;
 };
+
+template <class Number>
+Words wordsOf(const reference::Module& module, size_t entry, bool output,
+              const reference::InterfaceValues<Number>& values) {
+    Words words;
+    for (const InterfaceVariable& variable : module.interfaceVariables(entry)) {
+        if (variable.output != output) continue;
+        const auto word = [&](const reference::Scalar<Number>& s) {
+            return isFloating(variable.kind) ? std::bit_cast<uint32_t>(static_cast<float>(s.number))
+                                             : static_cast<uint32_t>(s.bits);
+        };
+        for (uint32_t k = 0; k < variable.scalars(); ++k) {
+            if (variable.isBuiltin) {
+                const auto found = values.builtins.find(variable.builtin);
+                if (found == values.builtins.end() || k >= found->second.size()) break;
+                words.builtins[{variable.builtin, k}] = word(found->second[k]);
+                continue;
+            }
+            const auto at = variable.placeOf(k);
+            const auto found = values.locations.find({at.location, variable.index});
+            if (found == values.locations.end()) continue;
+            const auto& scalar = found->second[at.component];
+            uint32_t& low = words.locations[{at.location, variable.index, at.component}] = word(scalar);
+            if (!isWide(variable.kind)) continue;
+            uint32_t& high = words.locations[{at.location, variable.index, at.component + 1}];
+            high = word(found->second[at.component + 1]);
+            if (variable.kind != ScalarKind::float64) continue;
+            const auto bits = std::bit_cast<uint64_t>(static_cast<double>(scalar.number));
+            low = static_cast<uint32_t>(bits);
+            high = static_cast<uint32_t>(bits >> 32);
+        }
+    }
+    return words;
+}
 
 void print(const char* engine, const reference::Module& module, size_t entry, const Outputs& outputs) {
     std::printf("%s:%s\n", engine, outputs.discarded ? " discarded" : "");
@@ -52,67 +81,47 @@ void print(const char* engine, const reference::Module& module, size_t entry, co
     for (const InterfaceVariable& variable : module.interfaceVariables(entry)) {
         if (!variable.output) continue;
         std::string values;
-        for (uint32_t k = 0; k < variable.components * variable.columns * variable.elements; ++k) {
-            uint32_t word = 0;
+        for (uint32_t k = 0; k < variable.scalars(); ++k) {
+            uint64_t bits = 0;
             if (variable.isBuiltin) {
-                const auto found = outputs.builtins.find({variable.builtin, k});
-                if (found == outputs.builtins.end()) continue;
-                word = found->second;
+                const auto found = outputs.words.builtins.find({variable.builtin, k});
+                if (found == outputs.words.builtins.end()) continue;
+                bits = found->second;
             } else {
-                const auto found = outputs.locations.find(
-                    {variable.location + k / variable.components, variable.component + k % variable.components});
-                if (found == outputs.locations.end()) continue;
-                word = found->second;
+                const auto at = variable.placeOf(k);
+                const auto found = outputs.words.locations.find({at.location, variable.index, at.component});
+                if (found == outputs.words.locations.end()) continue;
+                bits = found->second;
+                const auto high = outputs.words.locations.find({at.location, variable.index, at.component + 1});
+                if (isWide(variable.kind) && high != outputs.words.locations.end())
+                    bits |= uint64_t{high->second} << 32;
             }
-            values += " " + scalarText(variable.kind, word);
+            if (variable.kind == ScalarKind::float16) {
+                bits = reference::float32ToHalf(std::bit_cast<float>(static_cast<uint32_t>(bits)));
+            }
+            values += " " + scalarText(variable.kind, bits);
         }
         if (!values.empty()) std::printf("  %s =%s\n", variableName(variable).c_str(), values.c_str());
     }
 }
 
-void printBuffers(const Invocation& before, const Invocation& after) {
-    for (const auto& [place, bytes] : after.buffers) {
-        const auto& old = before.buffers.at(place);
-        if (bytes == old) continue;
-        std::printf("  buffer %u.%u:\n", place.first, place.second);
-        for (size_t at = 0; at + 4 <= bytes.size(); at += 4) {
-            uint32_t word = 0;
-            std::memcpy(&word, bytes.data() + at, 4);
-            if (std::memcmp(old.data() + at, bytes.data() + at, 4) == 0) continue;
-            std::printf("    [%zu] %.9g  %d  0x%08x\n", at / 4, static_cast<double>(std::bit_cast<float>(word)),
-                        static_cast<int32_t>(word), word);
-        }
-    }
-}
-
-/// Wide scalars have a place of 64 bits and are left out: outputs of the graphics stages that this prints are 32 bits.
+/// In double with floats rounded where the module has doubles: floats do not hold them.
+template <class Number>
 Result<Outputs> onReference(const ModuleInput& input, const reference::Module& module, size_t entry,
                             Invocation& invocation) {
     reference::Options options;
     options.stepwise = true;
-    const auto outcome = runReference<float>(input, module, invocation, options);
+    options.roundToFloat = true;
+    const auto outcome = runReference<Number>(input, module, invocation, options);
     if (!outcome) return outcome.error();
-    Outputs outputs;
-    outputs.discarded = outcome->discarded;
-    for (const InterfaceVariable& variable : module.interfaceVariables(entry)) {
-        if (!variable.output) continue;
-        const auto word = [&](const reference::Scalar<float>& s) {
-            return variable.kind == ScalarKind::float32 ? std::bit_cast<uint32_t>(s.number)
-                                                        : static_cast<uint32_t>(s.bits);
-        };
-        for (const auto& [builtin, scalars] : outcome->outputs.builtins) {
-            if (!variable.isBuiltin || builtin != variable.builtin) continue;
-            for (uint32_t k = 0; k < scalars.size(); ++k) outputs.builtins[{builtin, k}] = word(scalars[k]);
-        }
-        for (const auto& [location, texel] : outcome->outputs.locations) {
-            const uint32_t last = variable.location + variable.locations;
-            if (variable.isBuiltin || location.location < variable.location || location.location >= last) continue;
-            for (uint32_t c = variable.component; c < variable.component + variable.components && c < 4; ++c) {
-                outputs.locations[{location.location, c}] = word(texel[c]);
-            }
-        }
-    }
-    return outputs;
+    return Outputs{wordsOf(module, entry, true, outcome->outputs), outcome->discarded};
+}
+
+bool hasDoubles(const reference::Module& module) {
+    const auto& types = module.data().types;
+    return std::any_of(types.begin(), types.end(), [](const reference::Type& type) {
+        return type.kind == reference::TypeKind::floating && type.width == 64;
+    });
 }
 
 /// The descriptors of a program over the buffers of an invocation.
@@ -161,21 +170,17 @@ struct Bindings {
     }
 };
 
-uint32_t inputWord(const ir::InterfaceSlot& slot, const reference::InterfaceValues<float>& values) {
-    const auto word = [&](const reference::Scalar<float>& s) {
-        if (slot.type == ir::Type::f32) return std::bit_cast<uint32_t>(s.number);
-        return slot.type == ir::Type::b1 ? (s.bits != 0 ? ~0u : 0u) : static_cast<uint32_t>(s.bits);
-    };
+uint32_t inputWord(const ir::InterfaceSlot& slot, const Words& words) {
+    uint32_t word = 0;
     if (slot.builtin == ir::Builtin::user) {
-        const auto found = values.locations.find({slot.location, slot.index});
-        return found == values.locations.end() ? 0 : word(found->second[slot.component]);
+        const auto found = words.locations.find({slot.location, slot.index, slot.component});
+        if (found != words.locations.end()) word = found->second;
     }
     for (const auto& [ours, theirs] : kBuiltins) {
-        const auto found = values.builtins.find(theirs);
-        if (ours != slot.builtin || found == values.builtins.end()) continue;
-        return slot.component < found->second.size() ? word(found->second[slot.component]) : 0;
+        const auto found = words.builtins.find({theirs, slot.component});
+        if (ours == slot.builtin && found != words.builtins.end()) word = found->second;
     }
-    return 0;
+    return slot.type != ir::Type::b1 ? word : word != 0 ? ~0u : 0u;
 }
 
 Result<Outputs> onBatch(const ModuleInput& input, const reference::Module& module, size_t entry, Invocation& invocation,
@@ -194,14 +199,15 @@ Result<Outputs> onBatch(const ModuleInput& input, const reference::Module& modul
         if (!context.run(0, static_cast<uint32_t>(grid.size()))) return lost;
         return outputs;
     }
-    const auto values = interfaceValues<float>(invocation, module, entry);
+    const auto values = interfaceValues<double>(invocation, module, entry);
     if (!values) return values.error();
+    const Words inputs = wordsOf(module, entry, false, *values);
     BatchContext context(*compiled);
     context.beginDraw(bindings.get());
     for (uint32_t slot = 0; slot < program->inputs.size(); ++slot) {
         auto* row = reinterpret_cast<uint32_t*>(context.input(slot));
         for (uint32_t lane = 0; row != nullptr && lane < 4; ++lane)
-            row[lane] = inputWord(program->inputs[slot], *values);
+            row[lane] = inputWord(program->inputs[slot], inputs);
     }
     // A whole quad of the same invocation: all derivatives are 0, as on the reference interpreter.
     std::vector<uint32_t> exec((*compiled)->lanes()), store((*compiled)->lanes());
@@ -213,9 +219,11 @@ Result<Outputs> onBatch(const ModuleInput& input, const reference::Module& modul
         const ir::InterfaceSlot& output = program->outputs[slot];
         const auto* row = reinterpret_cast<const uint32_t*>(context.output(slot));
         if (row == nullptr) continue;
-        if (output.builtin == ir::Builtin::user) outputs.locations[{output.location, output.component}] = row[0];
+        if (output.builtin == ir::Builtin::user) {
+            outputs.words.locations[{output.location, output.index, output.component}] = row[0];
+        }
         for (const auto& [ours, theirs] : kBuiltins)
-            if (ours == output.builtin) outputs.builtins[{theirs, output.component}] = row[0];
+            if (ours == output.builtin) outputs.words.builtins[{theirs, output.component}] = row[0];
     }
     return outputs;
 }
@@ -230,11 +238,12 @@ Result<int> run(const ModuleInput& input, const Invocation& invocation, const Ru
         const char* engine = batch ? "batch" : "reference";
         if (options.engine != "both" && options.engine != engine) continue;
         Invocation own = invocation;
-        const auto outputs =
-            batch ? onBatch(input, *module, entry, own, options.tier) : onReference(input, *module, entry, own);
+        const auto outputs = batch                 ? onBatch(input, *module, entry, own, options.tier)
+                             : hasDoubles(*module) ? onReference<double>(input, *module, entry, own)
+                                                   : onReference<float>(input, *module, entry, own);
         if (!outputs) return outputs.error();
         print(engine, *module, entry, *outputs);
-        printBuffers(invocation, own);
+        printChanges(*module, invocation, own);
     }
     return 0;
 }

@@ -243,28 +243,24 @@ class ReferenceRun final : public reference::Resources<Number> {
         reference::InterfaceValues<Number> inputs;
         for (const reference::InterfaceVariable& v : variables_) {
             if (v.output) continue;
-            const bool wide = v.kind == reference::ScalarKind::int64 || v.kind == reference::ScalarKind::uint64 ||
-                              v.kind == reference::ScalarKind::float64;
-            const bool floating = v.kind == reference::ScalarKind::float32 || v.kind == reference::ScalarKind::float64;
+            const bool wide = isWide(v.kind), floating = isFloating(v.kind);
             ir::InterfaceSlot slot;
             slot.type = floating && !wide ? ir::Type::f32 : ir::Type::i32;
-            const uint32_t scalars = v.components * v.columns * v.elements;
             if (v.isBuiltin) {
                 const auto builtin = builtinOf(v.builtin, false);
                 if (!builtin) continue;
                 slot.builtin = *builtin;
                 auto& values = inputs.builtins[v.builtin];
-                for (uint32_t k = 0; k < scalars; ++k) {
+                for (uint32_t k = 0; k < v.scalars(); ++k) {
                     slot.component = static_cast<uint8_t>(k);
                     values.push_back(scalarOf(subject_.world.input(invocation, slot), floating));
                 }
                 continue;
             }
-            const uint32_t size = wide ? 2 : 1, perColumn = v.component + v.components * size > 4 ? 2 : 1;
-            for (uint32_t k = 0; k < scalars; ++k) {
-                const uint32_t at = v.component + k % v.components * size;
-                slot.location = static_cast<uint16_t>(v.location + k / v.components * perColumn + at / 4);
-                slot.component = static_cast<uint8_t>(at % 4);
+            for (uint32_t k = 0; k < v.scalars(); ++k) {
+                const auto at = v.placeOf(k);
+                slot.location = static_cast<uint16_t>(at.location);
+                slot.component = static_cast<uint8_t>(at.component);
                 auto& texel = inputs.locations[reference::Location(slot.location, v.index)];
                 const uint32_t low = subject_.world.input(invocation, slot);
                 texel[slot.component] = scalarOf(low, floating);
@@ -273,7 +269,7 @@ class ReferenceRun final : public reference::Resources<Number> {
                 const uint32_t high = subject_.world.input(invocation, slot);
                 texel[slot.component] = Scalar::ofBits(high);
                 if (floating)
-                    texel[at % 4] =
+                    texel[at.component] =
                         Scalar::ofNumber(static_cast<Number>(std::bit_cast<double>(uint64_t{high} << 32 | low)));
             }
         }
@@ -324,10 +320,32 @@ class ReferenceRun final : public reference::Resources<Number> {
                 const auto found = outcome.outputs.locations.find(reference::Location(slot.location, slot.index));
                 if (found != outcome.outputs.locations.end()) scalar = &found->second[slot.component];
             }
+            if (const auto half = halfOfDouble(slot)) {
+                const auto found = outcome.outputs.locations.find(reference::Location(half->location, slot.index));
+                if (found == outcome.outputs.locations.end()) continue;
+                const auto bits = std::bit_cast<uint64_t>(static_cast<double>(found->second[half->component].number));
+                ending_.outputs[s][invocation] =
+                    static_cast<uint32_t>(half->component == slot.component ? bits : bits >> 32);
+                ending_.written[s][invocation] = true;
+                continue;
+            }
             if (scalar == nullptr) continue;
             ending_.outputs[s][invocation] = bitsOf(*scalar, slot.type == ir::Type::f32);
             ending_.written[s][invocation] = true;
         }
+    }
+
+    /// Where the double stands of which an output slot holds the lower or the upper half.
+    std::optional<reference::InterfaceVariable::Place> halfOfDouble(const ir::InterfaceSlot& slot) const {
+        if (slot.builtin != ir::Builtin::user) return std::nullopt;
+        for (const reference::InterfaceVariable& v : variables_) {
+            if (!v.output || v.isBuiltin || v.index != slot.index || v.kind != reference::ScalarKind::float64) continue;
+            for (uint32_t k = 0; k < v.scalars(); ++k) {
+                const auto at = v.placeOf(k);
+                if (at.location == slot.location && at.component == (slot.component & ~1u)) return at;
+            }
+        }
+        return std::nullopt;
     }
 
     static Scalar scalarOf(uint32_t bits, bool floating) {
