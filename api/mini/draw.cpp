@@ -55,7 +55,7 @@ GraphicsState graphicsStateOf(const VnContext_T& context) {
     state.cullMode = raster.cullMode;
     state.frontFace = raster.frontFace;
     state.depthClampEnable = raster.depthClamp != 0;
-    state.depthClipEnable = !state.depthClampEnable;
+    state.depthClipEnable = raster.depthClip == 0 ? !state.depthClampEnable : raster.depthClip > 0;
     state.depthBiasEnable = raster.depthBias != 0;
     state.provokingVertexLast = raster.provokingVertexLast != 0;
     state.samples = context.key.samples;

@@ -33,6 +33,8 @@ VnResult checkRaster(VnDevice device, const char* function, const VnRasterStateD
     if (VnResult r = checkFinite(device, function, "depthBiasConstant", desc.depthBiasConstant)) return r;
     if (VnResult r = checkFinite(device, function, "depthBiasSlope", desc.depthBiasSlope)) return r;
     if (VnResult r = checkFinite(device, function, "depthBiasClamp", desc.depthBiasClamp)) return r;
+    if (desc.depthClip < -1 || desc.depthClip > 1)
+        return invalid(device, function, "depthClip is " + std::to_string(desc.depthClip));
     if (!(desc.lineWidth >= 0) || std::isinf(desc.lineWidth))
         return invalid(device, function, "lineWidth is " + std::to_string(desc.lineWidth));
     if (VnResult r =

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "api/vulkan/chain.h"
 #include "api/vulkan/entry_points.h"
 #include "api/vulkan/enumerate.h"
 #include "api/vulkan/format_properties.h"
@@ -78,6 +79,11 @@ VkFormatProperties formatProperties(VkFormat format) {
     return {info->linearTilingFeatures, info->optimalTilingFeatures, info->bufferFeatures};
 }
 
+VkImageUsageFlags usageOfAspects(const void* chain, VkImageUsageFlags usage) {
+    const auto* stencil = findInChain<VkImageStencilUsageCreateInfo>(chain);
+    return stencil != nullptr ? usage | stencil->stencilUsage : usage;
+}
+
 VkResult imageFormatProperties(const PhysicalDevice& device, VkFormat format, VkImageType type, VkImageTiling tiling,
                                VkImageUsageFlags usage, VkImageCreateFlags flags, VkImageFormatProperties& properties) {
     properties = {};
@@ -127,8 +133,9 @@ VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties2(
     VkPhysicalDevice physicalDevice, const VkPhysicalDeviceImageFormatInfo2* pImageFormatInfo,
     VkImageFormatProperties2* pImageFormatProperties) {
     return imageFormatProperties(*object(physicalDevice), pImageFormatInfo->format, pImageFormatInfo->type,
-                                 pImageFormatInfo->tiling, pImageFormatInfo->usage, pImageFormatInfo->flags,
-                                 pImageFormatProperties->imageFormatProperties);
+                                 pImageFormatInfo->tiling,
+                                 usageOfAspects(pImageFormatInfo->pNext, pImageFormatInfo->usage),
+                                 pImageFormatInfo->flags, pImageFormatProperties->imageFormatProperties);
 }
 
 // Sparse resources are not supported: nothing to list.

@@ -11,6 +11,9 @@ namespace vernier::vulkan {
 /// All zero for a format the device does not know.
 VkFormatProperties formatProperties(VkFormat format);
 
+/// The usages of all aspects: `usage` with what VkImageStencilUsageCreateInfo in the chain says of stencil.
+VkImageUsageFlags usageOfAspects(const void* chain, VkImageUsageFlags usage);
+
 /// vkGetPhysicalDeviceImageFormatProperties.
 VkResult imageFormatProperties(const PhysicalDevice& device, VkFormat format, VkImageType type, VkImageTiling tiling,
                                VkImageUsageFlags usage, VkImageCreateFlags flags, VkImageFormatProperties& properties);

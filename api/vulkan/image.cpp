@@ -15,12 +15,13 @@ namespace {
 /// The creation parameters against what vkGetPhysicalDeviceImageFormatProperties promises.
 Status checkCreateInfo(const PhysicalDevice& device, const VkImageCreateInfo& info) {
     VkImageFormatProperties limits{};
+    const VkImageUsageFlags usage = usageOfAspects(info.pNext, info.usage);
     const VkResult supported =
-        imageFormatProperties(device, info.format, info.imageType, info.tiling, info.usage, info.flags, limits);
+        imageFormatProperties(device, info.format, info.imageType, info.tiling, usage, info.flags, limits);
     if (supported != VK_SUCCESS) {
         return unsupported("images of " + nameOf(info.format) + " with imageType " + std::to_string(info.imageType) +
-                           ", tiling " + std::to_string(info.tiling) + ", usage " + std::to_string(info.usage) +
-                           ", flags " + std::to_string(info.flags) + " are not supported");
+                           ", tiling " + std::to_string(info.tiling) + ", usage " + std::to_string(usage) + ", flags " +
+                           std::to_string(info.flags) + " are not supported");
     }
     const auto bad = [](const char* field, uint64_t value, uint64_t limit) {
         return invalidArgument(std::string(field) + " is " + std::to_string(value) + ", allowed are 1 to " +
@@ -60,9 +61,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateImage(VkDevice device, const VkImageCreateI
         info.arrayLayers = pCreateInfo->arrayLayers;
         info.samples = static_cast<uint32_t>(pCreateInfo->samples);
         info.tiling = pCreateInfo->tiling;
-        info.usage = pCreateInfo->usage;
-        if (const auto* stencil = findInChain<VkImageStencilUsageCreateInfo>(pCreateInfo->pNext))
-            info.usage |= stencil->stencilUsage;
+        info.usage = usageOfAspects(pCreateInfo->pNext, pCreateInfo->usage);
         info.flags = pCreateInfo->flags;
         Result<Image> image = Image::create(info);
         if (!image) return owner.report("vkCreateImage", image.error());

@@ -83,6 +83,8 @@ Result<VnAttachment> SceneRun::attachment(const SceneAttachment& scene) {
     }
     attachment.loadOp = attachment.stencilLoadOp = scene.loadOp;
     attachment.clear = scene.clear;
+    attachment.depthResolve = scene.depthResolve;
+    attachment.stencilResolve = scene.stencilResolve;
     return attachment;
 }
 

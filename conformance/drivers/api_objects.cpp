@@ -135,7 +135,7 @@ Status ApiObjects::createSampler(const SceneSampler& scene) {
     desc.borderColor = scene.borderColor;
     std::copy(scene.customBorderColor.begin(), scene.customBorderColor.end(), desc.customBorderColor.float32);
     desc.reduction = scene.reduction;
-    desc.maxAnisotropy = scene.maxAnisotropy;
+    desc.unnormalized = scene.unnormalized;
     VnSampler sampler{};
     VERNIER_TRY_API(vnCreateSampler(device_, &desc, &sampler));
     samplers_.push_back(sampler);
@@ -206,6 +206,7 @@ Result<ApiPipeline> ApiObjects::createPipeline(const ScenePipeline& scene) {
     raster.frontFace = scene.frontFace;
     raster.lineWidth = scene.lineWidth;
     raster.depthClamp = scene.depthClamp;
+    raster.depthClip = !scene.depthClip ? 0 : *scene.depthClip ? 1 : -1;
     raster.depthBias = scene.depthBias;
     raster.depthBiasConstant = scene.depthBiasConstant;
     raster.depthBiasSlope = scene.depthBiasSlope;

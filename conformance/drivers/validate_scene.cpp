@@ -140,6 +140,7 @@ Status validateScene(const Scene& scene) {
                 }
             };
             layers(pass->depthStencil);
+            check.index("ScenePass::depthStencil resolveImage", pass->depthStencil.resolveImage, images, true);
             for (const SceneAttachment& color : pass->colors) {
                 layers(color);
                 check.index("ScenePass::colors image", color.image, images);
@@ -161,8 +162,8 @@ Status validateScene(const Scene& scene) {
     for (const uint32_t output : scene.outputs) {
         check.index("outputs", output, images);
         if (output < images && sceneFormat(scene.images[output].format) != nullptr &&
-            sceneFormat(scene.images[output].format)->isCompressed()) {
-            check.fail("output image '" + scene.images[output].name + "' is compressed");
+            sceneFormat(scene.images[output].format)->componentCount == 0) {
+            check.fail("output image '" + scene.images[output].name + "' has a format without components of its own");
         }
         if (output < images && scene.images[output].samples != VK_SAMPLE_COUNT_1_BIT) {
             check.fail("output image '" + scene.images[output].name + "' is multisampled");

@@ -72,7 +72,7 @@ Error vulkanError(std::string_view call, VkResult result) {
 
 Status VulkanContext::create(const VulkanOptions& options) {
     VERNIER_TRY(createInstance(options.validate));
-    return createDevice(options.deviceIndex);
+    return createDevice(options);
 }
 
 Status VulkanContext::createInstance(bool validate) {
@@ -127,7 +127,8 @@ VkBool32 VulkanContext::onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebu
     return VK_FALSE;
 }
 
-Status VulkanContext::createDevice(uint32_t deviceIndex) {
+Status VulkanContext::createDevice(const VulkanOptions& options) {
+    const uint32_t deviceIndex = options.deviceIndex;
     uint32_t count = 0;
     VERNIER_TRY_VK(vkEnumeratePhysicalDevices(instance_, &count, nullptr));
     std::vector<VkPhysicalDevice> devices(count);
@@ -157,8 +158,16 @@ Status VulkanContext::createDevice(uint32_t deviceIndex) {
         physicalDevice_, instanceFunction<PFN_vkGetPhysicalDeviceFeatures2KHR>("vkGetPhysicalDeviceFeatures2KHR")));
     negativeViewports_ = negativeViewports_ || extensions_.maintenance1;
 
-    // Robust access costs time that the other runs of a scene do not pay.
-    features_.robustBufferAccess = VK_FALSE;
+    if (!options.robustBufferAccess) features_.robustBufferAccess = VK_FALSE;
+    const auto getProperties =
+        instanceFunction<PFN_vkGetPhysicalDeviceProperties2KHR>("vkGetPhysicalDeviceProperties2KHR");
+    if (extensions_.depthStencilResolve && getProperties != nullptr) {
+        depthStencilResolve_.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DEPTH_STENCIL_RESOLVE_PROPERTIES;
+        VkPhysicalDeviceProperties2 properties{};
+        properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+        properties.pNext = &depthStencilResolve_;
+        getProperties(physicalDevice_, &properties);
+    }
     const float priority = 1;
     VkDeviceQueueCreateInfo queueInfo{};
     queueInfo.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;

@@ -8,6 +8,7 @@
 
 #include <vulkan/vulkan.h>
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -18,6 +19,9 @@ namespace vernier::conformance {
 struct VulkanOptions {
     bool validate = false;     // load VK_LAYER_KHRONOS_validation; any error it reports fails the run
     uint32_t deviceIndex = 0;  // among the physical devices the loader offers
+    // Switches the feature on, where it is there: for scenes that reach outside of buffers. It costs time that scenes
+    // that do not are measured without.
+    bool robustBufferAccess = false;
 };
 
 /// Runs its functions in reverse order of addition.
@@ -73,6 +77,9 @@ class VulkanContext {
     VkSampleCountFlags sampleCounts(VkFormat format, VkImageUsageFlags usage) const;
     /// Whether the queue runs compute work.
     bool hasCompute() const { return compute_; }
+    /// Of the instance and the device together.
+    uint32_t apiVersion() const { return std::min(instanceVersion_, properties_.apiVersion); }
+    const VkPhysicalDeviceDepthStencilResolveProperties& depthStencilResolve() const { return depthStencilResolve_; }
     /// Whether viewports may have negative heights.
     bool hasNegativeViewports() const { return negativeViewports_; }
     const VulkanExtensions& extensions() const { return extensions_; }
@@ -89,7 +96,7 @@ class VulkanContext {
         return reinterpret_cast<Function>(vkGetInstanceProcAddr(instance_, name));
     }
     Status createInstance(bool validate);
-    Status createDevice(uint32_t deviceIndex);
+    Status createDevice(const VulkanOptions& options);
     static VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                                     VkDebugUtilsMessageTypeFlagsEXT types,
                                                     const VkDebugUtilsMessengerCallbackDataEXT* data, void* context);
@@ -102,6 +109,7 @@ class VulkanContext {
     VkPhysicalDeviceProperties properties_{};
     VkPhysicalDeviceFeatures features_{};
     VkPhysicalDeviceMemoryProperties memory_{};
+    VkPhysicalDeviceDepthStencilResolveProperties depthStencilResolve_{};
     bool compute_ = false, negativeViewports_ = false;
     VulkanExtensions extensions_;
     VkDevice device_ = VK_NULL_HANDLE;

@@ -165,6 +165,9 @@ void SceneRun::recordPass(const ScenePass& scene, const VulkanPass& pass) {
     if (depth.image != kNone) {
         resources_.use(frame_, depth.image, ImageUse::depthAttachment, depth.mipLevel, 1, depth.layer,
                        depth.layerCount);
+        if (depth.resolveImage != kNone) {
+            resources_.use(frame_, depth.resolveImage, ImageUse::depthAttachment, 0, 1, 0, depth.layerCount);
+        }
     }
     VkRenderPassBeginInfo begin{};
     begin.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
@@ -330,6 +333,9 @@ Result<std::vector<RenderedImage>> VulkanDriver::render(const Scene& scene, Timi
     VERNIER_TRY(validateScene(scene));
     if (hasNegativeViewport(scene) && !context_.hasNegativeViewports()) {
         return unsupported("viewports of negative height: the device has neither Vulkan 1.1 nor VK_KHR_maintenance1");
+    }
+    if (scene.robustBufferAccess && context_.features().robustBufferAccess == VK_FALSE) {
+        return unsupported("robustBufferAccess is off");
     }
     SceneRun run(context_, scene);
     VERNIER_TRY(run.prepare());

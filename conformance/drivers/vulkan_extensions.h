@@ -10,23 +10,35 @@
 namespace vernier::conformance {
 
 // X(name of the member, extension, structure of its features, type of that structure)
-#define VERNIER_FEATURE_EXTENSIONS(X)                                                                         \
-    X(customBorders, VK_EXT_CUSTOM_BORDER_COLOR_EXTENSION_NAME, VkPhysicalDeviceCustomBorderColorFeaturesEXT, \
-      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_CUSTOM_BORDER_COLOR_FEATURES_EXT)                                     \
-    X(lines, VK_EXT_LINE_RASTERIZATION_EXTENSION_NAME, VkPhysicalDeviceLineRasterizationFeaturesEXT,          \
-      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_LINE_RASTERIZATION_FEATURES_EXT)                                      \
-    X(provokingVertex, VK_EXT_PROVOKING_VERTEX_EXTENSION_NAME, VkPhysicalDeviceProvokingVertexFeaturesEXT,    \
-      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROVOKING_VERTEX_FEATURES_EXT)                                        \
-    X(clipControl, VK_EXT_DEPTH_CLIP_CONTROL_EXTENSION_NAME, VkPhysicalDeviceDepthClipControlFeaturesEXT,     \
-      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DEPTH_CLIP_CONTROL_FEATURES_EXT)                                      \
-    X(multiview, VK_KHR_MULTIVIEW_EXTENSION_NAME, VkPhysicalDeviceMultiviewFeatures,                          \
+#define VERNIER_FEATURE_EXTENSIONS(X)                                                                            \
+    X(customBorders, VK_EXT_CUSTOM_BORDER_COLOR_EXTENSION_NAME, VkPhysicalDeviceCustomBorderColorFeaturesEXT,    \
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_CUSTOM_BORDER_COLOR_FEATURES_EXT)                                        \
+    X(lines, VK_EXT_LINE_RASTERIZATION_EXTENSION_NAME, VkPhysicalDeviceLineRasterizationFeaturesEXT,             \
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_LINE_RASTERIZATION_FEATURES_EXT)                                         \
+    X(provokingVertex, VK_EXT_PROVOKING_VERTEX_EXTENSION_NAME, VkPhysicalDeviceProvokingVertexFeaturesEXT,       \
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROVOKING_VERTEX_FEATURES_EXT)                                           \
+    X(clipControl, VK_EXT_DEPTH_CLIP_CONTROL_EXTENSION_NAME, VkPhysicalDeviceDepthClipControlFeaturesEXT,        \
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DEPTH_CLIP_CONTROL_FEATURES_EXT)                                         \
+    X(depthClip, VK_EXT_DEPTH_CLIP_ENABLE_EXTENSION_NAME, VkPhysicalDeviceDepthClipEnableFeaturesEXT,            \
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DEPTH_CLIP_ENABLE_FEATURES_EXT)                                          \
+    X(float16, VK_KHR_SHADER_FLOAT16_INT8_EXTENSION_NAME, VkPhysicalDeviceShaderFloat16Int8Features,             \
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_FLOAT16_INT8_FEATURES)                                            \
+    X(floatAtomics, VK_EXT_SHADER_ATOMIC_FLOAT_EXTENSION_NAME, VkPhysicalDeviceShaderAtomicFloatFeaturesEXT,     \
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_ATOMIC_FLOAT_FEATURES_EXT)                                        \
+    X(floatAtomics2, VK_EXT_SHADER_ATOMIC_FLOAT_2_EXTENSION_NAME, VkPhysicalDeviceShaderAtomicFloat2FeaturesEXT, \
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_ATOMIC_FLOAT_2_FEATURES_EXT)                                      \
+    X(multiview, VK_KHR_MULTIVIEW_EXTENSION_NAME, VkPhysicalDeviceMultiviewFeatures,                             \
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTIVIEW_FEATURES)
 
 // X(name of the member, extension): those without features, or whose features need no asking
-#define VERNIER_PLAIN_EXTENSIONS(X)                            \
-    X(maintenance1, VK_KHR_MAINTENANCE_1_EXTENSION_NAME)       \
-    X(reductions, VK_EXT_SAMPLER_FILTER_MINMAX_EXTENSION_NAME) \
-    X(sampleLocations, VK_EXT_SAMPLE_LOCATIONS_EXTENSION_NAME) \
+#define VERNIER_PLAIN_EXTENSIONS(X)                                     \
+    X(maintenance1, VK_KHR_MAINTENANCE_1_EXTENSION_NAME)                \
+    X(maintenance2, VK_KHR_MAINTENANCE_2_EXTENSION_NAME)                \
+    X(renderPass2, VK_KHR_CREATE_RENDERPASS_2_EXTENSION_NAME)           \
+    X(depthStencilResolve, VK_KHR_DEPTH_STENCIL_RESOLVE_EXTENSION_NAME) \
+    X(stencilExport, VK_EXT_SHADER_STENCIL_EXPORT_EXTENSION_NAME)       \
+    X(reductions, VK_EXT_SAMPLER_FILTER_MINMAX_EXTENSION_NAME)          \
+    X(sampleLocations, VK_EXT_SAMPLE_LOCATIONS_EXTENSION_NAME)          \
     X(viewportIndexLayer, VK_EXT_SHADER_VIEWPORT_INDEX_LAYER_EXTENSION_NAME)
 
 /// Members by the names of the tables: the features, all off where the extension is absent; for extensions without

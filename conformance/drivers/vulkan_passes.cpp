@@ -62,6 +62,7 @@ Status VulkanPassBuilder::createRenderPass(const ScenePass& scenePass, VulkanPas
     std::vector<VkAttachmentReference> colors, resolves;
     VkAttachmentReference depth{VK_ATTACHMENT_UNUSED, VK_IMAGE_LAYOUT_UNDEFINED};
     bool resolving = false;
+    uint32_t depthResolve = VK_ATTACHMENT_UNUSED;
     const auto attach = [&](const SceneAttachment& attachment, uint32_t image, VkAttachmentLoadOp loadOp,
                             VkImageLayout layout) -> Result<VkAttachmentReference> {
         const bool resolve = image == attachment.resolveImage;
@@ -92,6 +93,13 @@ Status VulkanPassBuilder::createRenderPass(const ScenePass& scenePass, VulkanPas
                                       scenePass.depthStencil.loadOp, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
         if (!reference) return reference.error();
         depth = *reference;
+        if (scenePass.depthStencil.resolveImage != kNone) {
+            const auto resolved =
+                attach(scenePass.depthStencil, scenePass.depthStencil.resolveImage, VK_ATTACHMENT_LOAD_OP_DONT_CARE,
+                       VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
+            if (!resolved) return resolved.error();
+            depthResolve = resolved->attachment;
+        }
     }
     VkSubpassDescription subpass{};
     subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
@@ -113,7 +121,14 @@ Status VulkanPassBuilder::createRenderPass(const ScenePass& scenePass, VulkanPas
         if (context_.extensions().multiview.multiview == VK_FALSE) return unsupported("the device lacks multiview");
         info.pNext = &multiview;
     }
-    VERNIER_TRY_VK(vkCreateRenderPass(device, &info, nullptr, &pass.renderPass));
+    if (depthResolve != VK_ATTACHMENT_UNUSED) {
+        const Result<VkRenderPass> made =
+            createResolvingRenderPass(info, scenePass.viewMask, scenePass.depthStencil, depthResolve);
+        if (!made) return made.error();
+        pass.renderPass = *made;
+    } else {
+        VERNIER_TRY_VK(vkCreateRenderPass(device, &info, nullptr, &pass.renderPass));
+    }
     resources_.cleanup().add([device, handle = pass.renderPass] { vkDestroyRenderPass(device, handle, nullptr); });
     VkFramebufferCreateInfo framebuffer{};
     framebuffer.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;

@@ -41,6 +41,9 @@ class VulkanPassBuilder {
 
   private:
     Status createRenderPass(const ScenePass& scene, VulkanPass& pass);
+    /// The same render pass with a resolve of its depth/stencil attachment to attachment `target`.
+    Result<VkRenderPass> createResolvingRenderPass(const VkRenderPassCreateInfo& info, uint32_t viewMask,
+                                                   const SceneAttachment& depth, uint32_t target);
     Result<VulkanPipeline> createPipeline(const SceneDraw& draw, VkRenderPass renderPass);
     Status createLayouts(const SceneDraw& draw, VulkanPipeline& pipeline);
     Result<VkShaderModule> shaderModule(uint32_t index);

@@ -18,12 +18,6 @@ bool readsSecondSource(const VkPipelineColorBlendAttachmentState& state) {
            second(state.srcAlphaBlendFactor) || second(state.dstAlphaBlendFactor);
 }
 
-/// Whether a vertex shader chooses its viewport or layer by itself.
-bool writesViewOrLayer(const SceneShader& shader) {
-    return shader.glsl.find("gl_ViewportIndex") != std::string::npos ||
-           shader.glsl.find("gl_Layer") != std::string::npos;
-}
-
 bool saysLines(const ScenePipeline& scene) {
     return scene.lineMode != VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT || scene.stippleFactor != 0;
 }
@@ -52,8 +46,34 @@ Status VulkanPassBuilder::checkFeatures(const ScenePipeline& scene, const SceneD
     VERNIER_TRY(need(scene.depthNegativeOneToOne, extensions.clipControl.depthClipControl, "depthClipControl"));
     VERNIER_TRY(need(!scene.sampleLocations.empty(), extensions.sampleLocations ? VK_TRUE : VK_FALSE,
                      "VK_EXT_sample_locations"));
-    VERNIER_TRY(need(writesViewOrLayer(scene_.shaders[scene.vertexShader]),
-                     extensions.viewportIndexLayer ? VK_TRUE : VK_FALSE, "VK_EXT_shader_viewport_index_layer"));
+    const bool saysDepthClip = scene.depthClip && *scene.depthClip == scene.depthClamp;
+    VERNIER_TRY(need(saysDepthClip, extensions.depthClip.depthClipEnable, "depthClipEnable"));
+    VERNIER_TRY(need(scene.topology >= VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY &&
+                         scene.topology <= VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY,
+                     features.geometryShader, "geometryShader"));
+    // What a shader's text names, and what it takes.
+    const struct {
+        const char* text;
+        VkBool32 feature;
+        const char* name;
+    } uses[] = {{"gl_ViewportIndex", extensions.viewportIndexLayer, "VK_EXT_shader_viewport_index_layer"},
+                {"gl_Layer", extensions.viewportIndexLayer, "VK_EXT_shader_viewport_index_layer"},
+                {"gl_FragStencilRefARB", extensions.stencilExport, "VK_EXT_shader_stencil_export"},
+                {"float16_t", extensions.float16.shaderFloat16, "shaderFloat16"},
+                {"GL_EXT_shader_atomic_float ", extensions.floatAtomics.shaderBufferFloat32AtomicAdd,
+                 "shaderBufferFloat32AtomicAdd"},
+                {"GL_EXT_shader_atomic_float2", extensions.floatAtomics2.shaderBufferFloat32AtomicMinMax,
+                 "shaderBufferFloat32AtomicMinMax"}};
+    for (const uint32_t shader : {scene.vertexShader, scene.fragmentShader}) {
+        if (shader == kNone) continue;
+        for (const auto& use : uses) {
+            VERNIER_TRY(need(scene_.shaders[shader].glsl.find(use.text) != std::string::npos, use.feature, use.name));
+        }
+        // Version 1.0 of SPIR-V came with Vulkan 1.0, 1.3 with Vulkan 1.1.
+        if (scene_.shaders[shader].spirv[1] > 0x10000 && context_.apiVersion() < VK_API_VERSION_1_1) {
+            return unsupported("SPIR-V beyond version 1.0: the device has Vulkan 1.0");
+        }
+    }
     const VkPhysicalDeviceLineRasterizationFeaturesEXT& lines = extensions.lines;
     const bool stippled = scene.stippleFactor != 0;
     const auto needLines = [&](VkLineRasterizationModeEXT mode, VkBool32 drawn, VkBool32 stipple, const char* name) {
@@ -153,6 +173,14 @@ Result<VulkanPipeline> VulkanPassBuilder::createPipeline(const SceneDraw& draw, 
     if (saysLines(scene)) {
         lines.pNext = raster.pNext;
         raster.pNext = &lines;
+    }
+    VkPipelineRasterizationDepthClipStateCreateInfoEXT depthClip{};
+    depthClip.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_DEPTH_CLIP_STATE_CREATE_INFO_EXT;
+    depthClip.depthClipEnable = scene.depthClip.value_or(false) ? VK_TRUE : VK_FALSE;
+    // Where it is the opposite of clamping it need not be said.
+    if (scene.depthClip && *scene.depthClip == scene.depthClamp) {
+        depthClip.pNext = raster.pNext;
+        raster.pNext = &depthClip;
     }
     VkPipelineRasterizationProvokingVertexStateCreateInfoEXT provoking{};
     provoking.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_PROVOKING_VERTEX_STATE_CREATE_INFO_EXT;

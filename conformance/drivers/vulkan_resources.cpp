@@ -248,6 +248,7 @@ Status VulkanResources::createSampler(const SceneSampler& scene) {
     info.compareOp = scene.compareOp;
     info.minLod = scene.minLod;
     info.maxLod = scene.maxLod;
+    info.unnormalizedCoordinates = scene.unnormalized ? VK_TRUE : VK_FALSE;
     info.borderColor = scene.borderColor;
     VkSampler sampler = VK_NULL_HANDLE;
     VERNIER_TRY_VK(vkCreateSampler(device, &info, nullptr, &sampler));

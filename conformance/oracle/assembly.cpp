@@ -172,18 +172,35 @@ std::vector<AssembledPrimitive> primitivesOf(VkPrimitiveTopology topology, uint3
         case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP:
             for (uint32_t i = 0; i + 1 < count; ++i) result.push_back({{i, i + 1}, 2});
             break;
+        // With adjacency: the other vertices are read past.
+        case VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY:
+            for (uint32_t i = 0; i + 3 < count; i += 4) result.push_back({{i + 1, i + 2}, 2});
+            break;
+        case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY:
+            for (uint32_t i = 0; i + 3 < count; ++i) result.push_back({{i + 1, i + 2}, 2});
+            break;
+        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST_WITH_ADJACENCY:
+            for (uint32_t i = 0; i + 5 < count; i += 6) result.push_back({{i, i + 2, i + 4}, 3});
+            break;
+        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY:
+            for (uint32_t i = 0; 2 * i + 5 < count; ++i) {
+                result.push_back({{2 * i, 2 * (i + 1 + i % 2), 2 * (i + 2 - i % 2)}, 3});
+            }
+            break;
         default:
             for (const auto& triangle : trianglesOf(topology, count)) result.push_back({triangle, 3});
             break;
     }
+    const bool lineStrip =
+        topology == VK_PRIMITIVE_TOPOLOGY_LINE_STRIP || topology == VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY;
     for (AssembledPrimitive& primitive : result) {
-        primitive.startsStrip = topology != VK_PRIMITIVE_TOPOLOGY_LINE_STRIP || primitive.vertices[0] == 0;
+        primitive.startsStrip = !lineStrip || primitive.vertices[0] == result.front().vertices[0];
     }
     return result;
 }
 
 bool isAssembled(VkPrimitiveTopology topology) {
-    return topology <= VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN;  // the six without adjacency come first
+    return topology <= VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY;  // all but patches
 }
 
 }  // namespace

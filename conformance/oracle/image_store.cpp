@@ -97,4 +97,27 @@ StoredTexel resolveSamples(const PixelFormat& format, const ImageLevel& source, 
     return result;
 }
 
+StoredTexel resolveDepthStencil(const PixelFormat& format, const ImageLevel& source, uint32_t x, uint32_t y,
+                                VkResolveModeFlagBits depthMode, VkResolveModeFlagBits stencilMode) {
+    StoredTexel result = source.at(x, y, 0);
+    const VkResolveModeFlagBits modes[] = {depthMode, stencilMode};
+    for (size_t c = 0; c < 2; ++c) {
+        Interval& into = result.channels[c];
+        if (modes[c] == VK_RESOLVE_MODE_NONE) result.flags |= c == 0 || format.stencil ? kOracleUnknown : 0;
+        for (uint32_t s = 1; s < source.samples; ++s) {
+            const StoredTexel& sample = source.at(x, y, s);
+            if (modes[c] == VK_RESOLVE_MODE_SAMPLE_ZERO_BIT || modes[c] == VK_RESOLVE_MODE_NONE) break;
+            result.flags |= sample.flags;
+            into = modes[c] == VK_RESOLVE_MODE_MIN_BIT   ? smaller(into, sample.channels[c])
+                   : modes[c] == VK_RESOLVE_MODE_MAX_BIT ? larger(into, sample.channels[c])
+                                                         : into + sample.channels[c];
+        }
+        if (modes[c] != VK_RESOLVE_MODE_AVERAGE_BIT) continue;
+        const double count = source.samples;
+        into = {into.value / count, into.low / count, into.high / count};
+        if (c == 0 && format.depth) into = quantise(format.components[0], into, 1);
+    }
+    return result;
+}
+
 }  // namespace vernier::conformance::exact

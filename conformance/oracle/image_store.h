@@ -56,4 +56,8 @@ Color quantiseColor(const PixelFormat& format, const Color& color);
 /// one sample.
 StoredTexel resolveSamples(const PixelFormat& format, const ImageLevel& source, uint32_t x, uint32_t y);
 
+/// Depth and stencil of a pixel by their modes (Vulkan, VkResolveModeFlagBits); an aspect of mode NONE is unknown.
+StoredTexel resolveDepthStencil(const PixelFormat& format, const ImageLevel& source, uint32_t x, uint32_t y,
+                                VkResolveModeFlagBits depthMode, VkResolveModeFlagBits stencilMode);
+
 }  // namespace vernier::conformance::exact

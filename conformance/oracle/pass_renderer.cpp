@@ -299,7 +299,8 @@ class PassRenderer {
         // Without depth clamping fragments beyond the viewport's range have been clipped; rounding leaves no
         // more than a trace.
         const auto [low, high] = std::minmax(t.viewport.minDepth, t.viewport.maxDepth);
-        if (!pipeline.depthClamp && !pipeline.depthBias) input.depth = input.depth.clamped(low, high);
+        if (pipeline.depthClip.value_or(!pipeline.depthClamp) && !pipeline.depthBias)
+            input.depth = input.depth.clamped(low, high);
         input.depthOrigin = t.depthOrigin;
         input.frontFacing = t.source.frontFacing;
         input.viewport = t.viewport;
@@ -350,6 +351,16 @@ class PassRenderer {
                 for (uint32_t x = 0; x < width_; ++x) {
                     target.at(x, y) = resolveSamples(images_[a.image].format(), source, x, y);
                 }
+            }
+        }
+        const SceneAttachment& depth = pass_.depthStencil;
+        if (depth.image >= images_.size() || depth.resolveImage >= images_.size()) return;
+        const ImageLevel& source = images_[depth.image].level(depth.mipLevel, depth.layer + layer_);
+        ImageLevel& target = images_[depth.resolveImage].level(0, layer_);
+        for (uint32_t y = 0; y < height_; ++y) {
+            for (uint32_t x = 0; x < width_; ++x) {
+                target.at(x, y) = resolveDepthStencil(images_[depth.image].format(), source, x, y, depth.depthResolve,
+                                                      depth.stencilResolve);
             }
         }
     }

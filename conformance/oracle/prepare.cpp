@@ -74,7 +74,8 @@ class Preparer {
     }
 
     Triangle::Setup setupOf(const std::array<const ShadedVertex*, 3>& vertices) const {
-        Triangle::Setup setup{{}, viewport_, !context_.pipeline.depthClamp, {}, viewHash_, context_.subPixelBits};
+        Triangle::Setup setup{{}, viewport_, context_.pipeline.depthClip.value_or(!context_.pipeline.depthClamp),
+                              {}, viewHash_, context_.subPixelBits};
         size_t distances = ~size_t{0};
         for (size_t k = 0; k < 3; ++k) {
             setup.position[k] = vertices[k]->position;

@@ -303,7 +303,12 @@ Interval levelOfDetail(const SampleQuery& query, const SceneSampler& sampler, Vk
     return lambda.clamped(low, std::max<double>(low, sampler.maxLod));
 }
 
-SampleResult sampleImage(const ImageStore& image, const SceneSampler& sampler, const SampleQuery& query) {
+SampleResult sampleImage(const ImageStore& image, const SceneSampler& sampler, const SampleQuery& asked) {
+    SampleQuery query = asked;
+    if (sampler.unnormalized) {
+        query.s /= image.level(0, 0).extent.width;
+        query.t /= image.level(0, 0).extent.height;
+    }
     const Sampler s = prepare(image, sampler, query);
     Interval lambda = levelOfDetail(query, sampler, image.level(0, s.layer).extent);
     if (!isAddressable(query) || std::isnan(lambda.value)) return unknownTexel();

@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -59,6 +60,7 @@ struct SceneSampler {
     bool compareEnable = false;
     VkCompareOp compareOp = VK_COMPARE_OP_ALWAYS;
     VkSamplerReductionMode reduction = VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
+    bool unnormalized = false;  // coordinates in texels, under the rules of VkSamplerCreateInfo
 };
 
 struct SceneShader {
@@ -86,6 +88,7 @@ struct ScenePipeline {
     bool provokingVertexLast = false;    // VK_EXT_provoking_vertex
     bool depthNegativeOneToOne = false;  // VK_EXT_depth_clip_control
     bool depthClamp = false;
+    std::optional<bool> depthClip;  // at near and far (VK_EXT_depth_clip_enable); none: unless depthClamp
     bool depthBias = false;
     float depthBiasConstant = 0, depthBiasClamp = 0, depthBiasSlope = 0;
     VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
@@ -160,7 +163,9 @@ struct SceneAttachment {
     uint32_t layerCount = 1;  // of layered and multiview passes; in each of its attachments the same
     VkAttachmentLoadOp loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
     VkClearValue clear{};
-    uint32_t resolveImage = kNone;  // single-sampled; average resolve at the end of the pass
+    uint32_t resolveImage = kNone;  // single-sampled; resolved at the end of the pass: colours as averages
+    // How a depth/stencil attachment is resolved (VK_KHR_depth_stencil_resolve); NONE leaves it undefined.
+    VkResolveModeFlagBits depthResolve = VK_RESOLVE_MODE_NONE, stencilResolve = VK_RESOLVE_MODE_NONE;
 };
 
 struct ScenePass {
@@ -199,6 +204,7 @@ struct Scene {
     std::vector<SceneStep> steps;
     std::vector<uint32_t>
         outputs;  // images read back at the end (level 0, layer 0, single-sampled), the main one first
+    bool robustBufferAccess = false;  // shaders or indices reach outside of buffers: the feature must be on
 };
 
 // What a driver hands back for one output image: level 0, layer 0, rows tightly packed, texels in the image's

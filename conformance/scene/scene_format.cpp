@@ -52,6 +52,12 @@ constexpr auto kFormats = std::to_array<SceneFormat>({
     {VERNIER_FORMAT(R32_SINT), 4, 1, kColor, uniform(sint, 32, 1)},
     {VERNIER_FORMAT(R32_SFLOAT), 4, 1, kColor, uniform(sfloat, 32, 1)},
     {VERNIER_FORMAT(R32G32B32A32_SFLOAT), 16, 4, kColor, uniform(sfloat, 32, 4)},
+    {VERNIER_FORMAT(B10G11R11_UFLOAT_PACK32),
+     4,
+     3,
+     kColor,
+     {{{ufloat, 0, 11}, {ufloat, 11, 11}, {ufloat, 22, 10}, {}}}},
+    {VERNIER_FORMAT(E5B9G9R9_UFLOAT_PACK32), 4, 0, kColor, {}},
     {VERNIER_FORMAT(D16_UNORM), 2, 1, kDepth, uniform(unorm, 16, 1)},
     {VERNIER_FORMAT(X8_D24_UNORM_PACK32), 4, 1, kDepth, uniform(unorm, 24, 1)},
     {VERNIER_FORMAT(D32_SFLOAT), 4, 1, kDepth, uniform(sfloat, 32, 1)},
@@ -98,15 +104,22 @@ int64_t signedCode(uint32_t code, uint8_t bits) {
     return code >> (bits - 1) != 0 ? value - (int64_t{1} << bits) : value;
 }
 
-double halfValue(uint32_t code) {
-    const int exponent = static_cast<int>(code >> 10 & 31);
-    const double mantissa = code & 1023, sign = (code & 0x8000) != 0 ? -1 : 1;
+/// A float without sign, of five bits of exponent over `mantissaBits` of mantissa (Vulkan, Unsigned 11-Bit and 10-Bit
+/// Floating-Point Numbers; halves without their sign are the same with ten bits).
+double unsignedFloatValue(uint32_t code, int mantissaBits) {
+    const int exponent = static_cast<int>(code >> mantissaBits & 31);
+    const double hidden = static_cast<double>(1u << mantissaBits),
+                 mantissa = static_cast<double>(code & ((1u << mantissaBits) - 1));
     if (exponent == 31) {
-        return mantissa != 0 ? std::numeric_limits<double>::quiet_NaN()
-                             : sign * std::numeric_limits<double>::infinity();
+        return mantissa != 0 ? std::numeric_limits<double>::quiet_NaN() : std::numeric_limits<double>::infinity();
     }
     // Subnormals have no hidden bit and the exponent of the smallest normal.
-    return sign * (exponent == 0 ? std::ldexp(mantissa, -24) : std::ldexp(mantissa + 1024, exponent - 25));
+    return exponent == 0 ? std::ldexp(mantissa, -14 - mantissaBits)
+                         : std::ldexp(mantissa + hidden, exponent - 15 - mantissaBits);
+}
+
+double halfValue(uint32_t code) {
+    return ((code & 0x8000) != 0 ? -1 : 1) * unsignedFloatValue(code & 0x7fff, 10);
 }
 
 /// Khronos Data Format Specification 1.3, 13.3 "sRGB transfer functions", from the code to linear light.
@@ -153,6 +166,8 @@ double decodeComponent(const FormatComponent& component, uint32_t code) {
             return static_cast<double>(signedCode(code, component.bits));
         case sfloat:
             return component.bits == 16 ? halfValue(code) : std::bit_cast<float>(code);
+        case ufloat:
+            return unsignedFloatValue(code, component.bits - 5);
     }
     return 0;
 }
@@ -162,6 +177,7 @@ int64_t codePlace(const FormatComponent& component, uint32_t code) {
         case unorm:
         case srgb:
         case uint:
+        case ufloat:
             return code;
         case snorm: {
             // The two lowest codes both mean -1.
@@ -198,12 +214,15 @@ std::optional<uint32_t> codeAtPlace(const FormatComponent& component, int64_t pl
             if (!within(-infinity, infinity)) return std::nullopt;
             return static_cast<uint32_t>(place < 0 ? half - place : place);
         }
+        case ufloat:
+            return within(0, int64_t{31} << (component.bits - 5)) ? std::optional(static_cast<uint32_t>(place))
+                                                                  : std::nullopt;
     }
     return std::nullopt;
 }
 
 bool isNan(const FormatComponent& component, uint32_t code) {
-    return component.kind == sfloat && std::isnan(decodeComponent(component, code));
+    return (component.kind == sfloat || component.kind == ufloat) && std::isnan(decodeComponent(component, code));
 }
 
 }  // namespace vernier::conformance

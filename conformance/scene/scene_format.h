@@ -13,7 +13,7 @@
 namespace vernier::conformance {
 
 /// How the bits of a component are read (Vulkan specification, "Numeric Format").
-enum class ComponentKind : uint8_t { unorm, snorm, srgb, uint, sint, sfloat };
+enum class ComponentKind : uint8_t { unorm, snorm, srgb, uint, sint, sfloat, ufloat };
 
 struct FormatComponent {
     ComponentKind kind = ComponentKind::unorm;
@@ -28,7 +28,8 @@ struct SceneFormat {
     uint8_t componentCount = 0;
     VkImageAspectFlags aspects = VK_IMAGE_ASPECT_COLOR_BIT;
     std::array<FormatComponent, 4> components{};  // in the order R, G, B, A (or D)
-    // Block-compressed formats: the footprint; texelBytes are those of a block, and there are no components.
+    // Block-compressed formats: the footprint; texelBytes are those of a block. They have no components, nor have
+    // formats whose components share bits: such images are sampled, never put out.
     uint8_t blockWidth = 1, blockHeight = 1;
 
     bool isCompressed() const { return blockWidth > 1; }

@@ -1,12 +1,11 @@
 #include "conformance/scenes/recorder.h"
 
-#include <vernier/vernier_glsl.h>
-
 #include <algorithm>
 #include <bit>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <tuple>
 
 namespace vernier::conformance {
 namespace {
@@ -26,13 +25,14 @@ uint32_t append(std::vector<T>& list, T element) {
     return static_cast<uint32_t>(list.size() - 1);
 }
 
-Result<std::vector<uint32_t>> compile(VkShaderStageFlagBits stage, const std::string& glsl, const std::string& name) {
+Result<std::vector<uint32_t>> compile(VkShaderStageFlagBits stage, const std::string& glsl, VnGlslTarget target,
+                                      const std::string& name) {
     VnGlslDesc desc{};
     desc.stage = stage;
     desc.source = glsl.c_str();
     desc.sourceLength = glsl.size();
     desc.sourceName = name.c_str();
-    desc.target = VN_GLSL_TARGET_VULKAN_1_0;  // what every driver reads
+    desc.target = target;
     VnGlslOutput* raw = nullptr;
     const VnGlslResult result = vnCompileGlsl(&desc, &raw);
     const std::unique_ptr<VnGlslOutput, decltype(&vnFreeGlslOutput)> output(raw, &vnFreeGlslOutput);
@@ -41,15 +41,15 @@ Result<std::vector<uint32_t>> compile(VkShaderStageFlagBits stage, const std::st
 }
 
 /// Remembers what was compiled: hundreds of small scenes share a few shaders, and compiling takes longer than drawing.
-Result<std::vector<uint32_t>> compileOnce(VkShaderStageFlagBits stage, const std::string& glsl,
+Result<std::vector<uint32_t>> compileOnce(VkShaderStageFlagBits stage, const std::string& glsl, VnGlslTarget target,
                                           const std::string& name) {
     static std::mutex mutex;
-    static std::map<std::pair<VkShaderStageFlagBits, std::string>, std::vector<uint32_t>> known;
+    static std::map<std::tuple<VkShaderStageFlagBits, VnGlslTarget, std::string>, std::vector<uint32_t>> known;
     const std::lock_guard lock(mutex);
-    const auto found = known.find({stage, glsl});
+    const auto found = known.find({stage, target, glsl});
     if (found != known.end()) return found->second;
-    Result<std::vector<uint32_t>> compiled = compile(stage, glsl, name);
-    if (compiled) known.emplace(std::pair(stage, glsl), *compiled);
+    Result<std::vector<uint32_t>> compiled = compile(stage, glsl, target, name);
+    if (compiled) known.emplace(std::tuple(stage, target, glsl), *compiled);
     return compiled;
 }
 
@@ -119,6 +119,11 @@ PipelineRecorder& PipelineRecorder::depthNegativeOneToOne() {
 
 PipelineRecorder& PipelineRecorder::depthClamp() {
     state().depthClamp = true;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::depthClip(bool clip) {
+    state().depthClip = clip;
     return *this;
 }
 
@@ -226,6 +231,26 @@ PassRecorder& PassRecorder::loadColor(uint32_t image) {
 PassRecorder& PassRecorder::depthStencil(uint32_t image, float depth, uint32_t stencil) {
     pass().depthStencil.image = image;
     pass().depthStencil.clear.depthStencil = {depth, stencil};
+    return *this;
+}
+
+PassRecorder& PassRecorder::loadDepthStencil(uint32_t image) {
+    pass().depthStencil.image = image;
+    pass().depthStencil.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
+    return *this;
+}
+
+PassRecorder& PassRecorder::resolveDepthStencil(uint32_t image, VkResolveModeFlagBits depth,
+                                                VkResolveModeFlagBits stencil) {
+    pass().depthStencil.resolveImage = image;
+    pass().depthStencil.depthResolve = depth;
+    pass().depthStencil.stencilResolve = stencil;
+    return *this;
+}
+
+PassRecorder& PassRecorder::layer(uint32_t layer) {
+    for (SceneAttachment& color : pass().colors) color.layer = layer;
+    pass().depthStencil.layer = layer;
     return *this;
 }
 
@@ -411,13 +436,13 @@ uint32_t SceneRecorder::sampler(VkFilter filter, VkSamplerAddressMode address) {
     return sampler(state);
 }
 
-uint32_t SceneRecorder::shader(VkShaderStageFlagBits stage, std::string_view glsl) {
+uint32_t SceneRecorder::shader(VkShaderStageFlagBits stage, std::string_view glsl, VnGlslTarget target) {
     SceneShader shader;
     shader.stage = stage;
     shader.glsl = glsl;
     const std::string name = scene_.name + "/shader" + std::to_string(scene_.shaders.size()) +
                              (stage == VK_SHADER_STAGE_VERTEX_BIT ? ".vert" : ".frag");
-    Result<std::vector<uint32_t>> compiled = compileOnce(stage, shader.glsl, name);
+    Result<std::vector<uint32_t>> compiled = compileOnce(stage, shader.glsl, target, name);
     if (compiled) {
         shader.spirv = std::move(compiled).value();
     } else if (status_.ok()) {

@@ -12,6 +12,8 @@
 #include "base/result.h"
 #include "conformance/scene/scene.h"
 
+#include <vernier/vernier_glsl.h>
+
 #include <cstring>
 #include <span>
 #include <string>
@@ -50,6 +52,7 @@ class PipelineRecorder {
     /// Clip depths from -w to w.
     PipelineRecorder& depthNegativeOneToOne();
     PipelineRecorder& depthClamp();
+    PipelineRecorder& depthClip(bool clip);
     PipelineRecorder& depthBounds(float min, float max);
     PipelineRecorder& depthBias(float constant, float slope, float clamp = 0);
     PipelineRecorder& stencil(const VkStencilOpState& front, const VkStencilOpState& back);
@@ -83,6 +86,11 @@ class PassRecorder {
     /// Keeps what an earlier step left in the image.
     PassRecorder& loadColor(uint32_t image);
     PassRecorder& depthStencil(uint32_t image, float depth = 1, uint32_t stencil = 0);
+    /// Keeps what an earlier step left in the image.
+    PassRecorder& loadDepthStencil(uint32_t image);
+    PassRecorder& resolveDepthStencil(uint32_t image, VkResolveModeFlagBits depth, VkResolveModeFlagBits stencil);
+    /// Draws to this layer of the attachments added before.
+    PassRecorder& layer(uint32_t layer);
     /// Draws to so many layers of the attachments added before, which the vertex shader chooses by Layer.
     PassRecorder& layers(uint32_t count);
     /// Draws everything to each of these layers of the attachments added before.
@@ -162,8 +170,14 @@ class SceneRecorder {
     uint32_t sampler(VkFilter filter, VkSamplerAddressMode address = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
 
     /// Compile a stage; an error is kept for finish().
-    uint32_t vertex(std::string_view glsl) { return shader(VK_SHADER_STAGE_VERTEX_BIT, glsl); }
-    uint32_t fragment(std::string_view glsl) { return shader(VK_SHADER_STAGE_FRAGMENT_BIT, glsl); }
+    uint32_t vertex(std::string_view glsl, VnGlslTarget target = VN_GLSL_TARGET_VULKAN_1_0) {
+        return shader(VK_SHADER_STAGE_VERTEX_BIT, glsl, target);
+    }
+    uint32_t fragment(std::string_view glsl, VnGlslTarget target = VN_GLSL_TARGET_VULKAN_1_0) {
+        return shader(VK_SHADER_STAGE_FRAGMENT_BIT, glsl, target);
+    }
+    /// The words of a shader, for what GLSL cannot say.
+    std::vector<uint32_t>& spirv(uint32_t shader) { return scene_.shaders[shader].spirv; }
     /// Gives specialization constant `id` of a shader a 32-bit value.
     void specialize(uint32_t shader, uint32_t id, uint32_t value);
 
@@ -176,6 +190,8 @@ class SceneRecorder {
     void blit(const SceneBlitImage& blit) { scene_.steps.push_back(blit); }
 
     void output(uint32_t image);
+    /// Shaders or indices of the scene reach outside of buffers.
+    void robustBufferAccess() { scene_.robustBufferAccess = true; }
 
     /// The scene, or the first error met while recording it.
     Result<Scene> finish();
@@ -183,7 +199,7 @@ class SceneRecorder {
   private:
     uint32_t addBuffer(std::string_view name, VkBufferUsageFlags usage, Bytes data);
     uint32_t addImage(SceneImage image);
-    uint32_t shader(VkShaderStageFlagBits stage, std::string_view glsl);
+    uint32_t shader(VkShaderStageFlagBits stage, std::string_view glsl, VnGlslTarget target);
 
     Scene scene_;
     Status status_;

@@ -69,10 +69,10 @@ Result<std::unique_ptr<Driver>> createDriver(const DriverChoice& choice, const D
 #if VERNIER_HAS_API
     if (choice.manifest.empty()) return createApiDriver(paths);
 #endif
-    (void)paths;
     VERNIER_TRY(selectVulkanDriver(choice));
     VulkanOptions options;
     options.validate = validate;
+    options.robustBufferAccess = paths.robustBufferAccess;
     Result<std::unique_ptr<VulkanDriver>> driver = VulkanDriver::create(options);
     if (!driver) return driver.error();
     return std::unique_ptr<Driver>(std::move(driver).value());

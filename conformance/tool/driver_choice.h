@@ -32,6 +32,7 @@ struct DriverPaths {
     std::string profile = "standard";  // of Vernier's API: draft, fast, standard, fine, reference
     std::string axes;                  // of Vernier's API: VnDeviceDesc::axes
     std::string skips;                 // of Vernier's API: VnDeviceDesc::skips
+    bool robustBufferAccess = false;   // of Vulkan drivers: VulkanOptions::robustBufferAccess
     uint32_t cpus = 0;                 // that a driver's process may use; 0: all
 
     DriverPaths();

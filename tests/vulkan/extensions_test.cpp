@@ -318,5 +318,94 @@ TEST_F(ExtensionsTest, copyCommandsTakeChains) {
             ASSERT_EQ(result[y * 64 + x], words[y < 32 ? y * 64 + x : (63 - (y - 32)) * 64 + 63 - x]) << x << ", " << y;
 }
 
+TEST_F(ExtensionsTest, bufferCopiesTakeChains) {
+    const TestBuffer from = makeBuffer(64, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+    const TestBuffer to = makeBuffer(64, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+    auto* source = static_cast<uint8_t*>(from.data);
+    for (uint8_t n = 0; n < 64; ++n) source[n] = static_cast<uint8_t>(n + 100);
+    std::memset(to.data, 0, 64);
+    std::array<VkBufferCopy2, 3> regions{};
+    for (VkBufferCopy2& region : regions) region.sType = VK_STRUCTURE_TYPE_BUFFER_COPY_2;
+    // The ends, crossed, and a byte in between.
+    regions[0].dstOffset = 40;
+    regions[0].size = 24;
+    regions[1].srcOffset = 47;
+    regions[1].size = 17;
+    regions[2].srcOffset = 31;
+    regions[2].dstOffset = 33;
+    regions[2].size = 1;
+    auto info = make<VkCopyBufferInfo2>(VK_STRUCTURE_TYPE_COPY_BUFFER_INFO_2);
+    info.srcBuffer = from.buffer;
+    info.dstBuffer = to.buffer;
+    info.regionCount = regions.size();
+    info.pRegions = regions.data();
+    const VkCommandBuffer commands = begin();
+    command<PFN_vkCmdCopyBuffer2KHR>("vkCmdCopyBuffer2KHR")(commands, &info);
+    submit(commands);
+    const auto* result = static_cast<const uint8_t*>(to.data);
+    for (size_t n = 0; n < 64; ++n) {
+        const size_t expected = n < 17 ? n + 147 : n == 33 ? 131 : n >= 40 ? n + 60 : 0;
+        EXPECT_EQ(result[n], expected) << n;
+    }
+}
+
+TEST_F(ExtensionsTest, resolvesTakeChains) {
+    // Two of four samples are white; a region of the image, moved, gets their average.
+    const TestImage samples =
+        makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent,
+                  VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_SAMPLE_COUNT_4_BIT);
+    const TestImage resolved = makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
+    const Pass sampled = makePass(samples, nullptr, &resolved);
+    PipelineDesc desc = defaults(fullScreen());
+    desc.samples = VK_SAMPLE_COUNT_4_BIT;
+    const VkSampleMask mask = 0b0101;
+    desc.change = [&mask](const PipelineStates& states) { states.multisample.pSampleMask = &mask; };
+    const VkPipeline pipeline = makePipeline(sampled.pass, desc);
+    auto region = make<VkImageResolve2>(VK_STRUCTURE_TYPE_IMAGE_RESOLVE_2);
+    region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    region.srcOffset = {8, 4, 0};
+    region.dstOffset = {30, 50, 0};
+    region.extent = {20, 10, 1};
+    auto info = make<VkResolveImageInfo2>(VK_STRUCTURE_TYPE_RESOLVE_IMAGE_INFO_2);
+    info.srcImage = samples.image;
+    info.srcImageLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    info.dstImage = color.image;
+    info.dstImageLayout = VK_IMAGE_LAYOUT_GENERAL;
+    info.regionCount = 1;
+    info.pRegions = &region;
+    const VkCommandBuffer commands = begin();
+    const auto barrier = [&](VkImage of, VkImageLayout from, VkImageLayout to) {
+        auto memory = make<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
+        memory.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
+        memory.dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
+        memory.oldLayout = from;
+        memory.newLayout = to;
+        memory.image = of;
+        memory.srcQueueFamilyIndex = memory.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+        memory.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0,
+                             nullptr, 0, nullptr, 1, &memory);
+    };
+    beginPass(commands, sampled);
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+    vkCmdDraw(commands, 3, 1, 0, 0);
+    vkCmdEndRenderPass(commands);
+    barrier(samples.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    barrier(color.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+    const VkClearColorValue black{};
+    const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    vkCmdClearColorImage(commands, color.image, VK_IMAGE_LAYOUT_GENERAL, &black, 1, &all);
+    barrier(color.image, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_GENERAL);
+    command<PFN_vkCmdResolveImage2KHR>("vkCmdResolveImage2KHR")(commands, &info);
+    barrier(color.image, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    submit(commands);
+    const Texels texels = readImage(color, VK_IMAGE_ASPECT_COLOR_BIT, 4);
+    for (uint32_t y = 0; y < kExtent.height; ++y)
+        for (uint32_t x = 0; x < kExtent.width; ++x) {
+            const bool inside = x >= 30 && x < 50 && y >= 50 && y < 60;
+            ASSERT_EQ(pixelAt(texels, color, x, y), inside ? 0x80808080u : 0u) << x << ", " << y;
+        }
+}
+
 }  // namespace
 }  // namespace vernier::test

@@ -302,6 +302,7 @@ typedef struct VnRasterStateDesc {
     VkCullModeFlags cullMode;  /* 0: none */
     VkFrontFace frontFace;     /* 0: counter-clockwise, seen in the framebuffer (y down) */
     int depthClamp;            /* nonzero: clamp to the viewport's depth range instead of clipping at near and far */
+    int depthClip;             /* 0: clip at near and far unless depthClamp is set; 1: clip, -1: do not, clamped or not */
     int depthBias;             /* nonzero: add the following */
     float depthBiasConstant;   /* in units of the depth format's resolution */
     float depthBiasSlope;      /* times the slope of the primitive */
