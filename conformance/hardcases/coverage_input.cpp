@@ -77,6 +77,8 @@ Result<Scene> countScene(std::string_view name, const std::vector<ClipPosition>&
     if (options.samples > 1) pipeline.sampleMask(1u << options.sample);
     if (options.depthClamp) pipeline.depthClamp();
     if (options.lineWidth != 1) pipeline.lineWidth(options.lineWidth);
+    if (options.stippleFactor != 0) pipeline.stipple(options.stippleFactor, options.stipplePattern);
+    pipeline.lineMode(options.lineMode).polygonMode(options.polygonMode);
     record.pass(options.extent).color(drawn, {0, 0, 0, 0}, resolved);
     const VkViewport viewport = options.viewport.value_or(viewportOf(options.extent));
     const auto count = static_cast<uint32_t>(positions.size());

@@ -38,6 +38,10 @@ struct CountOptions {
     VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
     bool depthClamp = false;
     float lineWidth = 1;
+    VkLineRasterizationModeEXT lineMode = VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT;
+    VkPolygonMode polygonMode = VK_POLYGON_MODE_FILL;
+    uint32_t stippleFactor = 0;  // 0: lines are not stippled
+    uint16_t stipplePattern = 0;
     bool drawEach = false;  // one draw per three vertices instead of one for all
 };
 

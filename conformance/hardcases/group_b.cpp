@@ -1,5 +1,6 @@
 // B: blending, rounding, formats.
 #include "conformance/hardcases/coverage_input.h"
+#include "conformance/hardcases/format_cases.h"
 #include "conformance/hardcases/groups.h"
 #include "conformance/hardcases/homogeneous_input.h"
 #include "conformance/hardcases/judges.h"
@@ -415,12 +416,8 @@ const std::vector<HardCase> kCases{
      "A value that is exactly a code maps to that code: the identity.", kFixed, b03},
     {"B04", "Every sRGB code read and written unchanged", "The identity: codes are far apart in linear light.",
      "Khronos Data Format Specification, sRGB transfer functions", b04},
-    {.id = "B05",
-     .title = "sRGB around the ends of its linear segment",
-     .rule = "Continuous and monotone.",
-     .source = "Khronos Data Format Specification, sRGB transfer functions",
-     .unreachable =
-         "format tests compare all conversions of the segment's ends exactly; no scene is needed beyond B04"},
+    {"B05", "sRGB around the ends of its linear segment, values and codes",
+     "Continuous and monotone; the nearest code.", "Khronos Data Format Specification, sRGB transfer functions", b05},
     {"B06", "All pairs of codes blended with alpha 1 and 0", "Exactly the source; exactly the destination.", kBlend,
      b06},
     {"B07", "255 additions of 1/255", "255.", kBlend, b07},
@@ -431,16 +428,10 @@ const std::vector<HardCase> kCases{
     {"B10", "Minimum and maximum with factors", "Factors are ignored.", kBlend, b10},
     {"B11", "Floats written to halves: at ties, at both ends of the range",
      "Either neighbour; beyond the range the largest or infinity.", "Vulkan, 16-Bit Floating-Point Numbers", b11},
-    {.id = "B12",
-     .title = "R11G11B10: largest values, smallest denormals, negative numbers, NaN",
-     .rule = "By the format.",
-     .source = "Vulkan, Unsigned 11-Bit Floating-Point Numbers",
-     .unreachable = "not a scene format; format tests decode and encode all codes"},
-    {.id = "B13",
-     .title = "E5B9G9R9: a channel that rounds up to 512",
-     .rule = "Raises the shared exponent.",
-     .source = "Vulkan, RGB to Shared Exponent Conversion",
-     .unreachable = "not a scene format; format tests encode it, the oracle's own tests hold the case"},
+    {"B12", "R11G11B10: largest values, smallest denormals, negative numbers, NaN; all codes",
+     "By the format; either neighbour of a value.", "Vulkan, Unsigned 11-Bit Floating-Point Numbers", b12},
+    {"B13", "E5B9G9R9: all exponents, and channels that would round up to 512",
+     "By the format, exactly; no driver writes it.", "Vulkan, RGB to Shared Exponent Conversion", b13},
     {"B14", "A ramp in channels of 2, 5, 6 and 10 bits", "The nearest code.", kFixed, b14},
     {"B15", "All 16 logic operations on all pairs of four bits", "Bit by bit on stored codes.",
      "Vulkan, Logical Operations", b15},

@@ -2,11 +2,14 @@
 #include "conformance/hardcases/coverage_input.h"
 #include "conformance/hardcases/groups.h"
 #include "conformance/hardcases/judges.h"
+#include "conformance/hardcases/robust_cases.h"
 #include "conformance/hardcases/value_input.h"
 #include "conformance/scenes/recorder.h"
 #include "conformance/scenes/shapes.h"
 
+#include <algorithm>
 #include <limits>
+#include <tuple>
 
 namespace vernier::conformance::hardcases {
 namespace {
@@ -41,6 +44,44 @@ void g03(CaseInput& input) {
     addValues(input, "G03_inside", "u(0) << u(1)",
               {{{1, 31}, oneOf({kMostNegative})}, {{0xffffffffu, 0}, oneOf({0xffffffffu})}});
     addValues(input, "G03_arithmetic", "uint(i(0) >> i(1))", {{{kMostNegative, 31}, oneOf({0xffffffffu})}});
+}
+
+// Remainders of signed integers, whose GLSL form leaves negative operands open: SMod as the compiler writes it, and
+// SRem in its place.
+constexpr uint16_t kOpSRem = 138, kOpSMod = 139;
+
+void replaceOpcode(std::vector<uint32_t>& words, uint16_t from, uint16_t to) {
+    constexpr size_t kHeaderWords = 5;
+    for (size_t at = kHeaderWords; at < words.size(); at += std::max(1u, words[at] >> 16)) {
+        if ((words[at] & 0xffff) == from) words[at] = (words[at] & 0xffff0000u) | to;
+    }
+}
+
+void g04(CaseInput& input) {
+    const auto rows = [](bool modulo) {
+        std::vector<ValueRow> result;
+        for (const int32_t a : {7, -7, 8, -8, 1, -1, 0, INT32_MAX, INT32_MIN + 1}) {
+            for (const int32_t b : {3, -3, 8, -8, 1, -1, INT32_MAX}) {
+                int32_t rest = a % b;
+                if (modulo && rest != 0 && (rest < 0) != (b < 0)) rest += b;
+                const auto expected = static_cast<uint32_t>(rest);
+                const bool defined = a >= 0 && b >= 0;
+                result.push_back({{static_cast<uint32_t>(a), static_cast<uint32_t>(b)},
+                                  [=](uint32_t got, const Declared&) -> Verdict {
+                                      if (got == expected) return {};
+                                      const std::string text =
+                                          "exactly " + std::to_string(static_cast<int32_t>(expected));
+                                      return defined ? Verdict::wrong(text)
+                                                     : Verdict::allowed(text + "; poison before maintenance8");
+                                  }});
+            }
+        }
+        return result;
+    };
+    addValues(input, "G04_mod", "uint(i(0) % i(1))", rows(true));
+    ValueShader remainder;
+    remainder.edit = [](std::vector<uint32_t>& words) { replaceOpcode(words, kOpSMod, kOpSRem); };
+    addValues(input, "G04_rem", "uint(i(0) % i(1))", rows(false), remainder);
 }
 
 void g05(CaseInput& input) {
@@ -192,6 +233,53 @@ void n07(CaseInput& input) {
               {{{bitsOf(-3.99f)}, oneOf({0xfffffffdu})}, {{bitsOf(2147483520.0f)}, oneOf({2147483520u})}});
 }
 
+// Atomic operations on a word of a row's own; the result is what the word holds afterwards.
+void atomics(CaseInput& input, std::string_view name, const char* function, const char* extension,
+             const std::vector<std::tuple<float, float, ValueJudge>>& operations) {
+    ValueShader shader;
+    shader.extensions = std::string("#extension ") + extension + " : require\n";
+    shader.declarations = "layout(std430, binding = 1) buffer Data { float data[]; };\nuint after(float v) { " +
+                          std::string(function) + "(data[row()], v); return floatBitsToUint(data[row()]); }\n";
+    std::vector<ValueRow> rows;
+    for (const auto& [stored, operand, judge] : operations) {
+        rows.push_back({{bitsOf(operand)}, judge});
+        shader.data.push_back(bitsOf(stored));
+    }
+    addValues(input, name, "after(f(0))", std::move(rows), shader);
+}
+
+void n08(CaseInput& input) {
+    const uint32_t minus = kMostNegative;
+    const ValueJudge nan = [](uint32_t bits, const Declared&) -> Verdict {
+        return (bits & 0x7fffffffu) > 0x7f800000u ? Verdict{} : Verdict::wrong("exactly NaN");
+    };
+    const char* const first = "GL_EXT_shader_atomic_float";
+    const char* const second = "GL_EXT_shader_atomic_float2";
+    atomics(input, "N08_add", "atomicAdd", first,
+            {{1.0f, 2.5f, oneOf({bitsOf(3.5f)})},
+             {1.0f, kNan, nan},
+             {kInf, -kInf, nan},
+             {-0.0f, -0.0f, oneOf({minus, 0})},
+             {0.0f, -0.0f, oneOf({0, minus})},
+             {kInf, 1.0f, oneOf({bitsOf(kInf)})}});
+    atomics(input, "N08_exchange", "atomicExchange", first,
+            {{1.0f, -0.0f, oneOf({minus})}, {1.0f, kNan, nan}, {kNan, 2.0f, oneOf({bitsOf(2.0f)})}});
+    const auto either = [](float best, float other) { return oneOf({bitsOf(best), bitsOf(other)}); };
+    atomics(input, "N08_min", "atomicMin", second,
+            {{2.0f, 1.0f, oneOf({bitsOf(1.0f)})},
+             {1.0f, kNan, either(1.0f, kNan)},
+             {kNan, 1.0f, either(1.0f, kNan)},
+             {0.0f, -0.0f, either(-0.0f, 0.0f)},
+             {-0.0f, 0.0f, either(-0.0f, 0.0f)},
+             {kInf, -kInf, oneOf({bitsOf(-kInf)})}});
+    atomics(input, "N08_max", "atomicMax", second,
+            {{2.0f, 1.0f, oneOf({bitsOf(2.0f)})},
+             {1.0f, kNan, either(1.0f, kNan)},
+             {kNan, 1.0f, either(1.0f, kNan)},
+             {0.0f, -0.0f, either(0.0f, -0.0f)},
+             {-kInf, kInf, oneOf({bitsOf(kInf)})}});
+}
+
 constexpr std::string_view kSpirv = "SPIR-V specification, the instruction";
 constexpr std::string_view kControls = "Vulkan, Floating-Point Computation; SPIR-V float controls";
 
@@ -200,20 +288,15 @@ const std::vector<HardCase> kIntegers{
     {"G02", "The most negative integer divided by -1", "Undefined, but no trap.", kSpirv, g02},
     {"G03", "Shifts by the width, beyond it, and by negative counts",
      "Undefined, but no crash; exact inside the width.", kSpirv, g03},
-    {.id = "G04",
-     .title = "SRem and SMod of negative operands",
-     .rule = "Signs by definition.",
-     .source = "VK_KHR_maintenance8",
-     .unreachable = "GLSL leaves the sign open; the proof tests run both instructions on all special operands"},
+    {"G04", "SRem and SMod of negative operands",
+     "The sign of the first operand, of the second; poison before maintenance8.",
+     "SPIR-V, OpSRem and OpSMod; VK_KHR_maintenance8", g04},
     {"G05", "bitfieldExtract and bitfieldInsert beyond the width and with count 0",
      "Count 0: 0 or unchanged; beyond: undefined.", kSpirv, g05},
     {"G06", "findMSB and findLSB of 0, -1 and the ends", "-1 where there is no bit.", kSpirv, g06},
     {"G07", "Extended products, carries and borrows", "Exact.", kSpirv, g07},
-    {.id = "G08",
-     .title = "Addresses that wrap around 32 bits",
-     .rule = "No access outside.",
-     .source = "Vulkan, Robust Buffer Access",
-     .unreachable = "scenes have no storage buffers; tests at the driver's boundary cover robust access"},
+    {"G08", "Buffer indices whose byte offsets wrap around 32 bits",
+     "Robust: 0 or a value of the buffer; no access outside.", "Vulkan, Robust Buffer Access", g08},
 };
 
 const std::vector<HardCase> kSpecials{
@@ -226,11 +309,8 @@ const std::vector<HardCase> kSpecials{
     {"N06", "NaN written to UNORM", "Unspecified, the same everywhere. Declared: 0.",
      "Vulkan, Conversion From Floating-Point to Normalized Fixed-Point", n06},
     {"N07", "Floats out of range to integers", "Undefined, but no crash; exact inside the range.", kSpirv, n07},
-    {.id = "N08",
-     .title = "Atomic min, max and compare of floats with NaN and -0",
-     .rule = "As the extension says.",
-     .source = "VK_EXT_shader_atomic_float",
-     .unreachable = "scenes have no storage buffers; atomics_test covers them"},
+    {"N08", "Atomic addition, exchange, minimum and maximum of floats with NaN and -0",
+     "As the operation; a minimum with NaN may be either operand.", "VK_EXT_shader_atomic_float and _float2", n08},
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 // L: derivatives and level of detail.
 #include "conformance/hardcases/groups.h"
 #include "conformance/hardcases/homogeneous_input.h"
+#include "conformance/hardcases/image_kind_cases.h"
 #include "conformance/hardcases/judges.h"
 #include "conformance/hardcases/texture_input.h"
 #include "conformance/scenes/recorder.h"
@@ -367,11 +368,8 @@ const std::vector<HardCase> kCases{
     {"L11", "textureQueryLod beside what is sampled", "The same level.", "Vulkan, Image Query Instructions", l11},
     {"L12", "Anisotropy 16 on footprints of 1:1 to 1:1000",
      "One colour stays that colour; a round footprint is isotropic.", "Vulkan, Texel Anisotropic Filtering", l12},
-    {.id = "L13",
-     .title = "Derivatives across the edge of a cube's face",
-     .rule = "Projected onto the chosen face.",
-     .source = "Vulkan, Cube Map Derivative Transformation",
-     .unreachable = "no case: texture tests compare cubes with a model, the conformance scenes with other drivers"},
+    {"L13", "Directions across the edge between two faces of a cube",
+     "Projected onto the chosen face: no seam of another level.", "Vulkan, Cube Map Derivative Transformation", l13},
 };
 
 }  // namespace

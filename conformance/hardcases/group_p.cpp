@@ -2,6 +2,7 @@
 #include "conformance/hardcases/groups.h"
 #include "conformance/hardcases/homogeneous_input.h"
 #include "conformance/hardcases/judges.h"
+#include "conformance/hardcases/line_cases.h"
 #include "conformance/oracle/lines.h"
 #include "conformance/scenes/recorder.h"
 
@@ -316,25 +317,13 @@ void p13(CaseInput& input) {
 
 constexpr std::string_view kLines = "Vulkan, Basic Line Segment Rasterization (strict lines)";
 constexpr std::string_view kPoints = "Vulkan, Basic Point Rasterization";
-constexpr std::string_view kBresenham =
-    "no case: scenes have no line modes; lines_test draws them at the renderer's boundary, the oracle knows the rule";
+constexpr std::string_view kBresenham = "Vulkan, Bresenham Line Segment Rasterization";
 
 const std::vector<HardCase> kCases{
-    {.id = "P01",
-     .title = "Bresenham lines between centres in 8 octants",
-     .rule = "Half-open; ends moved by (-e, -e^2).",
-     .source = "Vulkan, Bresenham Line Segment Rasterization",
-     .unreachable = kBresenham},
-    {.id = "P02",
-     .title = "Bresenham lines that end on corners of diamonds",
-     .rule = "As the perturbed line.",
-     .source = "Vulkan, Bresenham Line Segment Rasterization",
-     .unreachable = kBresenham},
-    {.id = "P03",
-     .title = "Bresenham lines of slope 1",
-     .rule = "x is the major axis.",
-     .source = "Vulkan, Bresenham Line Segment Rasterization",
-     .unreachable = kBresenham},
+    {"P01", "Bresenham lines between centres in 8 octants, and connected ones",
+     "Half-open by the diamond-exit rule, ends moved by (-e, -e^2); four conditions else.", kBresenham, p01},
+    {"P02", "Bresenham lines that end on corners and edges of diamonds", "As the perturbed line.", kBresenham, p02},
+    {"P03", "Bresenham lines of slope 1", "x is the major axis: one fragment per column.", kBresenham, p03},
     {"P04", "Lines without length", "No fragments.", kLines, p04},
     {"P05", "Rectangular lines of width 1, 1.5 and 7.5 in all directions",
      "The exact rectangle; corners are irrational, squares decide.", kLines, p05},
@@ -342,12 +331,10 @@ const std::vector<HardCase> kCases{
      .title = "Parallelograms of lines that are not strict",
      .rule = "The major axis decides.",
      .source = "Vulkan, Basic Line Segment Rasterization",
-     .unreachable = "the driver declares strict lines"},
-    {.id = "P07",
-     .title = "Smooth and stippled lines",
-     .rule = "Coverage grows with area; the phase is an integer.",
-     .source = "Vulkan, Line Stipple; Smooth Lines",
-     .unreachable = "no case: scenes have no line modes; lines_test draws them at the renderer's boundary"},
+     .unreachable = "Vernier's driver, lavapipe and SwiftShader all declare strictLines: none draws such lines"},
+    {"P07", "Smooth lines; stippled lists and strips",
+     "Alpha is the part of the pixel inside, or near it; bits count fragments.", "Vulkan, Line Stipple; Smooth Lines",
+     p07},
     {"P08", "Attributes along lines in perspective", "Interpolated by the projection on the segment, in perspective.",
      kLines, p08},
     {"P09", "Points of size 0 to 63.875 and NaN, at and off centres",
@@ -355,11 +342,8 @@ const std::vector<HardCase> kCases{
     {"P10", "PointCoord of points that are off the sub-pixel grid", "1/2 + (p - v) / s.", kPoints, p10},
     {"P11", "Large points at the border of the view volume",
      "Clipped by their vertex alone: what is inside the target is drawn.", kPoints, p11},
-    {.id = "P12",
-     .title = "Polygon mode line of a clipped triangle",
-     .rule = "Edges that clipping makes may be drawn or not.",
-     .source = "Vulkan, Polygon Mode",
-     .unreachable = "nothing to judge beyond P05: the specification leaves those edges open"},
+    {"P12", "Polygon mode line of triangles that the near plane and the view volume cut",
+     "The triangle's own edges are drawn; edges that clipping makes may be drawn or not.", "Vulkan, Polygon Mode", p12},
     {"P13", "Strips of thin and wide lines", "The segments, without joins.", kLines, p13},
 };
 

@@ -158,7 +158,9 @@ int drawHere(const Options& options) {
     const std::vector<DriverChoice> choices = driverChoices(options.paths);
     const auto choice = std::ranges::find(choices, options.drivers.at(0), &DriverChoice::name);
     if (choice == choices.end()) return fail(invalidArgument("--driver: no driver of that name"));
-    Result<std::unique_ptr<Driver>> driver = createDriver(*choice, options.paths, false);
+    DriverPaths paths = options.paths;
+    paths.robustBufferAccess = true;
+    Result<std::unique_ptr<Driver>> driver = createDriver(*choice, paths, false);
     if (!driver) return fail(driver.error());
     const Status drawn = drawToFolder(**driver, *cases, options.first, options.work);
     return drawn ? 0 : fail(drawn.error());

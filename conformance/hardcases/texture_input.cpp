@@ -10,7 +10,15 @@ namespace vernier::conformance::hardcases {
 Result<Scene> textureScene(std::string_view name, const TextureTable& table) {
     const VkExtent2D extent = extentOf(table);
     SceneRecorder record(name, "Lookups at coordinates from a table.");
-    const uint32_t picture = record.texture("picture", table.format, table.extent, table.levels);
+    SceneImage image;
+    image.name = "picture";
+    image.format = table.format;
+    image.extent = table.extent;
+    image.mipLevels = static_cast<uint32_t>(table.levels.size()) / table.layers;
+    image.arrayLayers = table.layers;
+    image.viewType = table.viewType;
+    image.data = table.levels;
+    const uint32_t picture = record.texture(std::move(image));
     const uint32_t coordinates =
         record.texture("coordinates", VK_FORMAT_R32G32B32A32_SFLOAT, extent, {bytesOf(table.coordinates)});
     const uint32_t target = record.colorTarget("color", table.target, extent);

@@ -12,7 +12,10 @@ namespace vernier::conformance::hardcases {
 struct TextureTable {
     VkFormat format = VK_FORMAT_R8G8B8A8_UNORM;
     VkExtent2D extent{};
-    std::vector<Bytes> levels;  // level 0 has `extent`, each next one half of it
+    std::vector<Bytes>
+        levels;  // level 0 has `extent`, each next one half of it; of layers: levels[mip * layers + layer]
+    uint32_t layers = 1;
+    VkImageViewType viewType = VK_IMAGE_VIEW_TYPE_MAX_ENUM;  // as in SceneImage
     SceneSampler sampler;
     std::vector<std::array<float, 4>> coordinates;              // one pixel each
     std::string expression = "textureLod(picture, c.xy, c.z)";  // a vec4 of `picture` and the coordinates `c`

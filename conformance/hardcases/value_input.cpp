@@ -17,7 +17,7 @@ std::string hex(uint32_t bits) {
     return text;
 }
 
-Result<Scene> valueScene(std::string_view name, std::string_view expression, std::string_view declarations,
+Result<Scene> valueScene(std::string_view name, std::string_view expression, const ValueShader& shader,
                          const std::vector<ValueRow>& rows) {
     const VkExtent2D extent{static_cast<uint32_t>(rows.size()), 1};
     SceneRecorder record(name, "An expression on a table of inputs.");
@@ -27,16 +27,23 @@ Result<Scene> valueScene(std::string_view name, std::string_view expression, std
     }
     const uint32_t inputs = record.texture("inputs", VK_FORMAT_R32_UINT, {extent.width, 3}, {bytesOf(texels)});
     const uint32_t target = record.colorTarget("results", VK_FORMAT_R32_UINT, extent);
-    const std::string glsl =
-        "#version 450\nlayout(binding = 0) uniform usampler2D inputs;\n"
-        "layout(location = 0) out uint result;\n"
-        "uint u(int k) { return texelFetch(inputs, ivec2(int(gl_FragCoord.x), k), 0).r; }\n"
-        "int i(int k) { return int(u(k)); }\n"
-        "float f(int k) { return uintBitsToFloat(u(k)); }\n" +
-        std::string(declarations) + "void main() { result = " + std::string(expression) + "; }\n";
+    const std::string glsl = "#version 450\n" + shader.extensions +
+                             "layout(binding = 0) uniform usampler2D inputs;\n"
+                             "layout(location = 0) out uint result;\n"
+                             "uint u(int k) { return texelFetch(inputs, ivec2(int(gl_FragCoord.x), k), 0).r; }\n"
+                             "int i(int k) { return int(u(k)); }\n"
+                             "float f(int k) { return uintBitsToFloat(u(k)); }\n"
+                             "int row() { return int(gl_FragCoord.x); }\n" +
+                             shader.declarations + "void main() { result = " + std::string(expression) + "; }\n";
     record.pass(extent).color(target, {0, 0, 0, 0});
-    record.draw(record.pipeline(record.vertex(kCoverVertexGlsl), record.fragment(glsl)), 3)
-        .texture(0, inputs, record.sampler(VK_FILTER_NEAREST));
+    const uint32_t fragment = record.fragment(glsl);
+    if (shader.edit && !record.spirv(fragment).empty()) shader.edit(record.spirv(fragment));
+    auto draw = record.draw(record.pipeline(record.vertex(kCoverVertexGlsl), fragment), 3)
+                    .texture(0, inputs, record.sampler(VK_FILTER_NEAREST));
+    if (!shader.data.empty()) {
+        draw.storageBuffer(1, record.buffer("data", VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, shader.data));
+    }
+    if (shader.robust) record.robustBufferAccess();
     record.output(target);
     return record.finish();
 }
@@ -44,8 +51,8 @@ Result<Scene> valueScene(std::string_view name, std::string_view expression, std
 }  // namespace
 
 void addValues(CaseInput& input, std::string_view name, std::string_view expression, std::vector<ValueRow> rows,
-               std::string_view declarations) {
-    const size_t scene = input.scene(valueScene(name, expression, declarations, rows));
+               const ValueShader& shader) {
+    const size_t scene = input.scene(valueScene(name, expression, shader, rows));
     const VkExtent2D extent{static_cast<uint32_t>(rows.size()), 1};
     judgePixels(
         input, scene, 0, extent,

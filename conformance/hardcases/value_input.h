@@ -2,6 +2,7 @@
 #pragma once
 
 #include "conformance/hardcases/hard_case.h"
+#include "conformance/scenes/recorder.h"
 
 #include <array>
 #include <bit>
@@ -20,10 +21,23 @@ struct ValueRow {
     ValueJudge judge;
 };
 
+/// What the shader has beside its inputs.
+struct ValueShader {
+    std::string extensions;      // lines of the shader before everything else
+    std::string declarations;    // before main, behind u, i, f and row, the number of the row
+    std::vector<uint32_t> data;  // of the storage buffer at binding 1, which `declarations` declare; none: no buffer
+    std::function<void(std::vector<uint32_t>& words)> edit;  // of the module, for what GLSL cannot say
+    bool robust = false;                                     // reaches outside of the buffer
+};
+
 /// Adds a scene that computes `expression`, a GLSL uint, for every row, with u(k) the k-th input as uint, i(k) as int
-/// and f(k) as float; and the judge of all rows. `declarations` go before main.
+/// and f(k) as float; and the judge of all rows.
 void addValues(CaseInput& input, std::string_view name, std::string_view expression, std::vector<ValueRow> rows,
-               std::string_view declarations = "");
+               const ValueShader& shader);
+inline void addValues(CaseInput& input, std::string_view name, std::string_view expression, std::vector<ValueRow> rows,
+                      std::string_view declarations = "") {
+    addValues(input, name, expression, std::move(rows), ValueShader{{}, std::string(declarations), {}, {}, false});
+}
 
 inline uint32_t bitsOf(float value) {
     return std::bit_cast<uint32_t>(value);

@@ -245,6 +245,81 @@ TEST(Fault, SevenBitWeights) {
     expectCaught("T07", with(7), "exactly");
 }
 
+TEST(Fault, BresenhamFragmentsOutOfPlace) {
+    // One fragment twice, then one left out of connected segments, then one away from the line.
+    expectCaught(
+        "P01", [](auto& d) { byteAt(d[2].images[0], 16, 16, 0) = std::byte{32}; }, "condition 4");
+    expectCaught(
+        "P01",
+        [](auto& d) {
+            for (uint32_t y = 0; y < 32; ++y) byteAt(d[2].images[0], 10, y, 0) = std::byte{0};
+        },
+        "condition");
+    expectCaught(
+        "P03", [](auto& d) { byteAt(d[0].images[0], 30, 5, 0) = std::byte{16}; }, "condition 1");
+}
+
+TEST(Fault, StippleRunsBackwards) {
+    expectCaught(
+        "P07",
+        [](auto& d) {
+            Bytes& texels = d[2].images[0].texels;
+            std::reverse(texels.begin(), texels.end());
+            for (size_t i = 0; i < texels.size(); i += 4) std::reverse(texels.begin() + i, texels.begin() + i + 4);
+        },
+        "mod 16 of the pattern");
+}
+
+TEST(Fault, OutlineOfAClippedTriangle) {
+    expectCaught(
+        "P12", [](auto& d) { byteAt(d[0].images[0], 5, 50, 0) = std::byte{16}; }, "away from all edges");
+    expectCaught(
+        "P12",
+        [](auto& d) {
+            for (uint32_t x = 20; x < 50; ++x) {
+                for (uint32_t y = 10; y < 22; ++y) byteAt(d[0].images[0], x, y, 0) = std::byte{0};
+            }
+        },
+        "is not drawn");
+}
+
+TEST(Fault, FacesAndLayers) {
+    expectCaught(
+        "T14", [](auto& d) { setFloat(d[0].images[0], 2, 0, 0, 96.0f / 255); }, "neither of the two rules");
+    expectCaught(
+        "T16", [](auto& d) { setFloat(d[0].images[0], 45, 0, 0, 0); }, "another face than the same vector");
+    expectCaught(
+        "T17", [](auto& d) { setFloat(d[0].images[0], 0, 0, 0, 1); }, "the average of its 3 texels");
+    expectCaught(
+        "L13", [](auto& d) { setFloat(d[0].images[0], 30, 4, 0, 96.0f / 255); }, "by the projection on its face");
+}
+
+TEST(Fault, BlocksAndFormats) {
+    expectCaught(
+        "T20", [](auto& d) { setFloat(d[4].images[0], 9, 0, 1, 0.4321f); }, "ETC2, block");
+    expectCaught(
+        "B05", [](auto& d) { byteAt(d[0].images[0], 600, 0, 0) = std::byte{1}; }, "codes fall");
+    expectCaught(
+        "B12", [](auto& d) { setCode(d[0].images[0], 5, 0, 31u << 6 | 1); }, "is stored as code");
+    expectCaught(
+        "B13", [](auto& d) { setFloat(d[0].images[0], 7, 0, 2, 1.5f); }, "exactly");
+}
+
+TEST(Fault, ExportsSubgroupsAndViews) {
+    expectCaught(
+        "S05", [](auto& d) { byteAt(d[0].images[0], 20, 3, 0) = std::byte{191}; }, "each quarter is a sample");
+    expectCaught(
+        "X15", [](auto& d) { setCode(d[1].images[0], 30, 30, 0xf7); }, "properties");
+    expectCaught(
+        "X15", [](auto& d) { setCode(d[0].images[0], 31, 30, 0xbf); }, "neighbours in the quad");
+    expectCaught(
+        "V13", [](auto& d) { byteAt(d[1].images[0], 70, 10, 1) ^= std::byte{4}; }, "views of one draw");
+    expectCaught(
+        "V10", [](auto& d) { setCode(d[0].images[0], 2, 2, 0x77); }, "one flat value");
+    expectCaught(
+        "G08", [](auto& d) { setCode(d[0].images[0], 4, 0, 0xdead); }, "exactly 0x00000000");
+}
+
 TEST(Fault, HoleAndDoubleOnTheDiagonal) {
     expectWrong(
         "E01", [](auto& d) { byteAt(d[0].images[0], 3, 4, 0) = std::byte{0}; }, "pixel (3, 4) is covered 0 times");

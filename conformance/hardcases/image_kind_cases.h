@@ -1,0 +1,15 @@
+// Cases of groups L and T about images that are not plain: arrays, cubes, unnormalised coordinates, compressed blocks.
+#pragma once
+
+#include "conformance/hardcases/hard_case.h"
+
+namespace vernier::conformance::hardcases {
+
+void l13(CaseInput& input);
+void t14(CaseInput& input);
+void t15(CaseInput& input);
+void t16(CaseInput& input);
+void t17(CaseInput& input);
+void t20(CaseInput& input);
+
+}  // namespace vernier::conformance::hardcases
