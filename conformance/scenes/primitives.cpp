@@ -125,6 +125,40 @@ Result<Scene> primitive_restart() {
     return record.finish();
 }
 
+Result<Scene> adjacency() {
+    SceneRecorder record("adjacency",
+                         "Lists and strips of lines and triangles with adjacency, whose adjacent vertices lie far off: "
+                         "without a geometry shader nothing reads them.");
+    const uint32_t target = record.colorTarget("color", kRgba8, kExtent);
+    const DepthColorVertex adjacent{{7.5f, -9.25f, 0.5f}, {1, 0, 0}};
+    // Every kind takes the vertices of one band in order, with the adjacent ones where its pattern has them.
+    const auto draw = [&](VkPrimitiveTopology topology, float top, size_t step, size_t first,
+                          const std::vector<DepthColorVertex>& own) {
+        std::vector<DepthColorVertex> vertices(first, adjacent);
+        for (const DepthColorVertex& vertex : own) {
+            vertices.push_back(vertex);
+            vertices.back().position.y += top;
+            vertices.insert(vertices.end(), step - 1, adjacent);
+        }
+        vertices.insert(vertices.end(), first, adjacent);
+        const uint32_t state = depthColorPipeline(record, kFlatVertexGlsl, kFlatFragmentGlsl).topology(topology);
+        record.draw(state, static_cast<uint32_t>(vertices.size())).vertices(record.vertexBuffer("vertices", vertices));
+    };
+    record.pass(kExtent).color(target, kDark);
+    draw(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY, -0.9f, 2, 0, band(8, 0));
+    draw(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST_WITH_ADJACENCY, -0.4f, 2, 0, band(9, 0));
+    draw(VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY, 0.1f, 1, 1, band(11, 0));
+    // A list of lines has one adjacent vertex before and one behind each pair.
+    const auto pairs = band(8, 0.52f);
+    std::vector<DepthColorVertex> list;
+    for (size_t i = 0; i < pairs.size(); i += 2) list.insert(list.end(), {adjacent, pairs[i], pairs[i + 1], adjacent});
+    const uint32_t state = depthColorPipeline(record, kFlatVertexGlsl, kFlatFragmentGlsl)
+                               .topology(VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY);
+    record.draw(state, static_cast<uint32_t>(list.size())).vertices(record.vertexBuffer("list", list));
+    record.output(target);
+    return record.finish();
+}
+
 namespace {
 
 /// Tiles over a leaning sheet, in its plane, each with a bias that decides whether it shows.
@@ -188,9 +222,7 @@ Result<Scene> depth_bias_fixed() {
 namespace {
 
 /// Blades that reach through the near and the far plane.
-Result<Scene> blades(SceneRecorder& record, const std::function<void(PipelineRecorder&)>& state, float near) {
-    const uint32_t target = record.colorTarget("color", kRgba8, kExtent);
-    const uint32_t depth = record.depthTarget("depth", VK_FORMAT_D32_SFLOAT, kExtent);
+std::vector<DepthColorVertex> bladeVertices(float near) {
     std::vector<DepthColorVertex> vertices;
     const float span = 1 - near;
     for (int i = 0; i < 7; ++i) {
@@ -200,6 +232,13 @@ Result<Scene> blades(SceneRecorder& record, const std::function<void(PipelineRec
         addQuad(vertices, {x, -0.9f}, {x + 0.22f, 0.9f}, {from, from + 0.1f, to, to + 0.05f}, hue(i));
         addQuad(vertices, {-0.9f, x}, {0.9f, x + 0.1f}, {to, from, to, from}, hue(i + 3) * 0.7f);
     }
+    return vertices;
+}
+
+Result<Scene> blades(SceneRecorder& record, const std::function<void(PipelineRecorder&)>& state, float near) {
+    const uint32_t target = record.colorTarget("color", kRgba8, kExtent);
+    const uint32_t depth = record.depthTarget("depth", VK_FORMAT_D32_SFLOAT, kExtent);
+    const auto vertices = bladeVertices(near);
     PipelineRecorder pipe = depthColorPipeline(record).depth(VK_COMPARE_OP_LESS);
     state(pipe);
     const uint32_t buffer = record.vertexBuffer("blades", vertices);
@@ -223,6 +262,31 @@ Result<Scene> depth_clip_control() {
     SceneRecorder record("depth_clip_control", "Blades clipped at depths -w and w, as in OpenGL.");
     return blades(
         record, [](PipelineRecorder& state) { state.depthNegativeOneToOne(); }, -1);
+}
+
+Result<Scene> depth_clip_enable() {
+    SceneRecorder record("depth_clip_enable",
+                         "Blades through the near and the far plane, clipped and clamped in every combination: neither "
+                         "without a depth test, whose depths would be open.");
+    const uint32_t target = record.colorTarget("color", kRgba8, kExtent);
+    const uint32_t depth = record.depthTarget("depth", VK_FORMAT_D32_SFLOAT, kExtent);
+    const auto vertices = bladeVertices(0);
+    const uint32_t buffer = record.vertexBuffer("blades", vertices);
+    record.pass(kExtent).color(target, kDark).depthStencil(depth);
+    for (uint32_t part = 0; part < 4; ++part) {
+        const bool clip = (part & 1) != 0, clamp = (part & 2) != 0;
+        PipelineRecorder pipe = depthColorPipeline(record).depthClip(clip);
+        if (clamp) pipe.depthClamp();
+        if (clip || clamp) pipe.depth(VK_COMPARE_OP_LESS);
+        const uint32_t x = part % 2 * 80, y = part / 2 * 80;
+        record.draw(pipe, static_cast<uint32_t>(vertices.size()))
+            .vertices(buffer)
+            .viewport(static_cast<float>(x), static_cast<float>(y), 80, 80, 0.125f, 0.75f)
+            .scissor(static_cast<int32_t>(x), static_cast<int32_t>(y), 80, 80);
+    }
+    record.output(target);
+    record.output(depth);
+    return record.finish();
 }
 
 Result<Scene> depth_bounds() {
@@ -277,11 +341,23 @@ void main() {
 
 namespace {
 
-/// Puts four layers of 80 x 80 side by side, where they can be seen.
-void showLayers(SceneRecorder& record, uint32_t layers, uint32_t flat) {
+/// A wheel drawn into four layers of 80 x 80 by `draw`, which are put side by side where they can be seen.
+struct WheelDraw {
+    uint32_t target, state, buffer, count;
+};
+Result<Scene> layeredWheel(SceneRecorder& record, const char* vertexGlsl, const char* fragmentGlsl,
+                           const std::function<void(const WheelDraw&)>& draw) {
+    const uint32_t target = record.layeredTarget("layers", kRgba8, {80, 80}, 4);
+    const uint32_t flat = record.colorTarget("side by side", kRgba8, kExtent);
+    const auto fan = wheel(9, -0.2f);
+    const uint32_t buffer = record.vertexBuffer("fan", fan);
+    const uint32_t state =
+        depthColorPipeline(record, vertexGlsl, fragmentGlsl).topology(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN);
+    record.pass({80, 80}).color(target, kDark).layers(4);
+    draw({target, state, buffer, static_cast<uint32_t>(fan.size())});
     record.pass(kExtent).color(flat, {});
     for (uint32_t layer = 0; layer < 4; ++layer) {
-        SceneCopyImage copy{layers, flat, {}};
+        SceneCopyImage copy{target, flat, {}};
         copy.region.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, layer, 1};
         copy.region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
         copy.region.dstOffset = {static_cast<int32_t>(layer % 2 * 80), static_cast<int32_t>(layer / 2 * 80), 0};
@@ -289,6 +365,7 @@ void showLayers(SceneRecorder& record, uint32_t layers, uint32_t flat) {
         record.copy(copy);
     }
     record.output(flat);
+    return record.finish();
 }
 
 }  // namespace
@@ -296,11 +373,7 @@ void showLayers(SceneRecorder& record, uint32_t layers, uint32_t flat) {
 Result<Scene> layers() {
     SceneRecorder record("layers",
                          "Four instances of a wheel, each in a layer of its own that the vertex shader chooses.");
-    const uint32_t target = record.layeredTarget("layers", kRgba8, {80, 80}, 4);
-    const uint32_t flat = record.colorTarget("side by side", kRgba8, kExtent);
-    const auto fan = wheel(9, -0.2f);
-    const uint32_t buffer = record.vertexBuffer("fan", fan);
-    const uint32_t state = depthColorPipeline(record, R"(#version 450
+    const char* const vertex = R"(#version 450
 #extension GL_ARB_shader_viewport_layer_array : enable
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 color;
@@ -311,23 +384,17 @@ void main() {
     gl_Layer = 3 - gl_InstanceIndex;
     vColor = color;
 }
-)")
-                               .topology(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN);
-    record.pass({80, 80}).color(target, kDark).layers(4);
-    record.draw(state, static_cast<uint32_t>(fan.size())).vertices(buffer).instances(4);
-    showLayers(record, target, flat);
-    return record.finish();
+)";
+    return layeredWheel(record, vertex, kColorFragmentGlsl, [&record](const WheelDraw& wheel) {
+        record.draw(wheel.state, wheel.count).vertices(wheel.buffer).instances(4);
+    });
 }
 
 Result<Scene> multiview() {
     SceneRecorder record("multiview",
                          "One draw in three views of four, which shift and tint by ViewIndex; the fourth layer is only "
                          "cleared.");
-    const uint32_t target = record.layeredTarget("views", kRgba8, {80, 80}, 4);
-    const uint32_t flat = record.colorTarget("side by side", kRgba8, kExtent);
-    const auto fan = wheel(9, -0.2f);
-    const uint32_t buffer = record.vertexBuffer("fan", fan);
-    const uint32_t state = depthColorPipeline(record, R"(#version 450
+    const char* const vertex = R"(#version 450
 #extension GL_EXT_multiview : enable
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 color;
@@ -336,20 +403,18 @@ void main() {
     gl_Position = vec4(position.x + 0.2 * float(gl_ViewIndex) - 0.3, position.yz, 1.0);
     vColor = color;
 }
-)",
-                                              R"(#version 450
+)";
+    const char* const fragment = R"(#version 450
 #extension GL_EXT_multiview : enable
 layout(location = 0) in vec3 vColor;
 layout(location = 0) out vec4 color;
 void main() { color = vec4(gl_ViewIndex == 1 ? vColor.bgr : vColor, 1.0); }
-)")
-                               .topology(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN);
-    // Every layer gets its background first: those that no view draws to are not cleared by a pass of views.
-    record.pass({80, 80}).color(target, kDark).layers(4);
-    record.pass({80, 80}).loadColor(target).views(0b1011);
-    record.draw(state, static_cast<uint32_t>(fan.size())).vertices(buffer);
-    showLayers(record, target, flat);
-    return record.finish();
+)";
+    // Every layer has its background by now: those that no view draws to are not cleared by a pass of views.
+    return layeredWheel(record, vertex, fragment, [&record](const WheelDraw& wheel) {
+        record.pass({80, 80}).loadColor(wheel.target).views(0b1011);
+        record.draw(wheel.state, wheel.count).vertices(wheel.buffer);
+    });
 }
 
 }  // namespace vernier::conformance::scenes

@@ -171,4 +171,91 @@ Result<Scene> alpha_to_one() {
         kColorVertexGlsl, kAlphaFragmentGlsl);
 }
 
+namespace {
+
+/// Blades leaning through depth, which leave their number in the stencil of the samples they win.
+void drawLeaning(SceneRecorder& record, const std::vector<DepthColorVertex>& vertices, uint32_t buffer) {
+    for (uint32_t first = 0; first < vertices.size(); first += 3) {
+        VkStencilOpState replace{};
+        replace.passOp = VK_STENCIL_OP_REPLACE;
+        replace.compareOp = VK_COMPARE_OP_ALWAYS;
+        replace.compareMask = replace.writeMask = 0xff;
+        replace.reference = 1 + first / 3;
+        const uint32_t state =
+            depthColorPipeline(record).samples(kFour).depth(VK_COMPARE_OP_LESS).stencil(replace, replace);
+        record.draw(state, 3).vertices(buffer).first(first);
+    }
+}
+
+std::vector<DepthColorVertex> leaningBlades() {
+    std::vector<DepthColorVertex> vertices;
+    for (const ColorVertex& vertex : blades(5)) {
+        const float depth = 0.5f + 0.4f * std::sin(3.0f * vertex.position.x + 5.0f * vertex.position.y);
+        vertices.push_back({{vertex.position * 1.2f, depth}, vertex.color});
+    }
+    return vertices;
+}
+
+constexpr VkFormat kDepthStencil = VK_FORMAT_D32_SFLOAT_S8_UINT;
+
+}  // namespace
+
+Result<Scene> depth_stencil_resolve() {
+    SceneRecorder record("depth_stencil_resolve",
+                         "Depth and stencil of four samples resolved to their first one; a second pass shows where the "
+                         "stencil holds odd numbers.");
+    const uint32_t samples = record.colorTarget("samples", kRgba8, kExtent, kFour);
+    const uint32_t color = record.colorTarget("color", kRgba8, kExtent);
+    const uint32_t deep = record.depthTarget("depth of samples", kDepthStencil, kExtent, kFour);
+    const uint32_t resolved = record.depthTarget("depth", kDepthStencil, kExtent);
+    const auto vertices = leaningBlades();
+    const uint32_t buffer = record.vertexBuffer("blades", vertices);
+    record.pass(kExtent)
+        .color(samples, kDark, color)
+        .depthStencil(deep)
+        .resolveDepthStencil(resolved, VK_RESOLVE_MODE_SAMPLE_ZERO_BIT, VK_RESOLVE_MODE_SAMPLE_ZERO_BIT);
+    drawLeaning(record, vertices, buffer);
+    VkStencilOpState odd{};
+    odd.compareOp = VK_COMPARE_OP_EQUAL;
+    odd.compareMask = 1;
+    odd.reference = 1;
+    const uint32_t tint = record
+                              .pipeline(record.vertex(kCoverVertexGlsl), record.fragment(R"(#version 450
+layout(location = 0) out vec4 color;
+void main() { color = vec4(0.95, 0.85, 0.2, 1.0); }
+)"))
+                              .stencil(odd, odd);
+    record.pass(kExtent).loadColor(color).loadDepthStencil(resolved);
+    record.draw(tint, 3);
+    record.output(color);
+    record.output(resolved);
+    return record.finish();
+}
+
+Result<Scene> depth_resolve_modes() {
+    SceneRecorder record("depth_resolve_modes",
+                         "Depth of four samples resolved to the smallest, the largest and their average, with stencils "
+                         "to the smallest, the largest and the first.");
+    const uint32_t samples = record.colorTarget("samples", kRgba8, kExtent, kFour);
+    const uint32_t color = record.colorTarget("color", kRgba8, kExtent);
+    const uint32_t deep = record.depthTarget("depth of samples", kDepthStencil, kExtent, kFour);
+    const auto vertices = leaningBlades();
+    const uint32_t buffer = record.vertexBuffer("blades", vertices);
+    const std::array<std::pair<VkResolveModeFlagBits, VkResolveModeFlagBits>, 3> modes{
+        {{VK_RESOLVE_MODE_MIN_BIT, VK_RESOLVE_MODE_MIN_BIT},
+         {VK_RESOLVE_MODE_MAX_BIT, VK_RESOLVE_MODE_MAX_BIT},
+         {VK_RESOLVE_MODE_AVERAGE_BIT, VK_RESOLVE_MODE_SAMPLE_ZERO_BIT}}};
+    std::vector<uint32_t> outputs{color};
+    for (const auto& [depthMode, stencilMode] : modes) {
+        outputs.push_back(record.depthTarget("depth", kDepthStencil, kExtent));
+        record.pass(kExtent)
+            .color(samples, kDark, color)
+            .depthStencil(deep)
+            .resolveDepthStencil(outputs.back(), depthMode, stencilMode);
+        drawLeaning(record, vertices, buffer);
+    }
+    for (const uint32_t output : outputs) record.output(output);
+    return record.finish();
+}
+
 }  // namespace vernier::conformance::scenes

@@ -35,10 +35,12 @@
     /* primitives.cpp */       \
     X(provoking_vertex)        \
     X(primitive_restart)       \
+    X(adjacency)               \
     X(depth_bias)              \
     X(depth_bias_fixed)        \
     X(depth_clamp)             \
     X(depth_clip_control)      \
+    X(depth_clip_enable)       \
     X(depth_bounds)            \
     X(viewports_indexed)       \
     X(layers)                  \
@@ -47,6 +49,8 @@
     X(sample_counts)           \
     X(sample_locations)        \
     X(sample_shading)          \
+    X(depth_stencil_resolve)   \
+    X(depth_resolve_modes)     \
     X(centroid_inputs)         \
     X(alpha_to_coverage)       \
     X(alpha_to_one)            \
