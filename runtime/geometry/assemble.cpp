@@ -149,10 +149,20 @@ void Assembler::addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, ui
 void Assembler::clipAndAdd(const PreparedDraw& draw, const PrimitiveInfo& info, const LocalPrimitive& primitive,
                            uint32_t vertexCount, Chunk& chunk) {
     const auto clipCount = static_cast<uint32_t>(draw.plan->clipDistanceSlots.size());
+    const auto position = [&](uint32_t n) {
+        std::array<float, 4> p;
+        for (uint32_t c = 0; c < 4; ++c) p[c] = vertices_.clip[c][primitive.vertex[n]];
+        return p;
+    };
+    // What is cut becomes triangles around its first vertex: a triangle begins with its least position, so that the
+    // order of its vertices changes nothing.
+    uint32_t first = 0;
+    for (uint32_t n = 1; vertexCount == 3 && n < 3; ++n)
+        if (position(n) < position(first)) first = n;
     ClipPolygon polygon;
     polygon.count = vertexCount;
     for (uint32_t n = 0; n < vertexCount; ++n) {
-        const uint32_t v = primitive.vertex[n];
+        const uint32_t v = primitive.vertex[(n + first) % vertexCount];
         ClipVertex& vertex = polygon.vertices[n];
         for (uint32_t c = 0; c < 4; ++c) vertex.position[c] = double{vertices_.clip[c][v]};
         vertex.distances.fill(0);
