@@ -111,13 +111,21 @@ uint32_t writtenLanes(const ColorOutputInput& in) {
     return lanes;
 }
 
+void gatherTexels(const ColorOutputInput& in, std::byte* texels) {
+    withTexelSize(in.plan->texelBytes, [&](auto bytes) { gather<bytes()>(in, texels); });
+}
+
+void scatterTexels(const ColorOutputInput& in, const std::byte* texels) {
+    withTexelSize(in.plan->texelBytes, [&](auto bytes) { scatter<bytes()>(in, texels); });
+}
+
 uint32_t outputColors(const ColorOutputInput& in, ColorScratch& scratch) {
     const ColorPlan& plan = *in.plan;
     const uint32_t count = in.batch->count;
     const void* planes[4] = {in.source[0], in.source[1], in.source[2], in.source[3]};
     uint32_t reads = 0;
     if (plan.readsDestination) {
-        withTexelSize(plan.texelBytes, [&](auto bytes) { gather<bytes()>(in, scratch.before.data()); });
+        gatherTexels(in, scratch.before.data());
         reads = writtenLanes(in);
     }
     if (plan.path == ColorPath::blend) {
@@ -140,7 +148,7 @@ uint32_t outputColors(const ColorOutputInput& in, ColorScratch& scratch) {
     if (plan.path == ColorPath::logic)
         applyLogicOp(plan.logicOp, scratch.before.data(), scratch.after.data(), count * plan.texelBytes);
     if (plan.partialMask) keepMasked(plan, scratch.before.data(), scratch.after.data(), count);
-    withTexelSize(plan.texelBytes, [&](auto bytes) { scatter<bytes()>(in, scratch.after.data()); });
+    scatterTexels(in, scratch.after.data());
     return reads;
 }
 

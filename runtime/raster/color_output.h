@@ -38,6 +38,11 @@ inline std::byte* texelAddress(const ColorOutputInput& input, int32_t x, int32_t
            static_cast<size_t>(x) * input.plan->texelBytes + input.sample * input.target->samplePitch;
 }
 
+/// Texels of the lanes of a batch, in order, from and to the attachment; only those that the mask lets through are
+/// stored. Of two lanes on one pixel the later one stays.
+void gatherTexels(const ColorOutputInput& input, std::byte* texels);
+void scatterTexels(const ColorOutputInput& input, const std::byte* texels);
+
 /// Lanes that the mask lets through.
 uint32_t writtenLanes(const ColorOutputInput& input);
 

@@ -428,6 +428,28 @@ void FragmentStage::bindColors(Isa isa) {
     }
 }
 
+/// Colours of spans through a block routine: their texels are put side by side for it.
+void FragmentStage::writeSpans(BoundColor& color, const FragmentBatch& batch) {
+    std::byte* texels = colors_.after.data();
+    const bool reads = color.general.plan->readsDestination;
+    if (reads) {
+        gatherTexels(color.general, texels);
+        statistics_.destinationReads += writtenLanes(color.general);
+    }
+    if (reads || !texelsPacked_) {
+        BlockColorInput packed = color.block;
+        packed.texels = texels;
+        packed.rowPitch = size_t{kBlockSize} * color.general.plan->texelBytes;
+        packed.order = LaneOrder::rows;
+        packed.lanes = (batch.count + 15) / 16 * 16;
+        packed.mask = nullptr;
+        color.blockRoutine(packed);
+    }
+    // The samples of a pixel have one colour.
+    texelsPacked_ = boundColorCount_ == 1 && !reads;
+    scatterTexels(color.general, texels);
+}
+
 /// `mask`: the lanes that are written; nullptr: all.
 void FragmentStage::writeColors(const FragmentBatch& batch, uint32_t sample, const uint32_t* mask) {
     for (size_t k = 0; k < boundColorCount_; ++k) {
@@ -435,12 +457,16 @@ void FragmentStage::writeColors(const FragmentBatch& batch, uint32_t sample, con
         color.general.batch = &batch;
         color.general.mask = color.block.mask = mask;
         color.general.sample = sample;
-        if (color.blockRoutine == nullptr || batch.order == LaneOrder::spans) {
+        if (color.blockRoutine == nullptr) {
             const ColorPlan& plan = *color.general.plan;
             color.general.packed = texelsPacked_;
             statistics_.destinationReads += outputColors(color.general, colors_);
             // The samples of a pixel have one colour.
             texelsPacked_ = boundColorCount_ == 1 && plan.path == ColorPath::store && !plan.partialMask;
+            continue;
+        }
+        if (batch.order == LaneOrder::spans) {
+            writeSpans(color, batch);
             continue;
         }
         color.block.texels = texelAddress(color.general, batch.originX, batch.originY);

@@ -67,6 +67,8 @@ class FragmentStage {
     void bindColors(Isa isa);
     void smoothAlpha(const FragmentBatch& batch);
     void writeColors(const FragmentBatch& batch, uint32_t sample, const uint32_t* mask);
+    struct BoundColor;
+    void writeSpans(BoundColor& color, const FragmentBatch& batch);
     void writePartial(const FragmentBatch& batch);
     /// The pixels of block_ that a sample covers, by lane of LaneOrder::rows.
     uint64_t blockPixels(uint32_t sample) const { return blockMasks_[sample] >> blockShift_ & blockRectangle_; }
