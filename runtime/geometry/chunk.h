@@ -68,6 +68,8 @@ struct Primitive {
     bool affine;      // all w equal
     bool smallEdges;  // edge components below 2^kSmallEdgeBits: 32-bit edge functions
     bool tiny;        // edge components up to 2^kTinyEdgeBits
+    bool small;  // tiny or a point, bounds of at most kSmallExtent pixels on a side, wExponent 0; and the draw packs
+                 // such primitives. A point has no shape then: it covers its bounds
     bool isPoint;
 };
 
@@ -81,6 +83,9 @@ static_assert((int64_t{2} * kTileSize << kSmallEdgeBits) <= (int64_t{1} << 30));
 /// pixels, the primitive's own extent, and one pixel more), and their sums, in 32 bits as they are.
 inline constexpr int kTinyEdgeBits = 12, kTinySubPixelBits = 8;
 static_assert(int64_t{4} * (kTileSize + 17) << (kTinySubPixelBits + kTinyEdgeBits) < int64_t{1} << 31);
+
+/// Pixels on a side that a small primitive's bounds have at most.
+inline constexpr int32_t kSmallExtent = 8;
 
 /// A run of Chunk::entries that lie in one tile. `large`: some of them may cover a large part of it.
 struct TileRange {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/geometry/chunk.h"
+
 namespace vernier {
 namespace {
 
@@ -94,6 +96,8 @@ PreparedDraw prepareDraw(const DrawCall& call, const VkRect2D& renderArea) {
     if (draw.plan->viewportIndexSlot != kNoSlot)
         for (uint32_t n = 1; n < std::min(call.dynamic->viewportCount, kMaxViewports); ++n)
             draw.otherViewports.push_back(setUpViewport(draw, n, renderArea));
+    draw.packsSmall = draw.plan->packsSmall && draw.samplesAtCentre && draw.otherViewports.empty() &&
+                      draw.subPixelBits <= kTinySubPixelBits;
     draw.runs = vertexRuns(call, draw.state->topology, draw.state->primitiveRestart);
     if (!draw.runs.empty()) draw.primitivesPerInstance = draw.runs.back().firstPrimitive + draw.runs.back().primitives;
     return draw;

@@ -41,6 +41,7 @@ struct PreparedDraw {
     uint32_t subPixelBits = 8;
     const SamplePosition* positions = nullptr;  // of all samples of a pixel
     bool samplesAtCentre = true;                // one sample, in the middle
+    bool packsSmall = false;                    // primitives of a few pixels are drawn many at a time
     std::vector<VertexRun> runs;
     uint32_t primitivesPerInstance = 0;
     uint32_t fragmentState = 0;  // draws with the same number may share fragment batches

@@ -32,6 +32,10 @@ bool culled(VkCullModeFlags mode, bool front) {
     return (mode & static_cast<VkCullModeFlags>(front ? VK_CULL_MODE_FRONT_BIT : VK_CULL_MODE_BACK_BIT)) != 0;
 }
 
+bool isSmall(const std::array<int16_t, 4>& bounds) {
+    return bounds[2] - bounds[0] < kSmallExtent && bounds[3] - bounds[1] < kSmallExtent;
+}
+
 bool before(const WindowVertex& a, const WindowVertex& b) {
     return a.y != b.y ? a.y < b.y : a.x < b.x;
 }
@@ -154,7 +158,36 @@ void PrimitiveSetup::addSquare(const PreparedDraw& draw, const PrimitiveInfo& in
                                const WindowVertex& vertex, double x, double y, float size) {
     const double clamped = size >= kMinPointSize ? std::min(size, kMaxPointSize) : kMinPointSize;  // NaN: the least
     const std::array<float, 3> point{static_cast<float>(x), static_cast<float>(y), static_cast<float>(1 / clamped)};
+    if (draw.packsSmall && addSmallSquare(draw, info, style, vertex, x, y, clamped)) return;
     addShape(draw, info, style, squareShape(x, y, clamped, draw.subPixelBits), vertex, vertex, &point);
+}
+
+/// A point of a few pixels, as its bounds alone: with one sample in the middle, the pixels that it covers are a
+/// rectangle. Returns false when it has to be added otherwise.
+bool PrimitiveSetup::addSmallSquare(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style,
+                                    const WindowVertex& vertex, double x, double y, double size) {
+    if (size > kSmallExtent || exponentOf(vertex.inverseW) != 0) return false;
+    const Shape shape = squareShape(x, y, size, draw.subPixelBits);
+    const uint32_t bits = draw.subPixelBits;
+    // The first pixel whose centre is not before a side.
+    const auto pixelAt = [bits](int64_t side) {
+        const int64_t half = int64_t{1} << (bits - 1);
+        return static_cast<int32_t>(std::clamp<int64_t>((side + half - 1) >> bits, kGuardBandMin, kGuardBandMax));
+    };
+    const std::array<int32_t, 4> bounds{
+        std::max(pixelAt(shape.sides[0]), style.area->x0), std::max(pixelAt(shape.sides[1]), style.area->y0),
+        std::min(pixelAt(shape.sides[2]), style.area->x1) - 1, std::min(pixelAt(shape.sides[3]), style.area->y1) - 1};
+    if (bounds[0] > bounds[2] || bounds[1] > bounds[3]) return true;
+    if (bounds[2] - bounds[0] >= kSmallExtent || bounds[3] - bounds[1] >= kSmallExtent) return false;
+    const auto index = static_cast<uint32_t>(chunk_->primitives.size());
+    Primitive& p = addPrimitive(info, style, {&vertex, &vertex, &vertex}, bounds);
+    p.shape = kNoShape;
+    p.isPoint = p.small = true;
+    const uint32_t tx0 = column(bounds[0]), tx1 = column(bounds[2]), ty0 = row(bounds[1]), ty1 = row(bounds[3]);
+    for (uint32_t ty = ty0; ty <= ty1; ++ty)
+        for (uint32_t tx = tx0; tx <= tx1; ++tx)
+            addEntry(p.layer * grid_.perLayer() + ty * grid_.columns + tx, index, false);
+    return true;
 }
 
 void PrimitiveSetup::addShape(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style,
@@ -170,6 +203,7 @@ void PrimitiveSetup::addShape(const PreparedDraw& draw, const PrimitiveInfo& inf
     Primitive& p = addPrimitive(info, style, {&a, &b, &a}, bounds);
     p.shape = shapeIndex;
     p.isPoint = point != nullptr;
+    p.small = false;
     p.point = p.isPoint ? *point : std::array<float, 3>{};
     binShape(p, shape, index, draw.subPixelBits);
 }
@@ -229,6 +263,7 @@ void PrimitiveSetup::addFilled(const PreparedDraw& draw, const PrimitiveInfo& in
     const int64_t extent = std::max(span(p.x), span(p.y));
     p.smallEdges = extent <= int64_t{1} << kSmallEdgeBits;
     p.tiny = bits <= kTinySubPixelBits && extent <= int64_t{1} << kTinyEdgeBits;
+    p.small = p.tiny && draw.packsSmall && p.wExponent == 0 && isSmall(p.bounds);
     bin(p, index, draw);
 }
 
@@ -236,8 +271,6 @@ void PrimitiveSetup::bin(const Primitive& p, uint32_t index, const PreparedDraw&
     const uint32_t subPixelBits = draw.subPixelBits;
     const bool mayCoverTiles = draw.viewport(p.viewport).sampleAreas.empty();
     const uint32_t firstTile = p.layer * grid_.perLayer();
-    const auto column = [&](int32_t x) { return static_cast<uint32_t>((x - grid_.x0) / kTileSize); };
-    const auto row = [&](int32_t y) { return static_cast<uint32_t>((y - grid_.y0) / kTileSize); };
     const uint32_t tx0 = column(p.bounds[0]), tx1 = column(p.bounds[2]);
     const uint32_t ty0 = row(p.bounds[1]), ty1 = row(p.bounds[3]);
     const bool spansTile = p.bounds[2] - p.bounds[0] == kTileSize - 1 && p.bounds[3] - p.bounds[1] == kTileSize - 1;
@@ -282,17 +315,14 @@ void PrimitiveSetup::bin(const Primitive& p, uint32_t index, const PreparedDraw&
 
 /// A line is handed to the tiles near it, a point to all that its bounds touch.
 void PrimitiveSetup::binShape(const Primitive& p, const Shape& shape, uint32_t index, uint32_t subPixelBits) {
-    const auto tileOf = [](int32_t pixel, int32_t origin) {
-        return static_cast<uint32_t>((pixel - origin) / kTileSize);
-    };
     const uint32_t firstTile = p.layer * grid_.perLayer();
     const double unit = static_cast<double>(1u << subPixelBits), half = 0.5 * kTileSize * unit;
     const double dx = double(shape.bx) - shape.ax, dy = double(shape.by) - shape.ay;
     // The farthest that a covered place can be from the segment's line, times the segment's length.
     const double length = segmentLength(shape, subPixelBits) * unit;
     const double band = (std::abs(dx) + std::abs(dy)) * half + (kMaxLineWidth + 2) * unit * length;
-    for (uint32_t ty = tileOf(p.bounds[1], grid_.y0); ty <= tileOf(p.bounds[3], grid_.y0); ++ty) {
-        for (uint32_t tx = tileOf(p.bounds[0], grid_.x0); tx <= tileOf(p.bounds[2], grid_.x0); ++tx) {
+    for (uint32_t ty = row(p.bounds[1]); ty <= row(p.bounds[3]); ++ty) {
+        for (uint32_t tx = column(p.bounds[0]); tx <= column(p.bounds[2]); ++tx) {
             const double cx = (grid_.x0 + static_cast<double>(tx) * kTileSize) * unit + half;
             const double cy = (grid_.y0 + static_cast<double>(ty) * kTileSize) * unit + half;
             const bool near = std::abs((cx - shape.ax) * dy - (cy - shape.ay) * dx) <= band;

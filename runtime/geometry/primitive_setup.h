@@ -79,12 +79,16 @@ class PrimitiveSetup {
                     const WindowVertex& b);
     void addSquare(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style, const WindowVertex& vertex,
                    double x, double y, float size);
+    bool addSmallSquare(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style,
+                        const WindowVertex& vertex, double x, double y, double size);
     Primitive& addPrimitive(const PrimitiveInfo& info, const Style& style,
                             const std::array<const WindowVertex*, 3>& vertices, const std::array<int32_t, 4>& bounds);
     void addShape(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style, const Shape& shape,
                   const WindowVertex& a, const WindowVertex& b, const std::array<float, 3>* point);
     void bin(const Primitive& primitive, uint32_t index, const PreparedDraw& draw);
     void binShape(const Primitive& primitive, const Shape& shape, uint32_t index, uint32_t subPixelBits);
+    uint32_t column(int32_t x) const { return static_cast<uint32_t>((x - grid_.x0) / kTileSize); }
+    uint32_t row(int32_t y) const { return static_cast<uint32_t>((y - grid_.y0) / kTileSize); }
     void addEntry(uint32_t tile, uint32_t entry, bool large);
 
     Chunk* chunk_ = nullptr;

@@ -283,6 +283,23 @@ void planFragments(const GraphicsState& state, const ir::Program& fragment, Isa 
                                [](const ColorPlan& color) { return color.readsDestination; });
 }
 
+/// The program itself asks for inputs at other places (interpolateAtCentroid, -Sample, -Offset).
+bool interpolates(const ir::Program& fragment) {
+    const auto asks = [](const ir::Inst& inst) {
+        return inst.op == ir::Op::interpolateAtCentroid || inst.op == ir::Op::interpolateAtSample ||
+               inst.op == ir::Op::interpolateAtOffset;
+    };
+    return std::any_of(fragment.blocks.begin(), fragment.blocks.end(), [&](const ir::Block& block) {
+        return std::any_of(block.insts.begin(), block.insts.end(), asks);
+    });
+}
+
+bool packsSmall(const Plan& plan, const ir::Program* fragment) {
+    if (plan.samples != 1 || (plan.sampleMask & 1) == 0 || plan.preciseInterpolation || plan.smoothLines) return false;
+    if (plan.depth.bounds || plan.depth.stencil || (plan.depth.any() && !plan.depth.early)) return false;
+    return !plan.runsFragments || (plan.coverageIsFull && plan.fragmentBuiltins.empty() && !interpolates(*fragment));
+}
+
 }  // namespace
 
 DepthStorage depthStorage(VkFormat format) {
@@ -331,6 +348,7 @@ Plan makePlan(const GraphicsState& state, const ShaderProgram& program) {
             plan.usesQuads = plan.usesQuads || (pixel != nullptr && pixel->usesQuads);
         }
     }
+    plan.packsSmall = packsSmall(plan, fragment);
     collectFacts(state, program, plan);
     return plan;
 }

@@ -122,6 +122,8 @@ struct Plan {
     bool countsEarly = false;           // samples are counted before the program may drop them (EarlyFragmentTests)
     bool coverageIsFull = false;        // every lane of a batch is one covered sample, and stays so
     bool usesFragCoord = false;
+    bool packsSmall = false;  // primitives of a few pixels may be drawn many at a time: lanes of a batch need not know
+                              // their primitive, and the early test is one of depth at most
     uint32_t samples = 1;
     uint32_t sampleMask = ~0u;
     bool alphaToCoverage = false, alphaToOne = false;

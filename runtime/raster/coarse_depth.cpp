@@ -1,6 +1,7 @@
 #include "runtime/raster/coarse_depth.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -55,10 +56,17 @@ void CoarseDepth::update(const DepthPlan& plan, const TrianglePlanes& planes, in
                       std::nextafter(static_cast<float>(range.high), kInfinity)};
             known_ = true;
         } else {
-            // What passes a less-than test only lowers depths: the upper bound holds, the lower one is lost.
-            if ((plan.compare & kLess) != 0) stored.low = -kInfinity;
-            if ((plan.compare & kGreater) != 0) stored.high = kInfinity;
+            updateParts(plan, uint64_t{1} << blockIndex(blocks[b]));
         }
+    }
+}
+
+void CoarseDepth::updateParts(const DepthPlan& plan, uint64_t blocks) {
+    // What passes a less-than test only lowers depths: the upper bound holds, the lower one is lost.
+    for (; blocks != 0; blocks &= blocks - 1) {
+        Bounds& stored = blocks_[static_cast<uint32_t>(std::countr_zero(blocks))];
+        if ((plan.compare & kLess) != 0) stored.low = -kInfinity;
+        if ((plan.compare & kGreater) != 0) stored.high = kInfinity;
     }
 }
 

@@ -25,6 +25,9 @@ class CoarseDepth {
     void update(const DepthPlan& plan, const TrianglePlanes& planes, int32_t tileX, int32_t tileY, uint32_t samples,
                 const BlockCoverage* blocks, uint32_t count);
 
+    /// After a depth test that wrote to pixels of these blocks, bit blockIndex() each.
+    void updateParts(const DepthPlan& plan, uint64_t blocks);
+
   private:
     struct Bounds {
         float low, high;

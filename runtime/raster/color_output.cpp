@@ -41,6 +41,12 @@ void forEachRun(const FragmentBatch& batch, const Function& function) {
 
 template <uint32_t kBytes>
 void gather(const ColorOutputInput& in, std::byte* texels) {
+    const FragmentBatch& batch = *in.batch;
+    if (batch.order == LaneOrder::spans && batch.apart) {
+        for (uint32_t n = 0; n < batch.count; ++n)
+            std::memcpy(texels + n * kBytes, texelAddress(in, batch.x[n], batch.y[n]), kBytes);
+        return;
+    }
     forEachRun(*in.batch, [&](int32_t x, int32_t y, uint32_t first, uint32_t count) {
         copyTexels<kBytes>(texels + first * kBytes, texelAddress(in, x, y), count);
     });
@@ -48,6 +54,13 @@ void gather(const ColorOutputInput& in, std::byte* texels) {
 
 template <uint32_t kBytes>
 void scatter(const ColorOutputInput& in, const std::byte* texels) {
+    const FragmentBatch& batch = *in.batch;
+    if (batch.order == LaneOrder::spans && batch.apart) {
+        for (uint32_t n = 0; n < batch.count; ++n)
+            if (in.mask == nullptr || in.mask[n] != 0)
+                std::memcpy(texelAddress(in, batch.x[n], batch.y[n]), texels + n * kBytes, kBytes);
+        return;
+    }
     forEachRun(*in.batch, [&](int32_t x, int32_t y, uint32_t first, uint32_t count) {
         std::byte* place = texelAddress(in, x, y);
         const std::byte* from = texels + first * kBytes;

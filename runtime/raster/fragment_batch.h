@@ -13,9 +13,9 @@ inline constexpr uint32_t kMaxFragmentLanes = 128;
 /// SIMD writes past the last lane of a segment; room for one vector more.
 inline constexpr uint32_t kLaneRoom = kMaxFragmentLanes + 16;
 
-/// Consecutive lanes of one primitive.
+/// Consecutive lanes of one primitive; or of any number of small ones, with attributes that are interpolated already.
 struct FragmentSegment {
-    const TrianglePlanes* planes = nullptr;
+    const TrianglePlanes* planes = nullptr;  // nullptr: small primitives
     uint32_t first = 0, count = 0;
 };
 
@@ -46,6 +46,7 @@ struct FragmentBatch {
         offsetY;                                           // place inside the pixel, when it is not the centre
     alignas(64) std::array<uint32_t, kLaneRoom> coverage;  // samples the lane stands for
     alignas(64) std::array<uint32_t, kLaneRoom> sample;    // when run per sample
+    bool apart = false;                                    // spans only: some lanes are in no span
     uint32_t spanCount = 0;                                // spans only
     std::array<FragmentSpan, kMaxFragmentLanes> spans;
     uint32_t segmentCount = 0;

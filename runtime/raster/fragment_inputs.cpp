@@ -55,6 +55,45 @@ void FragmentStage::bindInterpolation() {
     }
 }
 
+void FragmentStage::bindSmall() {
+    smallTargets_.clear();
+    if (!draw_->packsSmall) return;
+    for (const auto* targets : {&centreTargets_.smooth, &centreTargets_.linear, &centreTargets_.flat})
+        smallTargets_.insert(smallTargets_.end(), targets->begin(), targets->end());
+    smallAttributes_.resize(smallTargets_.size());
+    smallPlanes_.resize(smallTargets_.size());
+    smallPlaces_.resize(smallTargets_.size());
+}
+
+void FragmentStage::gatherAttributes(const SmallGroup& group, const float* attributes) {
+    const size_t weighted = centreTargets_.smooth.size() + centreTargets_.linear.size();
+    for (size_t k = 0; k < smallTargets_.size(); ++k) {
+        SmallAttribute& to = smallAttributes_[k];
+        const float* from = attributes + smallTargets_[k].varying;
+        for (uint32_t lane = 0; lane < group.count; ++lane) {
+            if (k >= weighted) {  // bits, which no float operation may touch
+                std::memcpy(&to.first[lane], from + group.flat[lane], sizeof(float));
+                continue;
+            }
+            const float first = from[group.attributes[0][lane]];
+            to.first[lane] = first;
+            to.difference1[lane] = from[group.attributes[1][lane]] - first;
+            to.difference2[lane] = from[group.attributes[2][lane]] - first;
+        }
+    }
+}
+
+/// The lanes of small primitives, to where the program reads them.
+void FragmentStage::takeSmallInputs(const FragmentBatch& batch) {
+    for (uint32_t s = 0; s < batch.segmentCount; ++s) {
+        const FragmentSegment& part = batch.segments[s];
+        if (part.planes != nullptr) continue;
+        for (size_t k = 0; k < smallTargets_.size(); ++k)
+            std::memcpy(smallTargets_[k].plane + part.first, smallPlanes_[k].data() + part.first,
+                        part.count * sizeof(float));
+    }
+}
+
 void FragmentStage::interpolate(const FragmentBatch& batch, InterpolationInput& input) {
     input.batch = &batch;
     const bool precise = plan_->preciseInterpolation;
@@ -76,6 +115,7 @@ void FragmentStage::fillInputs(const FragmentBatch& batch) {
         centroidOffsets(batch);
         interpolate(batch, centroidInput_);
     }
+    if (batch.order == LaneOrder::spans && batch.apart) takeSmallInputs(batch);
     fillBuiltins(batch, plan_->fragmentBuiltins, *context_);
 }
 

@@ -84,6 +84,7 @@ void FragmentStage::bind(const PreparedDraw& draw, uint64_t token) {
     interpolate_ = interpolateFunction(isa);
     placeLanes_ = placeLanesFunction(isa);
     spreadPixels_ = spreadPixelsFunction(isa);
+    shadeSmall_ = shadeSmallFunction(isa);
     blend_ = blendFunction(isa);
 
     const DynamicState& dynamic = *draw.call.dynamic;
@@ -110,6 +111,7 @@ void FragmentStage::bind(const PreparedDraw& draw, uint64_t token) {
     }
     bindInputs();
     bindInterpolation();
+    bindSmall();
     bindColors(isa);
     readsPixels_ = plan_->smoothLines || !plan_->fragmentBuiltins.empty() || plan_->preciseInterpolation ||
                    plan_->needsCentroid || !plan_->keepsCoverage;
@@ -130,9 +132,10 @@ BatchContext* FragmentStage::begin(const PreparedDraw& draw, const std::shared_p
 
 TrianglePlanes& FragmentStage::startPrimitive() {
     // A slot stays as long as a segment refers to it; the last one may be taken again when none does.
+    uint32_t segments = batch_.segmentCount;
+    if (segments != 0 && batch_.segments[segments - 1].planes == nullptr) --segments;  // neighbours of it have planes
     const bool lastUnused =
-        planesCount_ > 0 &&
-        (batch_.segmentCount == 0 || batch_.segments[batch_.segmentCount - 1].planes != &planes_[planesCount_ - 1]);
+        planesCount_ > 0 && (segments == 0 || batch_.segments[segments - 1].planes != &planes_[planesCount_ - 1]);
     if (!lastUnused) ++planesCount_;
     return planes_[planesCount_ - 1];
 }
@@ -171,8 +174,7 @@ void FragmentStage::add(const BlockCoverage& block) {
     } else {
         addPixels(block, any);
     }
-    inBatch_[index] |= any;
-    blocksInBatch_ |= uint64_t{1} << index;
+    expect(index, any);
 }
 
 void FragmentStage::placeBlock() {
@@ -256,6 +258,36 @@ void FragmentStage::addQuads(const BlockCoverage& block, uint64_t any) {
     }
 }
 
+void FragmentStage::addSmall(const SmallGroup& group, const float* attributes, const SmallFragment* fragments,
+                             uint32_t count) {
+    if (count == 0) return;
+    gatherAttributes(group, attributes);
+    while (true) {
+        const uint32_t first = batch_.count, lanes = std::min(count, capacity_ - first);
+        if (batch_.segmentCount == 0 || batch_.segments[batch_.segmentCount - 1].planes != nullptr)
+            batch_.segments[batch_.segmentCount++] = {nullptr, first, 0};
+        batch_.segments[batch_.segmentCount - 1].count += lanes;
+        batch_.apart = true;
+        for (size_t k = 0; k < smallPlaces_.size(); ++k) smallPlaces_[k] = smallPlanes_[k].data() + first;
+        statistics_.perspectiveDivides +=
+            shadeSmall_({&group, fragments, lanes, tileX_, tileY_, batch_.x.data() + first, batch_.y.data() + first,
+                         smallAttributes_, smallPlaces_, centreTargets_.smooth.size(), centreTargets_.linear.size()});
+        batch_.count += lanes;
+        fragments += lanes;
+        count -= lanes;
+        if (batch_.count == capacity_) {
+            flush();
+            // What is expected was forgotten with the batch.
+            for (uint32_t n = 0; n < count; ++n) {
+                const uint32_t x = fragments[n] & 63, y = fragments[n] >> 6 & 63;
+                expect(y / kBlockSize * (kTileSize / kBlockSize) + x / kBlockSize,
+                       uint64_t{1} << (y % kBlockSize * kBlockSize + x % kBlockSize));
+            }
+        }
+        if (count == 0) return;
+    }
+}
+
 void FragmentStage::flush() {
     if (batch_.count != 0) {
         const uint32_t count = batch_.count;
@@ -270,6 +302,7 @@ void FragmentStage::flush() {
         batch_.count = 0;
         batch_.segmentCount = 0;
         batch_.spanCount = 0;
+        batch_.apart = false;
         for (; blocksInBatch_ != 0; blocksInBatch_ &= blocksInBatch_ - 1)
             inBatch_[static_cast<uint32_t>(std::countr_zero(blocksInBatch_))] = 0;
         // The primitive being added goes on in the next batch.

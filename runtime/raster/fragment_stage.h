@@ -11,6 +11,7 @@
 #include "runtime/raster/depth_stencil.h"
 #include "runtime/raster/fragment_batch.h"
 #include "runtime/raster/interpolate.h"
+#include "runtime/raster/small_primitives.h"
 
 namespace vernier {
 
@@ -32,6 +33,16 @@ class FragmentStage {
     TrianglePlanes& startPrimitive();
     /// Pixels of the current primitive that passed the early tests.
     void add(const BlockCoverage& block);
+    /// Room for what waitsFor() and add() need to know of fragments that come later: pixels of a block of the tile.
+    void expect(uint32_t block, uint64_t pixels) {
+        inBatch_[block] |= pixels;
+        blocksInBatch_ |= uint64_t{1} << block;
+    }
+    /// Fragments of these pixels must wait until what is collected, or expected, is written.
+    bool waitsFor(uint32_t block, uint64_t pixels) const { return plan_->ordered && (inBatch_[block] & pixels) != 0; }
+    /// Fragments of small primitives that passed the early tests, all of them expected. `attributes`: first float of
+    /// the chunk's. Of a draw with Plan::packsSmall. The list has room for one vector more.
+    void addSmall(const SmallGroup& group, const float* attributes, const SmallFragment* fragments, uint32_t count);
     /// Shades and writes what is collected.
     void flush();
     /// The draw must be bound anew: its memory may be gone.
@@ -52,6 +63,9 @@ class FragmentStage {
     BatchContext* begin(const PreparedDraw& draw, const std::shared_ptr<const BatchProgram>& program);
     void bindInputs();
     void bindInterpolation();
+    void bindSmall();
+    void gatherAttributes(const SmallGroup& group, const float* attributes);
+    void takeSmallInputs(const FragmentBatch& batch);
     void placeBlock();
     void runBlock(const BlockCoverage& block, uint64_t pixels);
 
@@ -94,6 +108,13 @@ class FragmentStage {
     VaryingTargets centreTargets_, centroidTargets_, sampleTargets_;
     VaryingTargets pixelTargets_;  // of the part that runs per pixel
     InterpolationInput centreInput_{}, centroidInput_{}, sampleInput_{}, pixelInput_{};
+    // Attributes of small primitives: smooth, linear, flat. Their lanes wait apart from the program's inputs, which
+    // blocks that are run at once use, too.
+    std::vector<VaryingTarget> smallTargets_;
+    std::vector<SmallAttribute> smallAttributes_;
+    std::vector<std::array<float, kLaneRoom>> smallPlanes_;
+    std::vector<float*> smallPlaces_;  // where in smallPlanes_ the next lanes go
+    ShadeSmallFn shadeSmall_ = nullptr;
     InterpolateFn interpolate_ = nullptr;
     PlaceLanesFn placeLanes_ = nullptr;
     SpreadPixelsFn spreadPixels_ = nullptr;

@@ -259,6 +259,7 @@ uint32_t interpolate(const InterpolationInput& in) {
     const bool weighted = !in.smooth.empty() || !in.linear.empty() || in.fragZ != nullptr;
     for (uint32_t s = 0; s < in.batch->segmentCount; ++s) {
         const FragmentSegment& segment = in.batch->segments[s];
+        if (segment.planes == nullptr) continue;
         copyFlat(in, segment);
         if (!weighted && !in.perspective) continue;
         const SegmentPlanes planes(in, pixels, *segment.planes);

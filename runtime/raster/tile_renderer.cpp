@@ -66,6 +66,36 @@ uint32_t cutSamples(const std::vector<PixelRect>& areas, int32_t tileX, int32_t 
     return kept;
 }
 
+/// So many small primitives are drawn together, at least; what fewer would gain is less than what it costs.
+constexpr uint32_t kFewestSmall = 4;
+
+/// How many of the entries [first, end) of a chunk, from the first on, are small and of one draw.
+uint32_t smallRun(const Chunk& chunk, uint32_t first, uint32_t end, uint32_t draw) {
+    uint32_t n = first;
+    for (; n < end; ++n) {
+        const Primitive& primitive = chunk.primitives[chunk.entries[n] & ~kCoversTile];
+        if (!primitive.small || primitive.draw != draw) break;
+    }
+    return n - first;
+}
+
+/// Calls function(block, part) for the blocks of a tile that have some of `pixels`, bit 8 y + x for (left + x, top +
+/// y).
+template <class Function>
+void forEachBlock(uint32_t left, uint32_t top, uint64_t pixels, const Function& function) {
+    constexpr uint32_t kColumns = kTileSize / kBlockSize;
+    const uint32_t block = top / 8 * kColumns + left / 8, x = left % 8, y = top % 8;
+    const uint64_t leftColumns = (0xFFull >> x) * 0x0101010101010101u;
+    const uint64_t upper = pixels << (8 * y), lower = y == 0 ? 0 : pixels >> (64 - 8 * y);
+    const auto row = [&](uint32_t first, uint64_t part) {
+        if (part == 0) return;
+        function(first, (part & leftColumns) << x);
+        if (const uint64_t right = part & ~leftColumns; right != 0) function(first + 1, right >> (8 - x));
+    };
+    row(block, upper);
+    row(block + kColumns, lower);
+}
+
 uint64_t countSamples(const BlockCoverage* blocks, uint32_t count, uint32_t samples) {
     uint64_t total = 0;
     for (uint32_t b = 0; b < count; ++b)
@@ -184,6 +214,65 @@ void TileRenderer::draw(const Primitive& primitive, const Chunk& chunk, const Pr
     for (uint32_t b = 0; b < count; ++b) fragments_.add(blocks_[b]);
 }
 
+void TileRenderer::drawSmall(const Chunk& chunk, const uint32_t* entries, uint32_t count, const PreparedDraw& draw) {
+    const Plan& plan = *draw.plan;
+    const Isa isa = draw.call.pipeline->isa();
+    const bool tests = fragments_.testsDepth(), writes = tests && plan.depth.write;
+    setUpSmallFunction(isa)({chunk.primitives.data(), entries, count, tileX_, tileY_, draw.subPixelBits,
+                             draw.firstViewport.depthLow, draw.firstViewport.depthHigh},
+                            group_);
+    uint32_t fragments = 0;
+    const auto finish = [&] {
+        PassStatistics& statistics = fragments_.statistics();
+        if (tests && fragments != 0) {
+            const DepthTarget& target = fragments_.depthState().target;
+            statistics.depthReads += fragments;
+            fragments = testSmallFunction(isa)({&plan.depth, &group_, target.texel(tileX_, tileY_, 0),
+                                                static_cast<uint32_t>(target.rowPitch), target.texelBytes},
+                                               smallFragments_.data(), fragments);
+            if (writes) coarse_.updateParts(plan.depth, blocksCollected_);
+        }
+        if (plan.runsFragments) {
+            fragments_.addSmall(group_, chunk.attributes.data(), smallFragments_.data(), fragments);
+        } else {
+            statistics.samplesPassed += fragments;
+        }
+        fragments = 0;
+        for (; blocksCollected_ != 0; blocksCollected_ &= blocksCollected_ - 1)
+            collected_[static_cast<uint32_t>(std::countr_zero(blocksCollected_))] = 0;
+    };
+    for (uint32_t lane = 0; lane < count; ++lane) {
+        uint64_t pixels = group_.pixels[lane];
+        if (pixels == 0) continue;
+        if ((group_.precise >> lane & 1) != 0) {
+            finish();
+            this->draw(chunk.primitives[entries[lane] & ~kCoversTile], chunk, draw, false);
+            continue;
+        }
+        const uint32_t left = group_.left[lane], top = group_.top[lane];
+        // Neither depths nor colours of one pixel may be asked for twice at a time.
+        bool twice = false, waits = false;
+        forEachBlock(left, top, pixels, [&](uint32_t block, uint64_t part) {
+            twice |= (collected_[block] & part) != 0;
+            waits |= plan.runsFragments && fragments_.waitsFor(block, part);
+        });
+        if (twice || waits) finish();
+        if (waits) fragments_.flush();
+        forEachBlock(left, top, pixels, [&](uint32_t block, uint64_t part) {
+            if (plan.runsFragments) fragments_.expect(block, part);
+            if (!writes) return;
+            collected_[block] |= part;
+            blocksCollected_ |= uint64_t{1} << block;
+        });
+        const SmallFragment origin = smallFragment(left, top, lane);
+        for (; pixels != 0; pixels &= pixels - 1) {
+            const auto bit = static_cast<uint32_t>(std::countr_zero(pixels));
+            smallFragments_[fragments++] = static_cast<SmallFragment>(origin + smallFragment(bit & 7, bit >> 3, 0));
+        }
+    }
+    finish();
+}
+
 void TileRenderer::render(const PixelRect& rect, uint32_t layer, int32_t tileX, int32_t tileY, bool cleared,
                           std::span<const PreparedDraw> draws, uint64_t token, std::span<const TileWork> work,
                           size_t firstItem, uint32_t firstEntry) {
@@ -210,6 +299,15 @@ void TileRenderer::render(const PixelRect& rect, uint32_t layer, int32_t tileX, 
             const Primitive& primitive = item.chunk->primitives[entry & ~kCoversTile];
             const PreparedDraw& prepared = draws[primitive.draw];
             fragments_.bind(prepared, token + prepared.fragmentState);
+            if (primitive.small) {
+                const uint32_t end = std::min(n + kSmallGroup, item.first + item.count);
+                const uint32_t run = smallRun(*item.chunk, n, end, primitive.draw);
+                if (run >= kFewestSmall || primitive.isPoint) {
+                    drawSmall(*item.chunk, item.chunk->entries.data() + n, run, prepared);
+                    n += run - 1;
+                    continue;
+                }
+            }
             draw(primitive, *item.chunk, prepared, (entry & kCoversTile) != 0);
         }
     }

@@ -43,6 +43,7 @@ class TileRenderer {
 
   private:
     void draw(const Primitive& primitive, const Chunk& chunk, const PreparedDraw& draw, bool coversTile);
+    void drawSmall(const Chunk& chunk, const uint32_t* entries, uint32_t count, const PreparedDraw& draw);
     uint32_t testEarly(const PreparedDraw& draw, const TrianglePlanes& planes, uint32_t count);
 
     void selectLayer(uint32_t layer);
@@ -55,6 +56,11 @@ class TileRenderer {
     FragmentStage fragments_;
     CoarseDepth coarse_;
     std::array<BlockCoverage, kBlocksPerTile> blocks_;
+    // Of small primitives.
+    SmallGroup group_;
+    std::array<SmallFragment, kSmallFragments + kSmallGroup> smallFragments_{};
+    std::array<uint64_t, kBlocksPerTile> collected_{};  // pixels in smallFragments_ whose depth is to be tested
+    uint64_t blocksCollected_ = 0;                      // blocks that have some
 };
 
 /// Applies a clear to the part of it inside `area`, in the first layer of the targets.
