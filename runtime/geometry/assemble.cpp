@@ -1,7 +1,9 @@
 #include "runtime/geometry/assemble.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
 
 #include "runtime/geometry/project.h"
 
@@ -67,6 +69,37 @@ void Assembler::reuseByIndex(uint32_t least, uint32_t instance, uint32_t vertexC
     }
 }
 
+/// Primitives of a triangle list in one run, one instance and the index buffer: the vertices are the indices, one after
+/// the other.
+template <class T>
+void Assembler::numberList(const PreparedDraw& draw, uint32_t first, uint32_t count, uint32_t& least,
+                           uint32_t& greatest) {
+    const std::byte* indices = draw.call.indices.data + (size_t{draw.call.first} + draw.runs[0].first) * sizeof(T) +
+                               size_t{first} * 3 * sizeof(T);
+    primitives_.resize(count);
+    for (uint32_t n = 0; n < count; ++n) {
+        LocalPrimitive& local = primitives_[n];
+        for (uint32_t v = 0; v < 3; ++v) {
+            T index;
+            std::memcpy(&index, indices + (size_t{n} * 3 + v) * sizeof(T), sizeof(T));
+            local.vertex[v] = index + static_cast<uint32_t>(draw.call.vertexOffset);
+            least = std::min(least, local.vertex[v]);
+            greatest = std::max(greatest, local.vertex[v]);
+        }
+        local.provoking = draw.state->provokingVertexLast ? 2 : 0;
+        local.primitiveId = first + n;
+        local.startsStrip = true;
+    }
+}
+
+/// Whether numberList() is made for `count` primitives from `first` on, with indices of `bytes`.
+bool Assembler::isPlainList(const PreparedDraw& draw, uint32_t first, uint32_t count, size_t bytes) {
+    const DrawCall& call = draw.call;
+    const uint64_t end = uint64_t{call.first} + draw.runs[0].first + (uint64_t{first} + count) * 3;
+    return draw.state->topology == VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST && draw.runs.size() == 1 &&
+           call.indices.data != nullptr && end * bytes <= call.indices.size;
+}
+
 void Assembler::number(const PreparedDraw& draw, const PrimitiveRange& range) {
     primitives_.clear();
     startReuse();
@@ -87,7 +120,16 @@ void Assembler::number(const PreparedDraw& draw, const PrimitiveRange& range) {
     };
     auto run = runAt(primitive);
     uint32_t least = ~0u, greatest = 0;
-    for (uint32_t n = 0; n < range.count; ++n) {
+    uint32_t left = range.count;
+    const VkIndexType type = draw.call.indices.type;
+    if (oneInstance && type == VK_INDEX_TYPE_UINT16 && isPlainList(draw, primitive, left, 2)) {
+        numberList<uint16_t>(draw, primitive, left, least, greatest);
+        left = 0;
+    } else if (oneInstance && type == VK_INDEX_TYPE_UINT32 && isPlainList(draw, primitive, left, 4)) {
+        numberList<uint32_t>(draw, primitive, left, least, greatest);
+        left = 0;
+    }
+    for (; left != 0; --left) {
         const PrimitiveVertices numbers = primitiveVertices(topology, primitive - run->firstPrimitive);
         LocalPrimitive local{};
         local.primitiveId = primitive;
@@ -187,45 +229,83 @@ void Assembler::clipAndAdd(const PreparedDraw& draw, const PrimitiveInfo& info, 
 bool Assembler::route(const PreparedDraw& draw, uint32_t provoking, PrimitiveInfo& info) const {
     if (!vertices_.layers.empty()) info.layer = vertices_.layers[provoking];
     if (!vertices_.viewports.empty()) info.viewport = vertices_.viewports[provoking];
-    return info.layer < layers_ && info.viewport < draw.viewportCount();
+    return info.layer < grid_.layers && info.viewport < draw.viewportCount();
+}
+
+void Assembler::assemblePrimitive(const PreparedDraw& draw, uint32_t drawIndex, const LocalPrimitive& primitive,
+                                  uint32_t vertexCount, Chunk& chunk) {
+    uint32_t all = ~0u, any = 0, culled = vertices_.culled.empty() ? 0 : 0xFF;
+    for (uint32_t n = 0; n < vertexCount; ++n) {
+        const uint32_t v = primitive.vertex[n];
+        all &= vertices_.flags[v];
+        any |= vertices_.flags[v];
+        if (!vertices_.culled.empty()) culled &= vertices_.culled[v];
+    }
+    if ((any & kNotFinite) != 0 || (all & (kOutsideVolume | kOutsideUserAll)) != 0 || culled != 0) return;
+    // Primitives with a vertex inside must count; others may (specification, "Pipeline Statistics Queries").
+    ++statistics_.clippingPrimitives;
+    if (draw.state->rasterizerDiscard) return;
+    const uint32_t provoking = primitive.vertex[primitive.provoking];
+    PrimitiveInfo info{drawIndex, primitive.primitiveId, attributesOf(provoking), draw.viewIndex, 0};
+    if (isRouted() && !route(draw, provoking, info)) return;
+    if (vertexCount == 1) return addPoint(draw, info, primitive.vertex[0]);
+    constexpr uint32_t kMustClip = kOutsideGuard | kOutsideNear | kOutsideFar | kOutsideUserAll;
+    constexpr uint32_t kSides = kOutsideLeft | kOutsideRight | kOutsideTop | kOutsideBottom;
+    if ((any & (vertexCount == 2 ? kMustClip | kSides : kMustClip)) != 0 || info.viewport != 0) {
+        clipAndAdd(draw, info, primitive, vertexCount, chunk);
+    } else if (vertexCount == 2) {
+        setup_.addLine(draw, info, windowVertex(primitive.vertex[0]), windowVertex(primitive.vertex[1]));
+    } else {
+        setup_.addTriangle(draw, info, windowVertices(primitive));
+    }
+}
+
+/// Triangles of a draw that packs small ones: a group at a time, those that are not small one by one.
+void Assembler::assembleTriangles(const PreparedDraw& draw, uint32_t drawIndex, Chunk& chunk) {
+    const SetUpTrianglesFn setUp = setUpTrianglesFunction(draw.call.pipeline->isa());
+    const auto culls = [&](VkCullModeFlagBits face) {
+        return (draw.state->cullMode & static_cast<uint32_t>(face)) != 0;
+    };
+    TriangleGroupInput in{};
+    in.x = vertices_.x.data();
+    in.y = vertices_.y.data();
+    in.flags = vertices_.flags.data();
+    in.subPixelBits = draw.subPixelBits;
+    in.area = draw.firstViewport.triangleArea;
+    in.clockwiseIsFront = draw.state->frontFace == VK_FRONT_FACE_CLOCKWISE;
+    in.cullFront = culls(VK_CULL_MODE_FRONT_BIT);
+    in.cullBack = culls(VK_CULL_MODE_BACK_BIT);
+    in.gridX = grid_.x0;
+    in.gridY = grid_.y0;
+    in.columns = grid_.columns;
+    for (size_t first = 0; first < primitives_.size(); first += kTriangleGroup) {
+        in.count = static_cast<uint32_t>(std::min<size_t>(kTriangleGroup, primitives_.size() - first));
+        for (uint32_t n = 0; n < in.count; ++n) in.triangles[n] = primitives_[first + n].vertex.data();
+        setUp(in, group_);
+        statistics_.clippingPrimitives += static_cast<uint32_t>(std::popcount(group_.counted & ~group_.ordinary));
+        for (uint32_t rest = group_.ordinary | group_.small; rest != 0; rest &= rest - 1) {
+            const auto n = static_cast<uint32_t>(std::countr_zero(rest));
+            const LocalPrimitive& primitive = primitives_[first + n];
+            if ((group_.ordinary >> n & 1) != 0) {
+                assemblePrimitive(draw, drawIndex, primitive, 3, chunk);
+                continue;
+            }
+            const PrimitiveInfo info{drawIndex, primitive.primitiveId,
+                                     attributesOf(primitive.vertex[primitive.provoking]), draw.viewIndex, 0};
+            setup_.addSmallTriangle(draw, info, group_, n, windowVertices(primitive));
+        }
+    }
 }
 
 void Assembler::assemble(const PreparedDraw& draw, uint32_t drawIndex, Chunk& chunk) {
     const uint32_t vertexCount = verticesPerPrimitive(draw.state->topology);
-    const bool routed = !vertices_.layers.empty() || !vertices_.viewports.empty();
+    if (vertexCount == 3 && draw.packsSmall && draw.state->polygonMode == VK_POLYGON_MODE_FILL &&
+        !draw.state->depthBiasEnable && !draw.state->rasterizerDiscard && !isRouted() && vertices_.culled.empty())
+        return assembleTriangles(draw, drawIndex, chunk);
     const bool stippled = draw.state->stippledLine && vertexCount == 2;
     for (const LocalPrimitive& primitive : primitives_) {
         if (stippled && primitive.startsStrip) setup_.restartStipple();
-        uint32_t all = ~0u, any = 0, culled = vertices_.culled.empty() ? 0 : 0xFF;
-        for (uint32_t n = 0; n < vertexCount; ++n) {
-            const uint32_t v = primitive.vertex[n];
-            all &= vertices_.flags[v];
-            any |= vertices_.flags[v];
-            if (!vertices_.culled.empty()) culled &= vertices_.culled[v];
-        }
-        if ((any & kNotFinite) != 0 || (all & (kOutsideVolume | kOutsideUserAll)) != 0 || culled != 0) continue;
-        // Primitives with a vertex inside must count; others may (specification, "Pipeline Statistics Queries").
-        ++statistics_.clippingPrimitives;
-        if (draw.state->rasterizerDiscard) continue;
-        const uint32_t provoking = primitive.vertex[primitive.provoking];
-        PrimitiveInfo info{drawIndex, primitive.primitiveId, attributesOf(provoking), draw.viewIndex, 0};
-        if (routed && !route(draw, provoking, info)) continue;
-        if (vertexCount == 1) {
-            addPoint(draw, info, primitive.vertex[0]);
-            continue;
-        }
-        constexpr uint32_t kMustClip = kOutsideGuard | kOutsideNear | kOutsideFar | kOutsideUserAll;
-        constexpr uint32_t kSides = kOutsideLeft | kOutsideRight | kOutsideTop | kOutsideBottom;
-        if ((any & (vertexCount == 2 ? kMustClip | kSides : kMustClip)) != 0 || info.viewport != 0) {
-            clipAndAdd(draw, info, primitive, vertexCount, chunk);
-        } else if (vertexCount == 2) {
-            setup_.addLine(draw, info, windowVertex(primitive.vertex[0]), windowVertex(primitive.vertex[1]));
-        } else {
-            const std::array<WindowVertex, 3> triangle{windowVertex(primitive.vertex[0]),
-                                                       windowVertex(primitive.vertex[1]),
-                                                       windowVertex(primitive.vertex[2])};
-            setup_.addTriangle(draw, info, triangle);
-        }
+        assemblePrimitive(draw, drawIndex, primitive, vertexCount, chunk);
     }
 }
 
@@ -236,7 +316,7 @@ bool Assembler::run(std::span<const PreparedDraw> draws, uint64_t token, std::sp
     uint32_t primitives = 0;
     for (const PrimitiveRange& range : ranges) primitives += range.count;
     setup_.begin(chunk, grid, primitives);
-    layers_ = grid.layers;
+    grid_ = grid;
     for (const PrimitiveRange& range : ranges) {
         const PreparedDraw& draw = draws[range.draw];
         number(draw, range);

@@ -42,15 +42,25 @@ class Assembler {
         bool startsStrip;
     };
     void number(const PreparedDraw& draw, const PrimitiveRange& range);
+    template <class T>
+    void numberList(const PreparedDraw& draw, uint32_t first, uint32_t count, uint32_t& least, uint32_t& greatest);
+    static bool isPlainList(const PreparedDraw& draw, uint32_t first, uint32_t count, size_t bytes);
     void startReuse();
     uint32_t localVertex(const VertexRef& ref);
     void reuseByIndex(uint32_t least, uint32_t instance, uint32_t vertexCount);
     void assemble(const PreparedDraw& draw, uint32_t drawIndex, Chunk& chunk);
+    void assembleTriangles(const PreparedDraw& draw, uint32_t drawIndex, Chunk& chunk);
+    void assemblePrimitive(const PreparedDraw& draw, uint32_t drawIndex, const LocalPrimitive& primitive,
+                           uint32_t vertexCount, Chunk& chunk);
     void clipAndAdd(const PreparedDraw& draw, const PrimitiveInfo& info, const LocalPrimitive& primitive,
                     uint32_t vertexCount, Chunk& chunk);
     void addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, uint32_t vertex);
     bool route(const PreparedDraw& draw, uint32_t provoking, PrimitiveInfo& info) const;
     WindowVertex windowVertex(uint32_t vertex) const;
+    std::array<WindowVertex, 3> windowVertices(const LocalPrimitive& triangle) const {
+        return {windowVertex(triangle.vertex[0]), windowVertex(triangle.vertex[1]), windowVertex(triangle.vertex[2])};
+    }
+    bool isRouted() const { return !vertices_.layers.empty() || !vertices_.viewports.empty(); }
     uint32_t attributesOf(uint32_t vertex) const {
         return vertices_.firstAttribute + vertex * vertices_.attributeStride;
     }
@@ -72,7 +82,8 @@ class Assembler {
     std::vector<LocalPrimitive> primitives_;
     std::vector<ReuseSlot> reuse_ = std::vector<ReuseSlot>(kReuseSlots);
     uint32_t epoch_ = 0;
-    uint32_t layers_ = 1;
+    TileGrid grid_;
+    TriangleGroup group_;
     GeometryStatistics statistics_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
 #include "runtime/geometry/depth_bias.h"
 #include "runtime/geometry/shapes.h"
@@ -116,6 +117,36 @@ void PrimitiveSetup::addTriangle(const PreparedDraw& draw, const PrimitiveInfo& 
     if (culled(draw.state->cullMode, style.front)) return;
     style.area = &draw.viewport(info.viewport).triangleArea;
     addFilled(draw, info, style, vertices[0], vertices[1], vertices[2], area);
+}
+
+void PrimitiveSetup::addSmallTriangle(const PreparedDraw& draw, const PrimitiveInfo& info, const TriangleGroup& group,
+                                      uint32_t n, const std::array<WindowVertex, 3>& vertices) {
+    const auto index = static_cast<uint32_t>(chunk_->primitives.size());
+    Primitive& p = chunk_->primitives.emplace_back();
+    for (size_t corner = 0; corner < 3; ++corner) {
+        const WindowVertex& vertex = vertices[static_cast<size_t>(group.corner[corner][n])];
+        p.x[corner] = group.x[corner][n];
+        p.y[corner] = group.y[corner][n];
+        p.z[corner] = vertex.z;
+        p.w[corner] = static_cast<float>(vertex.inverseW);
+        p.attributes[corner] = vertex.attributes;
+    }
+    p.affine = p.w[0] == p.w[1] && p.w[1] == p.w[2];
+    p.depthBias = 0;
+    p.flat = info.flat;
+    std::memcpy(p.bounds.data(), &group.low[n], 4);
+    std::memcpy(p.bounds.data() + 2, &group.high[n], 4);
+    p.draw = info.draw;
+    p.primitiveId = info.primitiveId;
+    p.shape = kNoShape;
+    p.wExponent = 0;
+    p.layer = static_cast<uint16_t>(info.layer);
+    p.viewport = static_cast<uint8_t>(info.viewport);
+    p.front = (group.front >> n & 1) != 0;
+    p.smallEdges = p.tiny = p.small = true;
+    p.isPoint = false;
+    if ((group.spread >> n & 1) != 0) return bin(p, index, draw);
+    addEntry(p.layer * grid_.perLayer() + static_cast<uint32_t>(group.tile[n]), index, false);
 }
 
 void PrimitiveSetup::addLine(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& a,

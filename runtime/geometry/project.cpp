@@ -62,6 +62,7 @@ void vertexFlags(const ProjectionInput& in, const ProjectionOutput& out) {
         flags = hn::Or(flags, flag(hn::Lt(z, in.negativeOneToOne ? minusW : zero), nearBit));
         flags = hn::Or(flags, flag(hn::Gt(z, w), farBit));
         flags = hn::Or(flags, flag(hn::Le(w, zero), kOutsideGuard));
+        flags = hn::Or(flags, flag(hn::Or(hn::Lt(w, hn::Set(f, 0x1p-50f)), hn::Gt(w, hn::Set(f, 0x1p50f))), kUnusualW));
         const auto wx = hn::LoadU(i, out.x + n), wy = hn::LoadU(i, out.y + n);
         const auto low = hn::Set(i, guardLow), high = hn::Set(i, guardHigh);
         const auto beyond =

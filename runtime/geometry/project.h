@@ -21,6 +21,8 @@ enum VertexFlag : uint32_t {
     kNotFinite = 128,
     kOutsideUser = 256,  // first of kMaxClipDistances bits
 };
+/// The exponent of 1/w is far from 0.
+inline constexpr uint32_t kUnusualW = kOutsideUser << kMaxClipDistances;
 inline constexpr uint32_t kOutsideVolume = 63;
 inline constexpr uint32_t kOutsideUserAll = ((1u << kMaxClipDistances) - 1) * kOutsideUser;
 

@@ -17,8 +17,8 @@ std::vector<Isa> instructionSets() {
 }
 
 struct Outcome {
-    uint64_t color = 0, depth = 0, fragments = 0, samples = 0, divides = 0;
-    bool operator==(const Outcome&) const = default;
+    uint64_t color = 0, depth = 0;
+    PassStatistics statistics;
 };
 
 struct Case {
@@ -28,7 +28,7 @@ struct Case {
     bool scissored = false;
 };
 
-/// `apart`: every triangle is a draw of its own, and so is drawn alone.
+/// `apart`: every triangle is a draw of its own, and so is drawn alone; a depth bias, of nothing, has it set up alone.
 Outcome render(const Case& test, bool apart) {
     ThreadPool pool(1);
     const VkFormat format = test.options.state.colorFormats[0];
@@ -40,7 +40,9 @@ Outcome render(const Case& test, bool apart) {
     if (format != VK_FORMAT_UNDEFINED) colors.push_back(color.cleared({}));
     Pass pass(pool, colors, test.depthFormat == VK_FORMAT_UNDEFINED ? RenderTarget{} : depth.cleared(clearDepth),
               kWidth, kHeight);
-    const auto pipeline = makePipeline(test.options);
+    PipelineOptions options = test.options;
+    if (apart) options.state.depthBiasEnable = true;
+    const auto pipeline = makePipeline(options);
     EXPECT_TRUE(pipeline->plan().packsSmall);
     DynamicState dynamic = dynamicFor(kWidth, kHeight);
     if (test.scissored) dynamic.scissors[0] = {{9, 13}, {70, 66}};
@@ -51,20 +53,20 @@ Outcome render(const Case& test, bool apart) {
                   std::vector<Vertex>(test.vertices.begin() + static_cast<std::ptrdiff_t>(n),
                                       test.vertices.begin() + static_cast<std::ptrdiff_t>(n + step)));
     pass.end();
-    const PassStatistics& statistics = pass.pass().statistics();
     return {format == VK_FORMAT_UNDEFINED ? 0 : color.hash(),
-            test.depthFormat == VK_FORMAT_UNDEFINED ? 0 : depth.hash(), statistics.fragmentInvocations,
-            statistics.samplesPassed, statistics.perspectiveDivides};
+            test.depthFormat == VK_FORMAT_UNDEFINED ? 0 : depth.hash(), pass.pass().statistics()};
 }
 
 void expectSame(const Case& test) {
     const Outcome together = render(test, false), alone = render(test, true);
     EXPECT_EQ(together.color, alone.color);
     EXPECT_EQ(together.depth, alone.depth);
-    EXPECT_EQ(together.fragments, alone.fragments);
-    EXPECT_EQ(together.samples, alone.samples);
-    EXPECT_EQ(together.divides, alone.divides);
-    EXPECT_NE(together.samples, 0u);
+    EXPECT_EQ(together.statistics.clippingPrimitives, alone.statistics.clippingPrimitives);
+    EXPECT_EQ(together.statistics.rasterPrimitives, alone.statistics.rasterPrimitives);
+    EXPECT_EQ(together.statistics.fragmentInvocations, alone.statistics.fragmentInvocations);
+    EXPECT_EQ(together.statistics.samplesPassed, alone.statistics.samplesPassed);
+    EXPECT_EQ(together.statistics.perspectiveDivides, alone.statistics.perspectiveDivides);
+    EXPECT_NE(together.statistics.samplesPassed, 0u);
 }
 
 /// Triangles around random places, mostly of a few pixels: slivers, some too large to be packed, some on top of the one
@@ -163,14 +165,17 @@ TEST(SmallPrimitives, DepthAlone) {
     }
 }
 
-TEST(SmallPrimitives, BiasAndScissor) {
+TEST(SmallPrimitives, FacesAndScissor) {
     for (const Isa isa : instructionSets()) {
         Case test = caseOf(isa, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_D24_UNORM_S8_UINT, VK_COMPARE_OP_GREATER);
-        test.options.state.depthBiasEnable = true;
-        test.options.state.cullMode = VK_CULL_MODE_BACK_BIT;
         test.scissored = true;
         test.vertices = randomTriangles(11, 2000, 1);
-        expectSame(test);
+        for (const VkFrontFace face : {VK_FRONT_FACE_CLOCKWISE, VK_FRONT_FACE_COUNTER_CLOCKWISE})
+            for (const VkCullModeFlags cull : {VK_CULL_MODE_NONE, VK_CULL_MODE_BACK_BIT, VK_CULL_MODE_FRONT_BIT}) {
+                test.options.state.frontFace = face;
+                test.options.state.cullMode = cull;
+                expectSame(test);
+            }
     }
 }
 
