@@ -292,7 +292,7 @@ void Assembler::assembleTriangles(const PreparedDraw& draw, uint32_t drawIndex, 
             }
             const PrimitiveInfo info{drawIndex, primitive.primitiveId,
                                      attributesOf(primitive.vertex[primitive.provoking]), draw.viewIndex, 0};
-            setup_.addSmallTriangle(draw, info, group_, n, windowVertices(primitive));
+            setup_.addSmallTriangle(draw, info, group_, n, primitive.vertex.data(), vertices_);
         }
     }
 }

@@ -62,7 +62,7 @@ class Assembler {
     }
     bool isRouted() const { return !vertices_.layers.empty() || !vertices_.viewports.empty(); }
     uint32_t attributesOf(uint32_t vertex) const {
-        return vertices_.firstAttribute + vertex * vertices_.attributeStride;
+        return vertices_.attributesOf(vertex);
     }
 
     // Reuse of vertices inside a range: by index where these lie close together; else open addressing, twice as many

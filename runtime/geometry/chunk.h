@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/raw_vector.h"
 #include "runtime/limits.h"
 
 namespace vernier {
@@ -102,15 +103,15 @@ constexpr bool isLargePart(int32_t width, int32_t height) {
 inline constexpr uint32_t kCoversTile = 1u << 31;
 
 struct Chunk {
-    std::vector<Primitive> primitives;
+    RawVector<Primitive> primitives;
     std::vector<Shape> shapes;
     // Line stipple goes on through a strip, and a strip through chunks. The first `continuingShapes` count from where
     // the chunk before ended (all of them unless `restartsStipple`); stippleEnd is the counter at the end of this one.
     uint32_t continuingShapes = 0;
     bool restartsStipple = false;
     double stippleEnd = 0;
-    std::vector<float> attributes;
-    std::vector<uint32_t> entries;
+    RawVector<float> attributes;
+    RawVector<uint32_t> entries;
     std::vector<TileRange> ranges;
 
     void clear() {

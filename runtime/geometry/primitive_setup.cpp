@@ -120,16 +120,16 @@ void PrimitiveSetup::addTriangle(const PreparedDraw& draw, const PrimitiveInfo& 
 }
 
 void PrimitiveSetup::addSmallTriangle(const PreparedDraw& draw, const PrimitiveInfo& info, const TriangleGroup& group,
-                                      uint32_t n, const std::array<WindowVertex, 3>& vertices) {
+                                      uint32_t n, const uint32_t* numbers, const ShadedVertices& vertices) {
     const auto index = static_cast<uint32_t>(chunk_->primitives.size());
     Primitive& p = chunk_->primitives.emplace_back();
     for (size_t corner = 0; corner < 3; ++corner) {
-        const WindowVertex& vertex = vertices[static_cast<size_t>(group.corner[corner][n])];
+        const uint32_t vertex = numbers[group.corner[corner][n]];
         p.x[corner] = group.x[corner][n];
         p.y[corner] = group.y[corner][n];
-        p.z[corner] = vertex.z;
-        p.w[corner] = static_cast<float>(vertex.inverseW);
-        p.attributes[corner] = vertex.attributes;
+        p.z[corner] = vertices.z[vertex];
+        p.w[corner] = static_cast<float>(vertices.inverseW[vertex]);
+        p.attributes[corner] = vertices.attributesOf(vertex);
     }
     p.affine = p.w[0] == p.w[1] && p.w[1] == p.w[2];
     p.depthBias = 0;
@@ -234,7 +234,6 @@ void PrimitiveSetup::addShape(const PreparedDraw& draw, const PrimitiveInfo& inf
     Primitive& p = addPrimitive(info, style, {&a, &b, &a}, bounds);
     p.shape = shapeIndex;
     p.isPoint = point != nullptr;
-    p.small = false;
     p.point = p.isPoint ? *point : std::array<float, 3>{};
     binShape(p, shape, index, draw.subPixelBits);
 }
@@ -265,6 +264,7 @@ Primitive& PrimitiveSetup::addPrimitive(const PrimitiveInfo& info, const Style& 
     p.layer = static_cast<uint16_t>(info.layer);
     p.viewport = static_cast<uint8_t>(info.viewport);
     p.front = style.front;
+    p.smallEdges = p.tiny = p.small = p.isPoint = false;
     return p;
 }
 
@@ -287,7 +287,6 @@ void PrimitiveSetup::addFilled(const PreparedDraw& draw, const PrimitiveInfo& in
     const auto index = static_cast<uint32_t>(chunk_->primitives.size());
     Primitive& p = addPrimitive(info, style, {v[least], v[(least + 1) % 3], v[(least + 2) % 3]}, {x0, y0, x1, y1});
     p.shape = kNoShape;
-    p.isPoint = false;
     const auto span = [](const std::array<int32_t, 3>& values) {
         return int64_t{std::max({values[0], values[1], values[2]})} - std::min({values[0], values[1], values[2]});
     };

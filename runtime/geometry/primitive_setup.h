@@ -9,6 +9,7 @@
 #include "runtime/geometry/chunk.h"
 #include "runtime/geometry/prepared_draw.h"
 #include "runtime/geometry/small_triangles.h"
+#include "runtime/geometry/vertex_stage.h"
 
 namespace vernier {
 
@@ -55,9 +56,9 @@ class PrimitiveSetup {
                     uint32_t hiddenEdges = 0);
     /// addPolygon() of a triangle that was not clipped.
     void addTriangle(const PreparedDraw& draw, const PrimitiveInfo& info, const std::array<WindowVertex, 3>& vertices);
-    /// Triangle n of a group, one of TriangleGroup::small. `vertices`: its window vertices.
+    /// Triangle n of a group, one of TriangleGroup::small. `numbers`: of its vertices.
     void addSmallTriangle(const PreparedDraw& draw, const PrimitiveInfo& info, const TriangleGroup& group, uint32_t n,
-                          const std::array<WindowVertex, 3>& vertices);
+                          const uint32_t* numbers, const ShadedVertices& vertices);
     /// A segment of a line list or strip.
     void addLine(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& a, const WindowVertex& b);
     /// Line stipple starts anew: before every segment of a list, and before a strip.

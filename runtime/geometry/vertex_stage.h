@@ -47,6 +47,7 @@ struct ShadedVertices {
     uint32_t firstAttribute = 0;              // of vertex 0 in Chunk::attributes
     uint32_t attributeStride = 0;
 
+    uint32_t attributesOf(uint32_t vertex) const { return firstAttribute + vertex * attributeStride; }
     void resize(uint32_t count, const Plan& plan);
 };
 

@@ -39,12 +39,33 @@ void forEachRun(const FragmentBatch& batch, const Function& function) {
     }
 }
 
+/// Lanes by themselves. What says where they lie is copied: texels are bytes, whose stores could change anything that is
+/// read through a pointer.
+template <uint32_t kBytes>
+struct Lanes {
+    explicit Lanes(const ColorOutputInput& in)
+        : count(in.batch->count),
+          mask(in.mask),
+          x(in.batch->x.data()),
+          y(in.batch->y.data()),
+          origin(texelAddress(in, 0, 0)),
+          rowPitch(in.target->rowPitch) {}
+    std::byte* texel(uint32_t n) const {
+        return origin + static_cast<size_t>(y[n]) * rowPitch + static_cast<size_t>(x[n]) * kBytes;
+    }
+
+    uint32_t count;
+    const uint32_t* mask;
+    const int32_t *x, *y;
+    std::byte* origin;
+    size_t rowPitch;
+};
+
 template <uint32_t kBytes>
 void gather(const ColorOutputInput& in, std::byte* texels) {
-    const FragmentBatch& batch = *in.batch;
-    if (batch.order == LaneOrder::spans && batch.apart) {
-        for (uint32_t n = 0; n < batch.count; ++n)
-            std::memcpy(texels + n * kBytes, texelAddress(in, batch.x[n], batch.y[n]), kBytes);
+    if (in.batch->order == LaneOrder::spans && in.batch->apart) {
+        const Lanes<kBytes> lanes(in);
+        for (uint32_t n = 0; n < lanes.count; ++n) std::memcpy(texels + n * kBytes, lanes.texel(n), kBytes);
         return;
     }
     forEachRun(*in.batch, [&](int32_t x, int32_t y, uint32_t first, uint32_t count) {
@@ -54,11 +75,11 @@ void gather(const ColorOutputInput& in, std::byte* texels) {
 
 template <uint32_t kBytes>
 void scatter(const ColorOutputInput& in, const std::byte* texels) {
-    const FragmentBatch& batch = *in.batch;
-    if (batch.order == LaneOrder::spans && batch.apart) {
-        for (uint32_t n = 0; n < batch.count; ++n)
-            if (in.mask == nullptr || in.mask[n] != 0)
-                std::memcpy(texelAddress(in, batch.x[n], batch.y[n]), texels + n * kBytes, kBytes);
+    if (in.batch->order == LaneOrder::spans && in.batch->apart) {
+        const Lanes<kBytes> lanes(in);
+        for (uint32_t n = 0; n < lanes.count; ++n)
+            if (lanes.mask == nullptr || lanes.mask[n] != 0)
+                std::memcpy(lanes.texel(n), texels + n * kBytes, kBytes);
         return;
     }
     forEachRun(*in.batch, [&](int32_t x, int32_t y, uint32_t first, uint32_t count) {

@@ -65,24 +65,6 @@ void FragmentStage::bindSmall() {
     smallPlaces_.resize(smallTargets_.size());
 }
 
-void FragmentStage::gatherAttributes(const SmallGroup& group, const float* attributes) {
-    const size_t weighted = centreTargets_.smooth.size() + centreTargets_.linear.size();
-    for (size_t k = 0; k < smallTargets_.size(); ++k) {
-        SmallAttribute& to = smallAttributes_[k];
-        const float* from = attributes + smallTargets_[k].varying;
-        for (uint32_t lane = 0; lane < group.count; ++lane) {
-            if (k >= weighted) {  // bits, which no float operation may touch
-                std::memcpy(&to.first[lane], from + group.flat[lane], sizeof(float));
-                continue;
-            }
-            const float first = from[group.attributes[0][lane]];
-            to.first[lane] = first;
-            to.difference1[lane] = from[group.attributes[1][lane]] - first;
-            to.difference2[lane] = from[group.attributes[2][lane]] - first;
-        }
-    }
-}
-
 /// The lanes of small primitives, to where the program reads them.
 void FragmentStage::takeSmallInputs(const FragmentBatch& batch) {
     for (uint32_t s = 0; s < batch.segmentCount; ++s) {

@@ -84,6 +84,7 @@ void FragmentStage::bind(const PreparedDraw& draw, uint64_t token) {
     interpolate_ = interpolateFunction(isa);
     placeLanes_ = placeLanesFunction(isa);
     spreadPixels_ = spreadPixelsFunction(isa);
+    gatherSmall_ = gatherSmallFunction(isa);
     shadeSmall_ = shadeSmallFunction(isa);
     blend_ = blendFunction(isa);
 
@@ -261,7 +262,8 @@ void FragmentStage::addQuads(const BlockCoverage& block, uint64_t any) {
 void FragmentStage::addSmall(const SmallGroup& group, const float* attributes, const SmallFragment* fragments,
                              uint32_t count) {
     if (count == 0) return;
-    gatherAttributes(group, attributes);
+    const size_t smooth = centreTargets_.smooth.size(), linear = centreTargets_.linear.size();
+    gatherSmall_({&group, attributes, smallTargets_, smooth + linear, smallAttributes_.data()});
     while (true) {
         const uint32_t first = batch_.count, lanes = std::min(count, capacity_ - first);
         if (batch_.segmentCount == 0 || batch_.segments[batch_.segmentCount - 1].planes != nullptr)
@@ -271,7 +273,7 @@ void FragmentStage::addSmall(const SmallGroup& group, const float* attributes, c
         for (size_t k = 0; k < smallPlaces_.size(); ++k) smallPlaces_[k] = smallPlanes_[k].data() + first;
         statistics_.perspectiveDivides +=
             shadeSmall_({&group, fragments, lanes, tileX_, tileY_, batch_.x.data() + first, batch_.y.data() + first,
-                         smallAttributes_, smallPlaces_, centreTargets_.smooth.size(), centreTargets_.linear.size()});
+                         smallAttributes_, smallPlaces_, smooth, linear});
         batch_.count += lanes;
         fragments += lanes;
         count -= lanes;

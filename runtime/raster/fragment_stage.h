@@ -64,7 +64,6 @@ class FragmentStage {
     void bindInputs();
     void bindInterpolation();
     void bindSmall();
-    void gatherAttributes(const SmallGroup& group, const float* attributes);
     void takeSmallInputs(const FragmentBatch& batch);
     void placeBlock();
     void runBlock(const BlockCoverage& block, uint64_t pixels);
@@ -114,6 +113,7 @@ class FragmentStage {
     std::vector<SmallAttribute> smallAttributes_;
     std::vector<std::array<float, kLaneRoom>> smallPlanes_;
     std::vector<float*> smallPlaces_;  // where in smallPlanes_ the next lanes go
+    GatherSmallFn gatherSmall_ = nullptr;
     ShadeSmallFn shadeSmall_ = nullptr;
     InterpolateFn interpolate_ = nullptr;
     PlaceLanesFn placeLanes_ = nullptr;

@@ -219,6 +219,9 @@ uint32_t testBy(const Compare& compare, const SmallTestInput& in, SmallFragment*
     constexpr uint32_t kPart = hn::MaxLanes(F8()), kBytes = Format::kTexelBytes;
     const I i;
     const hn::DFromV<typename Format::Value> dv;
+    // Copied: texels are bytes, whose stores could change anything that is read through a pointer.
+    std::byte* const origin = in.texels;
+    const bool writes = in.plan->write;
     uint32_t kept = 0;
     for (uint32_t n = 0; n < count; n += kLanes) {
         const Places at(fragments + n);
@@ -233,7 +236,7 @@ uint32_t testBy(const Compare& compare, const SmallTestInput& in, SmallFragment*
             const uint32_t some = std::min(kPart, lanes - part);
             alignas(64) std::byte texels[kPart * kBytes];
             for (uint32_t lane = 0; lane < some; ++lane)
-                std::memcpy(texels + lane * kBytes, in.texels + offsets[part + lane], kBytes);
+                std::memcpy(texels + lane * kBytes, origin + offsets[part + lane], kBytes);
             const auto z = Format::encode(hn::Load(F8(), depths + part));
             const auto stored = Format::load(texels);
             const auto pass = compare(z, stored);
@@ -241,10 +244,17 @@ uint32_t testBy(const Compare& compare, const SmallTestInput& in, SmallFragment*
             hn::StoreMaskBits(dv, pass, passBits);
             const uint32_t passed = passBits[0] & ((1u << some) - 1);
             if (passed == 0) continue;
-            if (in.plan->write) Format::store(z, texels);
+            if (writes) Format::store(z, texels);
+            if (passed == (1u << kPart) - 1) {  // as when nothing hides anything
+                for (uint32_t lane = 0; writes && lane < kPart; ++lane)
+                    std::memcpy(origin + offsets[part + lane], texels + lane * kBytes, kBytes);
+                std::memmove(fragments + kept, fragments + n + part, kPart * sizeof(SmallFragment));
+                kept += kPart;
+                continue;
+            }
             for (uint32_t rest = passed; rest != 0; rest &= rest - 1) {
                 const auto lane = static_cast<uint32_t>(hwy::Num0BitsBelowLS1Bit_Nonzero32(rest));
-                if (in.plan->write) std::memcpy(in.texels + offsets[part + lane], texels + lane * kBytes, kBytes);
+                if (writes) std::memcpy(origin + offsets[part + lane], texels + lane * kBytes, kBytes);
                 fragments[kept++] = fragments[n + part + lane];
             }
         }
@@ -274,6 +284,63 @@ uint32_t testSmall(const SmallTestInput& in, SmallFragment* fragments, uint32_t 
             return count;
     }
     return count;
+}
+
+using Quad = hn::CappedTag<float, 4>;
+using VQuad = hn::Vec<Quad>;
+
+/// Four attributes of four primitives from `lane` on, to rows of primitives.
+HWY_INLINE void storeTransposed(const VQuad* v, SmallAttribute* to, std::array<float, kSmallGroup> SmallAttribute::*part,
+                                uint32_t lane) {
+    const Quad q;
+    const VQuad low01 = hn::InterleaveLower(q, v[0], v[1]), low23 = hn::InterleaveLower(q, v[2], v[3]);
+    const VQuad high01 = hn::InterleaveUpper(q, v[0], v[1]), high23 = hn::InterleaveUpper(q, v[2], v[3]);
+    hn::StoreU(hn::ConcatLowerLower(q, low23, low01), q, (to[0].*part).data() + lane);
+    hn::StoreU(hn::ConcatUpperUpper(q, low23, low01), q, (to[1].*part).data() + lane);
+    hn::StoreU(hn::ConcatLowerLower(q, high23, high01), q, (to[2].*part).data() + lane);
+    hn::StoreU(hn::ConcatUpperUpper(q, high23, high01), q, (to[3].*part).data() + lane);
+}
+
+/// Attributes `from` and the three after it.
+HWY_INLINE void gatherFour(const SmallGroup& group, const float* from, SmallAttribute* to) {
+    const Quad q;
+    for (uint32_t lane = 0; lane < group.count; lane += 4) {
+        VQuad first[4], difference1[4], difference2[4];
+        for (uint32_t n = 0; n < 4; ++n) {
+            const uint32_t primitive = std::min(lane + n, group.count - 1);
+            first[n] = hn::LoadU(q, from + group.attributes[0][primitive]);
+            difference1[n] = hn::Sub(hn::LoadU(q, from + group.attributes[1][primitive]), first[n]);
+            difference2[n] = hn::Sub(hn::LoadU(q, from + group.attributes[2][primitive]), first[n]);
+        }
+        storeTransposed(first, to, &SmallAttribute::first, lane);
+        storeTransposed(difference1, to, &SmallAttribute::difference1, lane);
+        storeTransposed(difference2, to, &SmallAttribute::difference2, lane);
+    }
+}
+
+void gatherSmall(const SmallAttributeInput& in) {
+    const SmallGroup& group = *in.group;
+    for (size_t k = 0; k < in.targets.size(); ++k) {
+        const uint32_t varying = in.targets[k].varying;
+        const float* from = in.attributes + varying;
+        // Targets are in the order of the attributes in memory, and none is there twice.
+        if (k + 4 <= in.weighted && in.targets[k + 3].varying == varying + 3) {
+            gatherFour(group, from, in.to + k);
+            k += 3;
+            continue;
+        }
+        SmallAttribute& to = in.to[k];
+        for (uint32_t lane = 0; lane < group.count; ++lane) {
+            if (k >= in.weighted) {  // bits, which no float operation may touch
+                std::memcpy(&to.first[lane], from + group.flat[lane], sizeof(float));
+                continue;
+            }
+            const float first = from[group.attributes[0][lane]];
+            to.first[lane] = first;
+            to.difference1[lane] = from[group.attributes[1][lane]] - first;
+            to.difference2[lane] = from[group.attributes[2][lane]] - first;
+        }
+    }
 }
 
 uint32_t shadeSmall(const SmallShadeInput& in) {
@@ -335,6 +402,8 @@ namespace vernier {
 SetUpSmallFn setUpSmallFunction(Isa isa){VERNIER_SELECT_ISA(isa, setUpSmall)}
 
 TestSmallFn testSmallFunction(Isa isa){VERNIER_SELECT_ISA(isa, testSmall)}
+
+GatherSmallFn gatherSmallFunction(Isa isa){VERNIER_SELECT_ISA(isa, gatherSmall)}
 
 ShadeSmallFn shadeSmallFunction(Isa isa) {
     VERNIER_SELECT_ISA(isa, shadeSmall)

@@ -70,6 +70,18 @@ struct SmallTestInput {
 using TestSmallFn = uint32_t (*)(const SmallTestInput& input, SmallFragment* fragments, uint32_t count);
 TestSmallFn testSmallFunction(Isa isa);
 
+/// Attributes of a group: one in `to` for each target, the first `weighted` of them not flat. `attributes`: first float of
+/// the chunk's.
+struct SmallAttributeInput {
+    const SmallGroup* group;
+    const float* attributes;
+    std::span<const VaryingTarget> targets;
+    size_t weighted;
+    SmallAttribute* to;
+};
+using GatherSmallFn = void (*)(const SmallAttributeInput& input);
+GatherSmallFn gatherSmallFunction(Isa isa);
+
 /// What fragments become: lanes of a batch. Planes have room for one vector more than `count`.
 struct SmallShadeInput {
     const SmallGroup* group;

@@ -79,22 +79,49 @@ uint32_t smallRun(const Chunk& chunk, uint32_t first, uint32_t end, uint32_t dra
     return n - first;
 }
 
-/// Calls function(block, part) for the blocks of a tile that have some of `pixels`, bit 8 y + x for (left + x, top +
-/// y).
-template <class Function>
-void forEachBlock(uint32_t left, uint32_t top, uint64_t pixels, const Function& function) {
-    constexpr uint32_t kColumns = kTileSize / kBlockSize;
-    const uint32_t block = top / 8 * kColumns + left / 8, x = left % 8, y = top % 8;
-    const uint64_t leftColumns = (0xFFull >> x) * 0x0101010101010101u;
-    const uint64_t upper = pixels << (8 * y), lower = y == 0 ? 0 : pixels >> (64 - 8 * y);
-    const auto row = [&](uint32_t first, uint64_t part) {
-        if (part == 0) return;
-        function(first, (part & leftColumns) << x);
-        if (const uint64_t right = part & ~leftColumns; right != 0) function(first + 1, right >> (8 - x));
-    };
-    row(block, upper);
-    row(block + kColumns, lower);
+void prefetch(const Primitive& primitive) {
+    constexpr size_t kLine = 64;
+    const auto* bytes = reinterpret_cast<const std::byte*>(&primitive);
+    __builtin_prefetch(bytes);
+    __builtin_prefetch(bytes + kLine);
+    static_assert(sizeof(Primitive) <= 2 * kLine);
 }
+
+/// Where the pixel of a bit lies, as part of a SmallFragment.
+constexpr std::array<SmallFragment, 64> placesOfBits() {
+    std::array<SmallFragment, 64> places{};
+    for (uint32_t bit = 0; bit < 64; ++bit) places[bit] = smallFragment(bit % 8, bit / 8, 0);
+    return places;
+}
+constexpr std::array<SmallFragment, 64> kPlaceOfBit = placesOfBits();
+
+/// Pixels of a tile by block: at most four blocks have some of an area of 8x8.
+struct BlockParts {
+    /// Bit 8 y + x of `area`: pixel (left + x, top + y) of the tile.
+    BlockParts(uint32_t left, uint32_t top, uint64_t area) {
+        constexpr uint32_t kColumns = kTileSize / kBlockSize;
+        const uint32_t first = top / 8 * kColumns + left / 8, x = left % 8, y = top % 8;
+        const uint64_t leftColumns = (0xFFull >> x) * 0x0101010101010101u;
+        const uint64_t upper = area << (8 * y), lower = y == 0 ? 0 : area >> (64 - 8 * y);
+        if (((upper & ~leftColumns) | lower) == 0) {
+            add(first, upper << x);
+            return;
+        }
+        add(first, (upper & leftColumns) << x);
+        add(first + 1, (upper & ~leftColumns) >> (8 - x));
+        add(first + kColumns, (lower & leftColumns) << x);
+        add(first + kColumns + 1, (lower & ~leftColumns) >> (8 - x));
+    }
+    void add(uint32_t block, uint64_t part) {
+        if (part == 0) return;
+        blocks[count] = block;
+        pixels[count++] = part;
+    }
+
+    uint32_t count = 0;
+    uint32_t blocks[4];
+    uint64_t pixels[4];
+};
 
 uint64_t countSamples(const BlockCoverage* blocks, uint32_t count, uint32_t samples) {
     uint64_t total = 0;
@@ -250,25 +277,25 @@ void TileRenderer::drawSmall(const Chunk& chunk, const uint32_t* entries, uint32
             continue;
         }
         const uint32_t left = group_.left[lane], top = group_.top[lane];
+        const BlockParts parts(left, top, pixels);
         // Neither depths nor colours of one pixel may be asked for twice at a time.
         bool twice = false, waits = false;
-        forEachBlock(left, top, pixels, [&](uint32_t block, uint64_t part) {
-            twice |= (collected_[block] & part) != 0;
-            waits |= plan.runsFragments && fragments_.waitsFor(block, part);
-        });
+        for (uint32_t n = 0; n < parts.count; ++n) {
+            twice |= (collected_[parts.blocks[n]] & parts.pixels[n]) != 0;
+            waits |= plan.runsFragments && fragments_.waitsFor(parts.blocks[n], parts.pixels[n]);
+        }
         if (twice || waits) finish();
         if (waits) fragments_.flush();
-        forEachBlock(left, top, pixels, [&](uint32_t block, uint64_t part) {
-            if (plan.runsFragments) fragments_.expect(block, part);
-            if (!writes) return;
-            collected_[block] |= part;
-            blocksCollected_ |= uint64_t{1} << block;
-        });
-        const SmallFragment origin = smallFragment(left, top, lane);
-        for (; pixels != 0; pixels &= pixels - 1) {
-            const auto bit = static_cast<uint32_t>(std::countr_zero(pixels));
-            smallFragments_[fragments++] = static_cast<SmallFragment>(origin + smallFragment(bit & 7, bit >> 3, 0));
+        for (uint32_t n = 0; n < parts.count; ++n) {
+            if (plan.runsFragments) fragments_.expect(parts.blocks[n], parts.pixels[n]);
+            if (!writes) continue;
+            collected_[parts.blocks[n]] |= parts.pixels[n];
+            blocksCollected_ |= uint64_t{1} << parts.blocks[n];
         }
+        const SmallFragment origin = smallFragment(left, top, lane);
+        for (; pixels != 0; pixels &= pixels - 1)
+            smallFragments_[fragments++] =
+                static_cast<SmallFragment>(origin + kPlaceOfBit[static_cast<uint32_t>(std::countr_zero(pixels))]);
     }
     finish();
 }
@@ -302,6 +329,8 @@ void TileRenderer::render(const PixelRect& rect, uint32_t layer, int32_t tileX, 
             if (primitive.small) {
                 const uint32_t end = std::min(n + kSmallGroup, item.first + item.count);
                 const uint32_t run = smallRun(*item.chunk, n, end, primitive.draw);
+                for (uint32_t next = end; next < std::min(end + kSmallGroup, item.first + item.count); ++next)
+                    prefetch(item.chunk->primitives[item.chunk->entries[next] & ~kCoversTile]);
                 if (run >= kFewestSmall || primitive.isPoint) {
                     drawSmall(*item.chunk, item.chunk->entries.data() + n, run, prepared);
                     n += run - 1;
