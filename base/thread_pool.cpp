@@ -20,6 +20,22 @@ bool awaitBriefly(const Ready& ready) {
     return false;
 }
 
+constexpr uint64_t shareOf(uint32_t first, uint32_t end) {
+    return uint64_t{first} << 32 | end;
+}
+
+/// Takes the first or the last index of a share; false when it has none.
+bool take(std::atomic<uint64_t>& share, bool fromEnd, uint32_t& index) {
+    uint64_t indices = share.load(std::memory_order_relaxed);
+    while (true) {
+        const auto first = static_cast<uint32_t>(indices >> 32), end = static_cast<uint32_t>(indices);
+        if (first >= end) return false;
+        index = fromEnd ? end - 1 : first;
+        const uint64_t rest = fromEnd ? shareOf(first, end - 1) : shareOf(first + 1, end);
+        if (share.compare_exchange_weak(indices, rest, std::memory_order_relaxed)) return true;
+    }
+}
+
 /// Which worker of which pool this thread is.
 struct Place {
     const ThreadPool* pool = nullptr;
@@ -62,6 +78,7 @@ class ThreadPool::Seat {
 ThreadPool::ThreadPool(uint32_t threads) {
     try {
         loops_.reserve(threads);  // a thread has one open loop at most
+        for (uint32_t worker = 0; worker < threads; ++worker) shares_.emplace_back(size_t{2} * threads);
         workers_.reserve(threads - 1);
         for (uint32_t worker = 1; worker < threads; ++worker)
             workers_.emplace_back([this, worker] { workerMain(worker); });
@@ -85,12 +102,26 @@ void ThreadPool::stopWorkers() {
 }
 
 void ThreadPool::parallelFor(uint32_t count, const std::function<void(uint32_t, uint32_t)>& step) {
+    parallelFor({count, 0}, step);
+}
+
+void ThreadPool::parallelFor(std::array<uint32_t, 2> counts, const std::function<void(uint32_t, uint32_t)>& step) {
     const Seat seat(*this);
+    const uint32_t count = counts[0] + counts[1], threads = threadCount();
     if (workers_.empty() || count <= 1) {
         for (uint32_t index = 0; index < count; ++index) step(index, Seat::worker());
         return;
     }
-    Loop loop{step, count, {}, {}, {}};
+    Share* shares = shares_[Seat::worker()].data();
+    for (uint32_t kind = 0, first = 0; kind < 2; first += counts[kind++]) {
+        const auto start = [&](uint32_t worker) {
+            return first + static_cast<uint32_t>(uint64_t{counts[kind]} * worker / threads);
+        };
+        for (uint32_t worker = 0; worker < threads; ++worker)
+            shares[kind * threads + worker].indices.store(shareOf(start(worker), start(worker + 1)),
+                                                          std::memory_order_relaxed);
+    }
+    Loop loop{step, shares, {}, {}};
     {
         const std::lock_guard lock(mutex_);
         loops_.push_back(&loop);
@@ -132,13 +163,28 @@ void ThreadPool::post(Job& job) noexcept {
 
 void ThreadPool::runSteps(Loop& loop, uint32_t worker) noexcept {
     try {
-        for (uint32_t index; (index = loop.next.fetch_add(1, std::memory_order_relaxed)) < loop.count;)
-            loop.step(index, worker);
+        const uint32_t threads = threadCount();
+        uint32_t index;
+        for (uint32_t kind = 0; kind < 2; ++kind)
+            while (take(loop.shares[kind * threads + worker].indices, false, index)) loop.step(index, worker);
+        for (uint32_t kind = 0; kind < 2; ++kind)
+            for (uint32_t n = 1; n < threads; ++n)
+                while (take(loop.shares[kind * threads + (worker + n) % threads].indices, true, index))
+                    loop.step(index, worker);
     } catch (...) {
-        loop.next.store(loop.count, std::memory_order_relaxed);
+        for (uint32_t n = 0; n < 2 * threadCount(); ++n) loop.shares[n].indices.store(0, std::memory_order_relaxed);
         const std::lock_guard lock(mutex_);
         if (!loop.failure) loop.failure = std::current_exception();
     }
+}
+
+/// Whether some thread has begun with every step.
+bool ThreadPool::isBegun(const Loop& loop) const {
+    for (uint32_t n = 0; n < 2 * threadCount(); ++n) {
+        const uint64_t indices = loop.shares[n].indices.load(std::memory_order_relaxed);
+        if (static_cast<uint32_t>(indices >> 32) < static_cast<uint32_t>(indices)) return false;
+    }
+    return true;
 }
 
 /// Takes a job or joins a loop, if there is one to take or join. `lock` holds the mutex before and after.
@@ -154,7 +200,7 @@ bool ThreadPool::takeWork(std::unique_lock<std::mutex>& lock, uint32_t worker) {
         return true;
     }
     for (Loop* loop : loops_) {
-        if (loop->next.load(std::memory_order_relaxed) >= loop->count) continue;
+        if (isBegun(*loop)) continue;
         ++loop->busy;
         lock.unlock();
         runSteps(*loop, worker);

@@ -1,6 +1,7 @@
 // Threads that share out loops of independent steps, and take on whole jobs.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
@@ -45,7 +46,12 @@ class ThreadPool {
     /// thread is set to the default (round to nearest, denormals kept, no traps) for the duration. `step` must not
     /// call parallelFor. When a step throws, the steps that nobody has begun are left out and the first exception is
     /// thrown from here, after all threads are done. Jobs may call it: several loops run side by side then.
+    /// Every thread begins with a run of indices of its own, the same for the same count, and takes from the end of the
+    /// others' when it is done: what neighbours share, or loops one after the other, stays in a thread's caches.
     void parallelFor(uint32_t count, const std::function<void(uint32_t index, uint32_t worker)>& step);
+    /// The same for counts[0] + counts[1] steps of two kinds, those of the first kind first: every thread begins with
+    /// runs of its own of both.
+    void parallelFor(std::array<uint32_t, 2> counts, const std::function<void(uint32_t index, uint32_t worker)>& step);
 
     /// A loop or job will follow soon: wakes the workers, so that they wait for it awake (for some microseconds).
     void expectLoop();
@@ -59,11 +65,15 @@ class ThreadPool {
 
   private:
     using Step = std::function<void(uint32_t index, uint32_t worker)>;
+    /// Steps that nobody has begun, of one kind: indices from the upper half of `indices` to before the lower half.
+    /// Whose they are takes the first, others the last.
+    struct alignas(64) Share {
+        std::atomic<uint64_t> indices{0};
+    };
     /// A parallelFor that runs; lives on its caller's stack.
     struct Loop {
         const Step& step;
-        uint32_t count;
-        std::atomic<uint32_t> next{0};
+        Share* shares;                  // by kind and worker
         std::atomic<uint32_t> busy{0};  // threads that help; written under the mutex
         std::exception_ptr failure;     // the first; under the mutex
     };
@@ -71,6 +81,7 @@ class ThreadPool {
 
     void workerMain(uint32_t worker);
     void runSteps(Loop& loop, uint32_t worker) noexcept;
+    bool isBegun(const Loop& loop) const;
     bool takeWork(std::unique_lock<std::mutex>& lock, uint32_t worker);
     void stopWorkers();
 
@@ -83,6 +94,7 @@ class ThreadPool {
     std::atomic<uint32_t> generation_{0};  // of loops and jobs, begun or ended
     std::atomic<uint32_t> expected_{0};    // calls of expectLoop
     std::atomic<bool> stop_{false};
+    std::vector<std::vector<Share>> shares_;  // by worker: of the loop that it called for
     std::vector<std::thread> workers_;
 };
 

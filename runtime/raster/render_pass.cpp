@@ -274,7 +274,7 @@ void RenderPass::Impl::runTile(uint32_t index, uint32_t thread, bool mayHide) {
 void RenderPass::Impl::runTiles(Wave& ahead) {
     const auto tiles = static_cast<uint32_t>(activeTiles.size());
     const bool mayHide = !exactCounts && mayHideWork(targets, draws);
-    pool.parallelFor(tiles + ahead.stepCount, [&](uint32_t index, uint32_t thread) {
+    pool.parallelFor({tiles, ahead.stepCount}, [&](uint32_t index, uint32_t thread) {
         if (index < tiles) {
             runTile(index, thread, mayHide);
         } else {

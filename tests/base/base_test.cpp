@@ -51,6 +51,29 @@ TEST(ThreadPool, RunsEveryStepOnceOnValidWorkers) {
     }
 }
 
+TEST(ThreadPool, EveryThreadBeginsWithRunsOfItsOwn) {
+    for (const uint32_t threads : {1u, 2u, 5u}) {
+        ThreadPool pool(threads);
+        for (const std::array<uint32_t, 2> counts : {std::array{0u, 0u}, {1u, 0u}, {0u, 3u}, {64u, 7u}, {9u, 300u}}) {
+            const uint32_t count = counts[0] + counts[1];
+            std::vector<std::vector<uint32_t>> taken(threads);
+            pool.parallelFor(counts, [&](uint32_t index, uint32_t worker) { taken[worker].push_back(index); });
+            std::vector<uint32_t> seen(count);
+            for (uint32_t worker = 0; worker < threads; ++worker) {
+                for (const uint32_t index : taken[worker]) ++seen.at(index);
+                if (taken[worker].empty() || count <= 1) continue;
+                // Of the first kind: from the start of its own run on, if somebody else has not taken all of it.
+                const auto start = [&](uint32_t n) { return static_cast<uint32_t>(uint64_t{counts[0]} * n / threads); };
+                const uint32_t first = taken[worker].front();
+                if (first >= start(worker) && first < start(worker + 1)) {
+                    EXPECT_EQ(first, start(worker));
+                }
+            }
+            for (const uint32_t times : seen) EXPECT_EQ(times, 1u);
+        }
+    }
+}
+
 TEST(ThreadPool, SerialisesCallersFromSeveralThreads) {
     ThreadPool pool(3);
     std::atomic<int> inside = 0, sum = 0;
