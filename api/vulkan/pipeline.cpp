@@ -6,6 +6,7 @@
 #include "api/vulkan/device.h"
 #include "api/vulkan/entry_points.h"
 #include "api/vulkan/instance.h"
+#include "runtime/plan/plan.h"
 #include "spirv_interp/program.h"
 
 namespace vernier::vulkan {

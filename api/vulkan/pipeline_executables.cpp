@@ -10,8 +10,7 @@
 #include "api/vulkan/enumerate.h"
 #include "api/vulkan/pipeline.h"
 #include "runtime/plan/plan.h"
-#include "spirv_interp/ir/print.h"
-#include "spirv_interp/ir/rates.h"
+#include "runtime/plan/program_facts.h"
 
 namespace vernier::vulkan {
 namespace {
@@ -117,12 +116,10 @@ VKAPI_ATTR VkResult VKAPI_CALL GetPipelineExecutableStatisticsKHR(VkDevice,
                statistics.drawRateInstructions);
         to.add("instructions per work-group", "Instructions that run once per work-group",
                statistics.workGroupRateInstructions);
-        const auto counts = ir::countByRate(program.source()), costs = ir::costByRate(program.source());
-        for (size_t rate = 0; rate < ir::kRateCount; ++rate) {
-            if (counts[rate] == 0) continue;
-            const std::string name(ir::rateName(static_cast<ir::Rate>(rate)));
-            to.add("operations, " + name, "Operations whose values can change with every " + name, counts[rate]);
-            to.add("cost, " + name, "What these operations cost, in additions", costs[rate]);
+        for (const RateShare& share : rateShares(program)) {
+            to.add("operations, " + share.rate, "Operations whose values can change with every " + share.rate,
+                   share.operations);
+            to.add("cost, " + share.rate, "What these operations cost, in additions", share.cost);
         }
         return out.result();
     });
@@ -145,7 +142,7 @@ VKAPI_ATTR VkResult VKAPI_CALL GetPipelineExecutableInternalRepresentationsKHR(
             whole &= fillText(*slot, text);
         };
         add("plan", "What the pipeline runs and leaves out, at what rate, and why", factsOf(pipeline));
-        add("IR", "The program after linking and optimisation", ir::print(executable.program->source()));
+        add("IR", "The program after linking and optimisation", irText(*executable.program));
         const VkResult result = out.result();
         return result == VK_SUCCESS && !whole ? VK_INCOMPLETE : result;
     });

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "spirv_interp/ir/rates.h"
+#include "runtime/plan/program_facts.h"
 
 namespace vernier {
 namespace {
@@ -101,18 +101,13 @@ void fragmentFacts(const ir::Program* fragment, const Plan& plan, FactWriter& fa
 }
 
 /// How often what is computed, in a program of `stage`.
-void rateFacts(const std::string& stage, const std::string& item, const ir::Program& program,
-               const BatchStatistics& statistics, FactWriter& facts) {
-    std::vector<RateShare> rates;
+void rateFacts(const std::string& stage, const std::string& item, const BatchProgram& program, FactWriter& facts) {
+    const BatchStatistics& statistics = program.statistics();
+    std::vector<RateShare> rates = rateShares(program);
     std::string text;
-    const auto counts = ir::countByRate(program), costs = ir::costByRate(program);
-    for (size_t rate = 0; rate < ir::kRateCount; ++rate) {
-        if (counts[rate] == 0) continue;
-        const RateShare& share = rates.emplace_back(
-            RateShare{std::string(ir::rateName(static_cast<ir::Rate>(rate))), counts[rate], costs[rate]});
+    for (const RateShare& share : rates)
         text += (text.empty() ? "" : ", ") + share.rate + " " + std::to_string(share.operations) + " (cost " +
                 std::to_string(share.cost) + ")";
-    }
     if (!rates.empty()) {
         Fact& fact = facts.runs("operations of the " + stage + " by rate: " + text,
                                 "how often their values can change, and what they cost, in additions; " +
@@ -169,7 +164,7 @@ void collectFacts(const GraphicsState& state, const ShaderProgram& program, Plan
         if (!plan.skips.has(static_cast<Skip>(rule)))
             facts.runs(skipRules()[rule].meaning, std::string("rule ") + skipRules()[rule].name + " is off");
     geometryFacts(state, plan, program.accuracy(), facts);
-    rateFacts("vertex program", "vertex", program.vertexIr(), program.vertex()->statistics(), facts);
+    rateFacts("vertex program", "vertex", *program.vertex(), facts);
     if (program.lifted().flat > 0)
         facts.runs(count(program.lifted().flat, "operation") + " of the fragment shader, once per vertex",
                    "they depend on flat inputs alone");
@@ -181,13 +176,10 @@ void collectFacts(const GraphicsState& state, const ShaderProgram& program, Plan
     if (state.rasterizerDiscard) return;
     depthFacts(state, plan, facts);
     fragmentFacts(program.fragmentIr(), plan, facts);
-    if (plan.splitSamples)
-        rateFacts("pixels' part of the fragment program", "pixel", program.pixelPart()->source(),
-                  program.pixelPart()->statistics(), facts);
-    if (plan.runsFragments) {
-        const BatchProgram& fragment = plan.splitSamples ? *program.samplePart() : *program.fragment();
-        rateFacts("fragment program", "fragment", fragment.source(), fragment.statistics(), facts);
-    }
+    if (plan.splitSamples) rateFacts("pixels' part of the fragment program", "pixel", *program.pixelPart(), facts);
+    if (plan.runsFragments)
+        rateFacts("fragment program", "fragment", plan.splitSamples ? *program.samplePart() : *program.fragment(),
+                  facts);
     colorFacts(state, plan, facts);
 }
 

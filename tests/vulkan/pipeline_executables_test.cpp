@@ -42,6 +42,7 @@ class ExecutablesTest : public ComputeTest {
         desc.vertex = makeShader(VK_SHADER_STAGE_VERTEX_BIT, "#version 450\nvoid main() { gl_Position = vec4(0); }");
         desc.fragment = constantColor("1, 1, 1, 1");
         desc.extent = {8, 8};
+        desc.flags = VK_PIPELINE_CREATE_CAPTURE_INTERNAL_REPRESENTATIONS_BIT_KHR;
         return makePipeline(makePass(color).pass, desc);
     }
     std::vector<VkPipelineExecutablePropertiesKHR> executables(VkPipeline pipeline) {
@@ -96,7 +97,7 @@ TEST_F(ExecutablesTest, statisticsTellWhatRunsHowOften) {
     const Compute more = makeCompute(
         "#version 450\nlayout(binding = 0) buffer B { float v[]; };\n"
         "void main() { v[gl_GlobalInvocationID.x] = sqrt(v[gl_GlobalInvocationID.x] * 3.0 + 1.0); }",
-        {storageBuffer(buffer)});
+        {storageBuffer(buffer)}, 0, nullptr, VK_SUCCESS, VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR);
     const auto figures = statistics(more.pipeline, 0);
     EXPECT_GT(figures.at("instructions"), 0u);
     EXPECT_GT(figures.at("registers"), 0u);

@@ -37,6 +37,7 @@ class DrawTest : public VulkanTest {
         VkPipelineLayout layout = VK_NULL_HANDLE;  // VK_NULL_HANDLE: an empty one
         uint32_t subpass = 0;
         VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
+        VkPipelineCreateFlags flags = 0;
         bool depthTest = false;
         uint32_t colorCount = 1;
         const VkSpecializationInfo* specialization = nullptr;  // of the fragment stage
