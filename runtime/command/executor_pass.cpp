@@ -59,6 +59,7 @@ uint64_t nowNanoseconds() {
 Executor::PassWork& Executor::takePass() {
     if (idleCount_ == 0 && passes_.size() < kMostPasses) {
         passes_.push_back(std::make_unique<PassWork>(workers_));
+        const std::lock_guard lock(endedMutex_);  // passes end meanwhile, and must find room
         idlePasses_.reserve(passes_.size());
         return *passes_.back();
     }
