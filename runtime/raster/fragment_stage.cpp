@@ -259,11 +259,10 @@ void FragmentStage::addQuads(const BlockCoverage& block, uint64_t any) {
     }
 }
 
-void FragmentStage::addSmall(const SmallGroup& group, const float* attributes, const SmallFragment* fragments,
-                             uint32_t count) {
+void FragmentStage::addSmall(const SmallGroup& group, const SmallFragment* fragments, uint32_t count) {
     if (count == 0) return;
     const size_t smooth = centreTargets_.smooth.size(), linear = centreTargets_.linear.size();
-    gatherSmall_({&group, attributes, smallTargets_, smooth + linear, smallAttributes_.data()});
+    gatherSmall_({&group, smallTargets_, smooth + linear, smallAttributes_.data()});
     while (true) {
         const uint32_t first = batch_.count, lanes = std::min(count, capacity_ - first);
         if (batch_.segmentCount == 0 || batch_.segments[batch_.segmentCount - 1].planes != nullptr)

@@ -40,9 +40,9 @@ class FragmentStage {
     }
     /// Fragments of these pixels must wait until what is collected, or expected, is written.
     bool waitsFor(uint32_t block, uint64_t pixels) const { return plan_->ordered && (inBatch_[block] & pixels) != 0; }
-    /// Fragments of small primitives that passed the early tests, all of them expected. `attributes`: first float of
-    /// the chunk's. Of a draw with Plan::packsSmall. The list has room for one vector more.
-    void addSmall(const SmallGroup& group, const float* attributes, const SmallFragment* fragments, uint32_t count);
+    /// Fragments of small primitives that passed the early tests, all of them expected. Of a draw with
+    /// Plan::packsSmall. The list has room for one vector more.
+    void addSmall(const SmallGroup& group, const SmallFragment* fragments, uint32_t count);
     /// Shades and writes what is collected.
     void flush();
     /// The draw must be bound anew: its memory may be gone.

@@ -38,15 +38,16 @@ void collect(const SmallInput& in, Corners& corners, SmallGroup& group) {
     const int32_t fractionMask = (1 << in.subPixelBits) - 1;
     const auto inverse = static_cast<float>(1 / static_cast<double>(1u << in.subPixelBits));
     for (uint32_t lane = 0; lane < in.count; ++lane) {
-        const Primitive& p = in.primitives[in.entries[lane] & ~kCoversTile];
+        const Primitive& p = *in.primitives[lane];
+        const float* const attributes = in.attributes[lane];
         for (size_t v = 0; v < 3; ++v) {
             corners.x[v][lane] = p.x[v];
             corners.y[v][lane] = p.y[v];
             corners.z[v][lane] = p.z[v];
-            group.attributes[v][lane] = p.attributes[v];
+            group.attributes[v][lane] = attributes + p.attributes[v];
         }
         corners.depthBias[lane] = p.depthBias;
-        group.flat[lane] = p.flat;
+        group.flat[lane] = attributes + p.flat;
         group.w0[lane] = p.w[0];
         group.w1[lane] = p.w[1];
         group.w2[lane] = p.w[2];
@@ -290,8 +291,8 @@ using Quad = hn::CappedTag<float, 4>;
 using VQuad = hn::Vec<Quad>;
 
 /// Four attributes of four primitives from `lane` on, to rows of primitives.
-HWY_INLINE void storeTransposed(const VQuad* v, SmallAttribute* to, std::array<float, kSmallGroup> SmallAttribute::*part,
-                                uint32_t lane) {
+HWY_INLINE void storeTransposed(const VQuad* v, SmallAttribute* to,
+                                std::array<float, kSmallGroup> SmallAttribute::*part, uint32_t lane) {
     const Quad q;
     const VQuad low01 = hn::InterleaveLower(q, v[0], v[1]), low23 = hn::InterleaveLower(q, v[2], v[3]);
     const VQuad high01 = hn::InterleaveUpper(q, v[0], v[1]), high23 = hn::InterleaveUpper(q, v[2], v[3]);
@@ -301,16 +302,16 @@ HWY_INLINE void storeTransposed(const VQuad* v, SmallAttribute* to, std::array<f
     hn::StoreU(hn::ConcatUpperUpper(q, high23, high01), q, (to[3].*part).data() + lane);
 }
 
-/// Attributes `from` and the three after it.
-HWY_INLINE void gatherFour(const SmallGroup& group, const float* from, SmallAttribute* to) {
+/// Attributes `varying` and the three after it.
+HWY_INLINE void gatherFour(const SmallGroup& group, uint32_t varying, SmallAttribute* to) {
     const Quad q;
     for (uint32_t lane = 0; lane < group.count; lane += 4) {
         VQuad first[4], difference1[4], difference2[4];
         for (uint32_t n = 0; n < 4; ++n) {
             const uint32_t primitive = std::min(lane + n, group.count - 1);
-            first[n] = hn::LoadU(q, from + group.attributes[0][primitive]);
-            difference1[n] = hn::Sub(hn::LoadU(q, from + group.attributes[1][primitive]), first[n]);
-            difference2[n] = hn::Sub(hn::LoadU(q, from + group.attributes[2][primitive]), first[n]);
+            first[n] = hn::LoadU(q, group.attributes[0][primitive] + varying);
+            difference1[n] = hn::Sub(hn::LoadU(q, group.attributes[1][primitive] + varying), first[n]);
+            difference2[n] = hn::Sub(hn::LoadU(q, group.attributes[2][primitive] + varying), first[n]);
         }
         storeTransposed(first, to, &SmallAttribute::first, lane);
         storeTransposed(difference1, to, &SmallAttribute::difference1, lane);
@@ -322,23 +323,22 @@ void gatherSmall(const SmallAttributeInput& in) {
     const SmallGroup& group = *in.group;
     for (size_t k = 0; k < in.targets.size(); ++k) {
         const uint32_t varying = in.targets[k].varying;
-        const float* from = in.attributes + varying;
         // Targets are in the order of the attributes in memory, and none is there twice.
         if (k + 4 <= in.weighted && in.targets[k + 3].varying == varying + 3) {
-            gatherFour(group, from, in.to + k);
+            gatherFour(group, varying, in.to + k);
             k += 3;
             continue;
         }
         SmallAttribute& to = in.to[k];
         for (uint32_t lane = 0; lane < group.count; ++lane) {
             if (k >= in.weighted) {  // bits, which no float operation may touch
-                std::memcpy(&to.first[lane], from + group.flat[lane], sizeof(float));
+                std::memcpy(&to.first[lane], group.flat[lane] + varying, sizeof(float));
                 continue;
             }
-            const float first = from[group.attributes[0][lane]];
+            const float first = group.attributes[0][lane][varying];
             to.first[lane] = first;
-            to.difference1[lane] = from[group.attributes[1][lane]] - first;
-            to.difference2[lane] = from[group.attributes[2][lane]] - first;
+            to.difference1[lane] = group.attributes[1][lane][varying] - first;
+            to.difference2[lane] = group.attributes[2][lane][varying] - first;
         }
     }
 }

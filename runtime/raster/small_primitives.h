@@ -40,17 +40,17 @@ struct SmallGroup {
     // Bit 8 y + x of `pixels`: the primitive covers pixel (left + x, top + y) of the tile.
     std::array<uint64_t, kSmallGroup> pixels;
     std::array<uint32_t, kSmallGroup> left, top;
-    std::array<uint32_t, kSmallGroup> attributes[3], flat;          // first float in Chunk::attributes
+    std::array<const float*, kSmallGroup> attributes[3], flat;
     alignas(64) std::array<int32_t, kSmallGroup> originX, originY;  // of the tile, from the anchor, in pixels
     alignas(64) std::array<float, kSmallGroup> centreX, centreY;    // 1/2 - fraction
     alignas(64) std::array<float, kSmallGroup> l1x, l1y, l2x, l2y, z0, zx, zy, w0, w1, w2;
     float zLow = 0, zHigh = 1;
 };
 
-/// `count` entries of a chunk, all of them small (Primitive::small) and of one draw.
+/// Small primitives (Primitive::small) of one draw, and the attributes of their chunks.
 struct SmallInput {
-    const Primitive* primitives;
-    const uint32_t* entries;
+    std::array<const Primitive*, kSmallGroup> primitives;
+    std::array<const float*, kSmallGroup> attributes;
     uint32_t count;
     int32_t tileX, tileY;
     uint32_t subPixelBits;
@@ -70,11 +70,9 @@ struct SmallTestInput {
 using TestSmallFn = uint32_t (*)(const SmallTestInput& input, SmallFragment* fragments, uint32_t count);
 TestSmallFn testSmallFunction(Isa isa);
 
-/// Attributes of a group: one in `to` for each target, the first `weighted` of them not flat. `attributes`: first float of
-/// the chunk's.
+/// Attributes of a group: one in `to` for each target, the first `weighted` of them not flat.
 struct SmallAttributeInput {
     const SmallGroup* group;
-    const float* attributes;
     std::span<const VaryingTarget> targets;
     size_t weighted;
     SmallAttribute* to;

@@ -69,14 +69,11 @@ uint32_t cutSamples(const std::vector<PixelRect>& areas, int32_t tileX, int32_t 
 /// So many small primitives are drawn together, at least; what fewer would gain is less than what it costs.
 constexpr uint32_t kFewestSmall = 4;
 
-/// How many of the entries [first, end) of a chunk, from the first on, are small and of one draw.
-uint32_t smallRun(const Chunk& chunk, uint32_t first, uint32_t end, uint32_t draw) {
-    uint32_t n = first;
-    for (; n < end; ++n) {
-        const Primitive& primitive = chunk.primitives[chunk.entries[n] & ~kCoversTile];
-        if (!primitive.small || primitive.draw != draw) break;
-    }
-    return n - first;
+/// Entries of the same item that are asked for ahead.
+constexpr uint32_t kAhead = 16;
+
+const Primitive& primitiveOf(const TileWork& item, uint32_t n) {
+    return item.chunk->primitives[item.chunk->entries[n] & ~kCoversTile];
 }
 
 void prefetch(const Primitive& primitive) {
@@ -85,6 +82,15 @@ void prefetch(const Primitive& primitive) {
     __builtin_prefetch(bytes);
     __builtin_prefetch(bytes + kLine);
     static_assert(sizeof(Primitive) <= 2 * kLine);
+}
+
+/// The first primitives of the item after `index`, and where those of the one behind it are told.
+void prefetchItems(std::span<const TileWork> work, size_t index) {
+    if (index + 2 < work.size() && work[index + 2].chunk != nullptr)
+        __builtin_prefetch(work[index + 2].chunk->entries.data() + work[index + 2].first);
+    if (index + 1 >= work.size() || work[index + 1].chunk == nullptr) return;
+    const TileWork& next = work[index + 1];
+    for (uint32_t n = next.first; n < next.first + std::min(next.count, kAhead); ++n) prefetch(primitiveOf(next, n));
 }
 
 /// Where the pixel of a bit lies, as part of a SmallFragment.
@@ -241,13 +247,29 @@ void TileRenderer::draw(const Primitive& primitive, const Chunk& chunk, const Pr
     for (uint32_t b = 0; b < count; ++b) fragments_.add(blocks_[b]);
 }
 
-void TileRenderer::drawSmall(const Chunk& chunk, const uint32_t* entries, uint32_t count, const PreparedDraw& draw) {
+/// Draws the small primitives that wait.
+void TileRenderer::flushSmall() {
+    const uint32_t count = waiting_.count;
+    if (count == 0) return;
+    waiting_.count = 0;
+    if (count >= kFewestSmall || waiting_.primitives[0]->isPoint) return drawSmall(*waitingDraw_, count);
+    for (uint32_t n = 0; n < count; ++n) draw(*waiting_.primitives[n], *waitingChunks_[n], *waitingDraw_, false);
+}
+
+/// `count` of those that wait.
+void TileRenderer::drawSmall(const PreparedDraw& draw, uint32_t count) {
     const Plan& plan = *draw.plan;
     const Isa isa = draw.call.pipeline->isa();
     const bool tests = fragments_.testsDepth(), writes = tests && plan.depth.write;
-    setUpSmallFunction(isa)({chunk.primitives.data(), entries, count, tileX_, tileY_, draw.subPixelBits,
-                             draw.firstViewport.depthLow, draw.firstViewport.depthHigh},
-                            group_);
+    SmallInput& input = waiting_;
+    input.count = count;
+    input.tileX = tileX_;
+    input.tileY = tileY_;
+    input.subPixelBits = draw.subPixelBits;
+    input.zLow = draw.firstViewport.depthLow;
+    input.zHigh = draw.firstViewport.depthHigh;
+    setUpSmallFunction(isa)(input, group_);
+    input.count = 0;
     uint32_t fragments = 0;
     const auto finish = [&] {
         PassStatistics& statistics = fragments_.statistics();
@@ -260,7 +282,7 @@ void TileRenderer::drawSmall(const Chunk& chunk, const uint32_t* entries, uint32
             if (writes) coarse_.updateParts(plan.depth, blocksCollected_);
         }
         if (plan.runsFragments) {
-            fragments_.addSmall(group_, chunk.attributes.data(), smallFragments_.data(), fragments);
+            fragments_.addSmall(group_, smallFragments_.data(), fragments);
         } else {
             statistics.samplesPassed += fragments;
         }
@@ -273,7 +295,7 @@ void TileRenderer::drawSmall(const Chunk& chunk, const uint32_t* entries, uint32
         if (pixels == 0) continue;
         if ((group_.precise >> lane & 1) != 0) {
             finish();
-            this->draw(chunk.primitives[entries[lane] & ~kCoversTile], chunk, draw, false);
+            this->draw(*waiting_.primitives[lane], *waitingChunks_[lane], draw, false);
             continue;
         }
         const uint32_t left = group_.left[lane], top = group_.top[lane];
@@ -316,30 +338,32 @@ void TileRenderer::render(const PixelRect& rect, uint32_t layer, int32_t tileX, 
     for (size_t index = firstItem; index < work.size(); ++index) {
         const TileWork& item = work[index];
         if (item.clear != nullptr) {
+            flushSmall();
             fragments_.flush();
             applyClear(*targets_, *item.clear, rect);
             coarse_.forget();
             continue;
         }
-        for (uint32_t n = std::max(item.first, index == firstItem ? firstEntry : 0); n < item.first + item.count; ++n) {
-            const uint32_t entry = item.chunk->entries[n];
-            const Primitive& primitive = item.chunk->primitives[entry & ~kCoversTile];
+        prefetchItems(work, index);
+        const uint32_t end = item.first + item.count;
+        for (uint32_t n = std::max(item.first, index == firstItem ? firstEntry : 0); n < end; ++n) {
+            if (n + kAhead < end) prefetch(primitiveOf(item, n + kAhead));
+            const Primitive& primitive = primitiveOf(item, n);
             const PreparedDraw& prepared = draws[primitive.draw];
+            if (waiting_.count != 0 && (!primitive.small || &prepared != waitingDraw_)) flushSmall();
             fragments_.bind(prepared, token + prepared.fragmentState);
-            if (primitive.small) {
-                const uint32_t end = std::min(n + kSmallGroup, item.first + item.count);
-                const uint32_t run = smallRun(*item.chunk, n, end, primitive.draw);
-                for (uint32_t next = end; next < std::min(end + kSmallGroup, item.first + item.count); ++next)
-                    prefetch(item.chunk->primitives[item.chunk->entries[next] & ~kCoversTile]);
-                if (run >= kFewestSmall || primitive.isPoint) {
-                    drawSmall(*item.chunk, item.chunk->entries.data() + n, run, prepared);
-                    n += run - 1;
-                    continue;
-                }
+            if (!primitive.small) {
+                draw(primitive, *item.chunk, prepared, (item.chunk->entries[n] & kCoversTile) != 0);
+                continue;
             }
-            draw(primitive, *item.chunk, prepared, (entry & kCoversTile) != 0);
+            waitingDraw_ = &prepared;
+            waitingChunks_[waiting_.count] = item.chunk;
+            waiting_.attributes[waiting_.count] = item.chunk->attributes.data();
+            waiting_.primitives[waiting_.count++] = &primitive;
+            if (waiting_.count == kSmallGroup) flushSmall();
         }
     }
+    flushSmall();
     fragments_.flush();
 }
 

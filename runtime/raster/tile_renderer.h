@@ -43,7 +43,8 @@ class TileRenderer {
 
   private:
     void draw(const Primitive& primitive, const Chunk& chunk, const PreparedDraw& draw, bool coversTile);
-    void drawSmall(const Chunk& chunk, const uint32_t* entries, uint32_t count, const PreparedDraw& draw);
+    void flushSmall();
+    void drawSmall(const PreparedDraw& draw, uint32_t count);
     uint32_t testEarly(const PreparedDraw& draw, const TrianglePlanes& planes, uint32_t count);
 
     void selectLayer(uint32_t layer);
@@ -56,8 +57,11 @@ class TileRenderer {
     FragmentStage fragments_;
     CoarseDepth coarse_;
     std::array<BlockCoverage, kBlocksPerTile> blocks_;
-    // Of small primitives.
-    SmallGroup group_;
+    // Small primitives of one draw that wait for others, and where they come from.
+    SmallInput waiting_{};
+    std::array<const Chunk*, kSmallGroup> waitingChunks_{};
+    const PreparedDraw* waitingDraw_ = nullptr;
+    SmallGroup group_;  // those that are drawn
     std::array<SmallFragment, kSmallFragments + kSmallGroup> smallFragments_{};
     std::array<uint64_t, kBlocksPerTile> collected_{};  // pixels in smallFragments_ whose depth is to be tested
     uint64_t blocksCollected_ = 0;                      // blocks that have some
