@@ -151,15 +151,36 @@ HWY_INLINE VU encodeSmallFloatV(VU bits) {  // of a positive float
     return hn::IfThenElse(isInfinite, splatBits(kInfinity), result);
 }
 
+/// `code` < 2^16 in every lane. The instruction differs in signalling NaNs alone, which it makes quiet.
 HWY_INLINE VF decodeHalfV(VU code) {
+#if HWY_TARGET != HWY_SSE4
+    const auto halves = hn::DemoteTo(hn::Rebind<uint16_t, I32>(), hn::BitCast(I32(), code));
+#if HWY_TARGET == HWY_AVX3
+    const VF value{_mm512_cvtph_ps(halves.raw)};
+#else
+    const VF value{_mm256_cvtph_ps(halves.raw)};
+#endif
+    if (HWY_LIKELY(hn::AllTrue(F32(), hn::Eq(value, value)))) return value;
+#endif
     const VU sign = hn::ShiftLeft<16>(hn::And(code, splatBits(0x8000u)));
     return floatOf(hn::Or(bitsOf(decodeSmallFloatV<10>(hn::And(code, splatBits(0x7fffu)))), sign));
 }
 
 HWY_INLINE VU encodeHalfV(VF x) {
+#if HWY_TARGET == HWY_SSE4
     const VU bits = bitsOf(x);
     const VU sign = hn::And(hn::ShiftRight<16>(bits), splatBits(0x8000u));
     return hn::Or(sign, encodeSmallFloatV<10, true>(hn::And(bits, splatBits(0x7fffffffu))));
+#else
+    // Rounds to the nearest, ties to even, whatever the control word says; NaNs keep the upper bits of their payload.
+    const hn::Rebind<uint16_t, U32> half;
+#if HWY_TARGET == HWY_AVX3
+    const hn::Vec<decltype(half)> codes{_mm512_cvtps_ph(x.raw, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)};
+#else
+    const hn::Vec<decltype(half)> codes{_mm256_cvtps_ph(x.raw, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)};
+#endif
+    return hn::PromoteTo(U32(), codes);
+#endif
 }
 
 HWY_INLINE VF decodeUfloatV(VU code, int bits) {

@@ -198,7 +198,7 @@ struct AnySource {
     static constexpr uint8_t planeOf[4] = {0, kPlanes > 1 ? 1 : kConstantPlane, kPlanes > 2 ? 2 : kConstantPlane,
                                            kPlanes > 3 ? 3 : kConstantPlane};
 
-    explicit AnySource(const TextureView& view) : layout_(view.ops.layout) {
+    explicit AnySource(const TextureView& view) : layout_(view.ops.layout), distant_(!offsetsFitInt32(view)) {
         if (view.block != nullptr) cache_.emplace(view);
     }
 
@@ -223,12 +223,7 @@ struct AnySource {
             unpackBlocks(view, level, at, kTaps, planes);
         } else {
             const std::byte* pointers[kCount];
-            for (uint32_t t = 0; t < kTaps; ++t) {
-                forEachLane(level, at[t], [&](uint32_t lane, const std::byte* slice, uint32_t x, uint32_t y) {
-                    pointers[t * kVectorLanes + lane] =
-                        slice + uint64_t{y} * level.rowPitch + uint64_t{x} * view.texelPitch;
-                });
-            }
+            for (uint32_t t = 0; t < kTaps; ++t) locate(view, level, at[t], pointers + t * kVectorLanes);
             view.ops.unpackEach(pointers, kCount, planes);
         }
         unrolled<kTaps>([&](auto t) VERNIER_INLINE_LAMBDA {
@@ -241,6 +236,22 @@ struct AnySource {
     HWY_INLINE VU finish(VU plane) const { return plane; }
 
   private:
+    HWY_INLINE void locate(const TextureView& view, const TextureLevel& level, const TexelPosition& at,
+                           const std::byte** texels) const {
+        if (HWY_UNLIKELY(distant_)) {
+            forEachLane(level, at, [&](uint32_t lane, const std::byte* slice, uint32_t x, uint32_t y) {
+                texels[lane] = slice + uint64_t{y} * level.rowPitch + uint64_t{x} * view.texelPitch;
+            });
+            return;
+        }
+        const VI row = hn::Mul(at.y, splatInt(static_cast<int32_t>(level.rowPitch)));
+        const VI slice = hn::Mul(at.slice, splatInt(static_cast<int32_t>(level.slicePitch)));
+        const VI column = hn::Mul(at.x, splatInt(static_cast<int32_t>(view.texelPitch)));
+        alignas(64) int32_t offsets[kVectorLanes];
+        hn::Store(hn::Add(hn::Add(row, slice), column), I32(), offsets);
+        for (uint32_t lane = 0; lane < kVectorLanes; ++lane) texels[lane] = level.data + offsets[lane];
+    }
+
     /// At most four taps.
     HWY_NOINLINE void unpackBlocks(const TextureView& view, const TextureLevel& level, const TexelPosition* at,
                                    uint32_t taps, void* const (&planes)[4]) const {
@@ -255,6 +266,7 @@ struct AnySource {
     }
 
     const TexelLayout& layout_;
+    bool distant_;  // offsets in a level may exceed int32
     mutable std::optional<BlockCache> cache_;
 };
 
