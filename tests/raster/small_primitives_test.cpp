@@ -25,7 +25,7 @@ struct Case {
     PipelineOptions options;
     VkFormat depthFormat = VK_FORMAT_UNDEFINED;
     std::vector<Vertex> vertices;
-    bool scissored = false;
+    VkRect2D scissor{{0, 0}, {kWidth, kHeight}};
 };
 
 /// `apart`: every triangle is a draw of its own, and so is drawn alone; a depth bias, of nothing, has it set up alone.
@@ -45,7 +45,7 @@ Outcome render(const Case& test, bool apart) {
     const auto pipeline = makePipeline(options);
     EXPECT_TRUE(pipeline->plan().packsSmall);
     DynamicState dynamic = dynamicFor(kWidth, kHeight);
-    if (test.scissored) dynamic.scissors[0] = {{9, 13}, {70, 66}};
+    dynamic.scissors[0] = test.scissor;
     pass.begin();
     const size_t step = apart ? 3 : test.vertices.size();
     for (size_t n = 0; n < test.vertices.size(); n += step)
@@ -70,8 +70,8 @@ void expectSame(const Case& test) {
 }
 
 /// Triangles around random places, mostly of a few pixels: slivers, some too large to be packed, some on top of the one
-/// before, some cut by the edges of the screen; with w of `perspective` to 1.
-std::vector<Vertex> randomTriangles(uint32_t seed, uint32_t count, double perspective) {
+/// before, some cut by the edges of the screen; with w of `perspective` to 1. `scale`: times as large.
+std::vector<Vertex> randomTriangles(uint32_t seed, uint32_t count, double perspective, double scale = 1) {
     std::mt19937 random(seed);
     const auto value = [&](double low, double high) {
         return low + (high - low) * static_cast<double>(random() % 65536) / 65536;
@@ -83,7 +83,7 @@ std::vector<Vertex> randomTriangles(uint32_t seed, uint32_t count, double perspe
             x = value(-2, kWidth + 2);
             y = value(-2, kHeight + 2);
         }
-        const double size = std::array{1.5, 3.0, 5.0, 7.0, 14.0}[random() % 5], thin = n % 7 == 0 ? 0.02 : 1;
+        const double size = scale * std::array{1.5, 3.0, 5.0, 7.0, 14.0}[random() % 5], thin = n % 7 == 0 ? 0.02 : 1;
         // Some lie at the depth to which the attachment was cleared.
         const bool level = n % 5 == 0;
         const float z = level ? 0.6f : static_cast<float>(value(0, 1));
@@ -156,6 +156,20 @@ TEST(SmallPrimitives, EveryInterpolation) {
         }
 }
 
+/// 4 sub-pixel bits: edges of the same length in sub-units reach over many tiles, of which a scissor leaves a few
+/// pixels.
+TEST(SmallPrimitives, CoarserGrid) {
+    for (const Isa isa : instructionSets()) {
+        Case test = caseOf(isa, VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_D32_SFLOAT, VK_COMPARE_OP_LESS);
+        test.options.accuracy.subPixelBits = 4;
+        test.vertices = randomTriangles(13, 2000, 0.5);
+        expectSame(test);
+        test.vertices = randomTriangles(13, 2000, 1, 12);
+        test.scissor = {{60, 61}, {7, 8}};
+        expectSame(test);
+    }
+}
+
 TEST(SmallPrimitives, DepthAlone) {
     for (const Isa isa : instructionSets()) {
         Case test = caseOf(isa, VK_FORMAT_UNDEFINED, VK_FORMAT_D32_SFLOAT, VK_COMPARE_OP_LESS);
@@ -168,7 +182,7 @@ TEST(SmallPrimitives, DepthAlone) {
 TEST(SmallPrimitives, FacesAndScissor) {
     for (const Isa isa : instructionSets()) {
         Case test = caseOf(isa, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_D24_UNORM_S8_UINT, VK_COMPARE_OP_GREATER);
-        test.scissored = true;
+        test.scissor = {{9, 13}, {70, 66}};
         test.vertices = randomTriangles(11, 2000, 1);
         for (const VkFrontFace face : {VK_FRONT_FACE_CLOCKWISE, VK_FRONT_FACE_COUNTER_CLOCKWISE})
             for (const VkCullModeFlags cull : {VK_CULL_MODE_NONE, VK_CULL_MODE_BACK_BIT, VK_CULL_MODE_FRONT_BIT}) {
