@@ -351,7 +351,7 @@ void TileRenderer::render(const PixelRect& rect, uint32_t layer, int32_t tileX, 
             const Primitive& primitive = primitiveOf(item, n);
             const PreparedDraw& prepared = draws[primitive.draw];
             if (waiting_.count != 0 && (!primitive.small || &prepared != waitingDraw_)) flushSmall();
-            fragments_.bind(prepared, token + prepared.fragmentState);
+            if (waiting_.count == 0) fragments_.bind(prepared, token + prepared.fragmentState);
             if (!primitive.small) {
                 draw(primitive, *item.chunk, prepared, (item.chunk->entries[n] & kCoversTile) != 0);
                 continue;
