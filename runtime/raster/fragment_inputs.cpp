@@ -55,27 +55,6 @@ void FragmentStage::bindInterpolation() {
     }
 }
 
-void FragmentStage::bindSmall() {
-    smallTargets_.clear();
-    if (!draw_->packsSmall) return;
-    for (const auto* targets : {&centreTargets_.smooth, &centreTargets_.linear, &centreTargets_.flat})
-        smallTargets_.insert(smallTargets_.end(), targets->begin(), targets->end());
-    smallAttributes_.resize(smallTargets_.size());
-    smallPlanes_.resize(smallTargets_.size());
-    smallPlaces_.resize(smallTargets_.size());
-}
-
-/// The lanes of small primitives, to where the program reads them.
-void FragmentStage::takeSmallInputs(const FragmentBatch& batch) {
-    for (uint32_t s = 0; s < batch.segmentCount; ++s) {
-        const FragmentSegment& part = batch.segments[s];
-        if (part.planes != nullptr) continue;
-        for (size_t k = 0; k < smallTargets_.size(); ++k)
-            std::memcpy(smallTargets_[k].plane + part.first, smallPlanes_[k].data() + part.first,
-                        part.count * sizeof(float));
-    }
-}
-
 void FragmentStage::interpolate(const FragmentBatch& batch, InterpolationInput& input) {
     input.batch = &batch;
     const bool precise = plan_->preciseInterpolation;

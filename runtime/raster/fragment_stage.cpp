@@ -259,36 +259,6 @@ void FragmentStage::addQuads(const BlockCoverage& block, uint64_t any) {
     }
 }
 
-void FragmentStage::addSmall(const SmallGroup& group, const SmallFragment* fragments, uint32_t count) {
-    if (count == 0) return;
-    const size_t smooth = centreTargets_.smooth.size(), linear = centreTargets_.linear.size();
-    gatherSmall_({&group, smallTargets_, smooth + linear, smallAttributes_.data()});
-    while (true) {
-        const uint32_t first = batch_.count, lanes = std::min(count, capacity_ - first);
-        if (batch_.segmentCount == 0 || batch_.segments[batch_.segmentCount - 1].planes != nullptr)
-            batch_.segments[batch_.segmentCount++] = {nullptr, first, 0};
-        batch_.segments[batch_.segmentCount - 1].count += lanes;
-        batch_.apart = true;
-        for (size_t k = 0; k < smallPlaces_.size(); ++k) smallPlaces_[k] = smallPlanes_[k].data() + first;
-        statistics_.perspectiveDivides +=
-            shadeSmall_({&group, fragments, lanes, tileX_, tileY_, batch_.x.data() + first, batch_.y.data() + first,
-                         smallAttributes_, smallPlaces_, smooth, linear});
-        batch_.count += lanes;
-        fragments += lanes;
-        count -= lanes;
-        if (batch_.count == capacity_) {
-            flush();
-            // What is expected was forgotten with the batch.
-            for (uint32_t n = 0; n < count; ++n) {
-                const uint32_t x = fragments[n] & 63, y = fragments[n] >> 6 & 63;
-                expect(y / kBlockSize * (kTileSize / kBlockSize) + x / kBlockSize,
-                       uint64_t{1} << (y % kBlockSize * kBlockSize + x % kBlockSize));
-            }
-        }
-        if (count == 0) return;
-    }
-}
-
 void FragmentStage::flush() {
     if (batch_.count != 0) {
         const uint32_t count = batch_.count;

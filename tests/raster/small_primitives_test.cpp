@@ -170,6 +170,26 @@ TEST(SmallPrimitives, CoarserGrid) {
     }
 }
 
+/// Slivers are drawn alone: as many as a batch has lanes, a pixel each, or some more or less, and packed ones behind
+/// them.
+TEST(SmallPrimitives, BehindABatchOfSlivers) {
+    for (const Isa isa : instructionSets())
+        for (uint32_t slivers = 60; slivers <= 132; ++slivers) {
+            if (slivers == 68) slivers = 124;
+            SCOPED_TRACE(std::string(isaName(isa)) + ", " + std::to_string(slivers) + " slivers");
+            Case test = caseOf(isa, VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_UNDEFINED, VK_COMPARE_OP_ALWAYS);
+            const auto add = [&](double x, double y, double left, double right) {
+                const std::array<float, 4> shade{static_cast<float>(x) / 64, static_cast<float>(y) / 64, 0.5f, 1};
+                test.vertices.push_back(at(x + left, y, kWidth, kHeight, shade));
+                test.vertices.push_back(at(x + right, y, kWidth, kHeight, shade));
+                test.vertices.push_back(at(x + 0.5, y + 1, kWidth, kHeight, shade));
+            };
+            for (uint32_t n = 0; n < slivers; ++n) add(n % 16 * 4, n / 16 * 4, 0.48, 0.52);
+            for (uint32_t n = 0; n < 200; ++n) add(n % 16 * 4, n / 16 * 4, 0, 1);
+            expectSame(test);
+        }
+}
+
 TEST(SmallPrimitives, DepthAlone) {
     for (const Isa isa : instructionSets()) {
         Case test = caseOf(isa, VK_FORMAT_UNDEFINED, VK_FORMAT_D32_SFLOAT, VK_COMPARE_OP_LESS);
