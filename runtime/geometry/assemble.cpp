@@ -191,20 +191,10 @@ void Assembler::addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, ui
 void Assembler::clipAndAdd(const PreparedDraw& draw, const PrimitiveInfo& info, const LocalPrimitive& primitive,
                            uint32_t vertexCount, Chunk& chunk) {
     const auto clipCount = static_cast<uint32_t>(draw.plan->clipDistanceSlots.size());
-    const auto position = [&](uint32_t n) {
-        std::array<float, 4> p;
-        for (uint32_t c = 0; c < 4; ++c) p[c] = vertices_.clip[c][primitive.vertex[n]];
-        return p;
-    };
-    // What is cut becomes triangles around its first vertex: a triangle begins with its least position, so that the
-    // order of its vertices changes nothing.
-    uint32_t first = 0;
-    for (uint32_t n = 1; vertexCount == 3 && n < 3; ++n)
-        if (position(n) < position(first)) first = n;
     ClipPolygon polygon;
     polygon.count = vertexCount;
     for (uint32_t n = 0; n < vertexCount; ++n) {
-        const uint32_t v = primitive.vertex[(n + first) % vertexCount];
+        const uint32_t v = primitive.vertex[n];
         ClipVertex& vertex = polygon.vertices[n];
         for (uint32_t c = 0; c < 4; ++c) vertex.position[c] = double{vertices_.clip[c][v]};
         vertex.distances.fill(0);
@@ -216,10 +206,16 @@ void Assembler::clipAndAdd(const PreparedDraw& draw, const PrimitiveInfo& info, 
     if (clipPolygon(draw, viewport, polygon, chunk)) ++statistics_.clippedPrimitives;
     std::array<WindowVertex, kMaxPolygonVertices> window;
     uint32_t hiddenEdges = 0;
+    // A polygon becomes triangles around its first vertex: the one with the least position, so that neither the order
+    // of the primitive's vertices nor its winding changes what they are.
+    uint32_t first = 0;
+    for (uint32_t n = 1; vertexCount == 3 && n < polygon.count; ++n)
+        if (polygon.vertices[n].position < polygon.vertices[first].position) first = n;
     for (uint32_t n = 0; n < polygon.count; ++n) {
-        if (!projectVertex(draw, viewport, polygon.vertices[n].position, window[n])) return;
-        window[n].attributes = polygon.vertices[n].attributes;
-        if (polygon.vertices[n].hiddenEdge) hiddenEdges |= 1u << n;
+        const ClipVertex& vertex = polygon.vertices[(first + n) % polygon.count];
+        if (!projectVertex(draw, viewport, vertex.position, window[n])) return;
+        window[n].attributes = vertex.attributes;
+        if (vertex.hiddenEdge) hiddenEdges |= 1u << n;
     }
     if (polygon.count == 2 && vertexCount == 2) setup_.addLine(draw, info, window[0], window[1]);
     if (polygon.count >= 3) setup_.addPolygon(draw, info, {window.data(), polygon.count}, hiddenEdges);

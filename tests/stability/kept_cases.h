@@ -25,6 +25,12 @@ inline std::vector<KeptCase> keptCases() {
          Soup{{{atWindow(1.0625, 1.0625), atWindow(60.9375, 40.25), atWindow(30.9375, 20.625)}},
               {{atWindow(1.0625, 1.0625), atWindow(60.9375, 40.25), atWindow(1.0625, 50)}},
               {{atWindow(1.0625, 1.0625), atWindow(30.9375, 20.625), atWindow(60.9375, 1.0625)}}}},
+        // Cut by the near plane in two corners: the pieces hung on the winding.
+        {"WindingOfACutTriangle",
+         Soup{{{{0, -0x1.22ep-2f, 0x1.1p-1f, 0x1.0116p-1f}, {0, 0, -1, 0x1p-10f}, {0x1.8p+0f, 0, 0, 0x1.4ed6p+0f}}}}},
+        {"WindingAtTheEye", Soup{{{{0, -1, 1, 0},
+                                   {-0x1.1ceep-2f, 0, -0x1.cp-16f, 0x1.3568p-1f},
+                                   {0x1.7cf4p+1f, -0x1.92d2p-1f, 0x1p-4f, 0}}}}},
         // One vertex at infinity, one behind the eye.
         {"VertexAtInfinity", Soup{{{{-1, -1, 0.25f, 1}, {1, 0.5f, 0, 0}, {-0.5f, 1, 0.25f, 1}}}}},
         {"VertexBehindTheEye", Soup{{{{-0.5f, -0.5f, 0.25f, 1}, {0.5f, 0.25f, -1, -1}, {0.5f, 0.75f, 0.5f, 1}}}}},
