@@ -211,6 +211,10 @@ void Assembler::clipAndAdd(const PreparedDraw& draw, const PrimitiveInfo& info, 
     uint32_t first = 0;
     for (uint32_t n = 1; vertexCount == 3 && n < polygon.count; ++n)
         if (polygon.vertices[n].position < polygon.vertices[first].position) first = n;
+    // Of several at the same place the foremost: they follow each other, and the last may come before the first.
+    if (first == 0 && vertexCount == 3)
+        for (uint32_t n = polygon.count; n > 1 && polygon.vertices[n - 1].position == polygon.vertices[0].position; --n)
+            first = n - 1;
     for (uint32_t n = 0; n < polygon.count; ++n) {
         const ClipVertex& vertex = polygon.vertices[(first + n) % polygon.count];
         if (!projectVertex(draw, viewport, vertex.position, window[n])) return;
