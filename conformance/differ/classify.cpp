@@ -82,6 +82,26 @@ Distance distance(const SceneFormat& format, const PixelCodes& ours, const Pixel
     return result;
 }
 
+/// Why two legal values may be more than a code apart. Several reasons: the one that moves most.
+PixelClass causeOf(OracleFlags flags) {
+    constexpr std::pair<OracleFlag, PixelClass> kOpen[] = {{kOracleSnap, PixelClass::snap},
+                                                           {kOracleTie, PixelClass::tie},
+                                                           {kOracleOrder, PixelClass::order},
+                                                           {kOraclePattern, PixelClass::pattern}};
+    constexpr std::pair<OracleFlag, PixelClass> kRanges[] = {{kOracleLevel, PixelClass::level},
+                                                             {kOracleWeights, PixelClass::weights}};
+    if ((flags & kOracleEdge) != 0) {
+        for (const auto& [flag, cause] : kOpen) {
+            if ((flags & flag) != 0) return cause;
+        }
+        return PixelClass::snap;
+    }
+    for (const auto& [flag, cause] : kRanges) {
+        if ((flags & flag) != 0) return cause;
+    }
+    return PixelClass::interpolation;
+}
+
 PixelClass classifyPair(const Distance& apart, bool oursLegal, bool otherLegal, const OraclePixel* oracle) {
     const int64_t error = std::abs(apart.furthest());
     if (oracle == nullptr) {
@@ -89,12 +109,13 @@ PixelClass classifyPair(const Distance& apart, bool oursLegal, bool otherLegal, 
         return error == 1 ? PixelClass::rounding : PixelClass::unexplained;
     }
     if ((oracle->flags & kOracleUnknown) != 0) return error == 0 ? PixelClass::equal : PixelClass::undecided;
+    if ((oracle->flags & kOracleUndefined) != 0) return error == 0 ? PixelClass::equal : PixelClass::undefined;
     if (!oursLegal && !otherLegal) return PixelClass::unexplained;
     if (!oursLegal) return PixelClass::oursWrong;
     if (!otherLegal) return PixelClass::otherWrong;
     if (error == 0) return PixelClass::equal;
     if (error == 1) return PixelClass::rounding;
-    return (oracle->flags & kOracleEdge) != 0 ? PixelClass::edge : PixelClass::tolerance;
+    return causeOf(oracle->flags);
 }
 
 void add(ImageDiff& diff, size_t pixel, PixelClass pixelClass, const Distance& apart) {

@@ -15,14 +15,20 @@ namespace vernier::conformance {
 
 /// Why two images are as they are in one pixel. X(name, what the report says); in rising order of severity,
 /// the same as the order in which the worst pixel is looked for.
-#define VERNIER_PIXEL_CLASSES(X)                                                          \
-    X(equal, "the same codes")                                                            \
-    X(rounding, "neighbouring codes, both permitted for the exact value")                 \
-    X(tolerance, "both inside the interval permitted for interpolation and filtering")    \
-    X(edge, "coverage is ambiguous under snapping to the sub-pixel grid, both are legal") \
-    X(otherWrong, "ours is legal, the other driver's value is not")                       \
-    X(undecided, "they differ and the oracle could not decide what is legal")             \
-    X(oursWrong, "the other driver's value is legal, ours is not")                        \
+#define VERNIER_PIXEL_CLASSES(X)                                                            \
+    X(equal, "the same codes")                                                              \
+    X(rounding, "neighbouring codes, both permitted for the exact value")                   \
+    X(weights, "weights of a linear filter have as many bits as declared: both are legal")  \
+    X(level, "the level of detail is approximated, each in a permitted way")                \
+    X(interpolation, "both inside the interval permitted for interpolation and arithmetic") \
+    X(tie, "a sample lies exactly on an edge, and belongs to either side")                  \
+    X(snap, "snapping to the sub-pixel grid decides coverage, both are legal")              \
+    X(order, "two depths are too near to each other to say which is in front")              \
+    X(pattern, "alpha becomes coverage in whatever pattern")                                \
+    X(undefined, "the specification defines no value here")                                 \
+    X(otherWrong, "ours is legal, the other driver's value is not")                         \
+    X(undecided, "they differ and the oracle could not decide what is legal")               \
+    X(oursWrong, "the other driver's value is legal, ours is not")                          \
     X(unexplained, "without an oracle: more than one code apart; with one: neither is legal")
 
 enum class PixelClass : uint8_t {
@@ -63,7 +69,7 @@ struct ImageDiff {
 Result<ImageDiff> compareImages(const RenderedImage& ours, const RenderedImage& other, const OracleImage* oracle);
 
 /// How one image stands against the oracle alone: `equal` is the oracle's own value, `rounding` a neighbour,
-/// `tolerance` and `edge` legal otherwise, `oursWrong` outside. Errors are against the oracle's value.
+/// other legal classes say why it may differ, `oursWrong` is outside. Errors are against the oracle's value.
 Result<ImageDiff> compareWithOracle(const RenderedImage& image, const OracleImage& oracle);
 
 }  // namespace vernier::conformance

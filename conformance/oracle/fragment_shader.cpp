@@ -259,7 +259,7 @@ Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSou
     std::array<FragmentResult, 4> results;
     for (size_t lane = 0; lane < 4; ++lane) {
         results[lane] = combineRuns(runs, lane, outputs_, imprecision_, output.colorCount);
-        for (uint8_t& flags : results[lane].colorFlags) flags |= resources.flags;
+        for (OracleFlags& flags : results[lane].colorFlags) flags |= resources.flags;
     }
     return results;
 }

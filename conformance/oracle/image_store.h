@@ -14,7 +14,7 @@ namespace vernier::conformance::exact {
 /// Colour, or depth in channel 0 and stencil in channel 1; flags of OracleFlag.
 struct StoredTexel {
     Color channels{};
-    uint8_t flags = 0;
+    OracleFlags flags = 0;
 };
 
 /// One level of one layer; samples of a pixel are consecutive.

@@ -11,15 +11,24 @@
 
 namespace vernier::conformance {
 
+enum OracleFlag : uint16_t {
+    kOracleEdge = 1,      // what is drawn here is open: low..high spans all legal outcomes; the next four say why
+    kOracleUnknown = 2,   // could not be decided; never silently accepted: counted and reported
+    kOracleTie = 4,       // a sample lies exactly on an edge
+    kOracleSnap = 8,      // a sample is so near to an edge that snapping decides
+    kOracleOrder = 16,    // two depths are so near to each other that their precision decides
+    kOraclePattern = 32,  // alpha becomes coverage, in whatever pattern
+    // Why a value has a range, beside interpolation, which every value may have.
+    kOracleWeights = 64,     // weights of a linear filter, of at least the declared bits
+    kOracleLevel = 128,      // level of detail
+    kOracleUndefined = 256,  // the specification defines no value
+};
+using OracleFlags = uint16_t;
+
 /// In decoded component values (linear for sRGB); low..high = what the specification permits.
 struct OraclePixel {
     std::array<double, 4> value, low, high;
-    uint8_t flags;  // of OracleFlag
-};
-
-enum OracleFlag : uint8_t {
-    kOracleEdge = 1,     // coverage ambiguous under legal snapping: low..high spans all legal outcomes
-    kOracleUnknown = 2,  // could not be decided; never silently accepted: counted and reported
+    OracleFlags flags;
 };
 
 struct OracleImage {
@@ -30,7 +39,12 @@ struct OracleImage {
 
 /// What an implementation declares and the specification leaves to it.
 struct OracleRules {
-    int subPixelBits = 8;  // subPixelPrecisionBits: vertices may be snapped by up to 2^-bits pixel
+    int subPixelBits = 8;               // subPixelPrecisionBits: vertices may be snapped by up to 2^-bits pixel
+    int weightBits = 8;                 // subTexelPrecisionBits: of the weights of linear filters
+    double levelSlack = 0x1p-6 + 0.03;  // by how much a level of detail may be off, beyond the accepted scale factors
+    // Attributes of Bresenham lines by the major axis alone. Not what the specification says: for explaining what an
+    // implementation does.
+    bool majorAxisLines = false;
 };
 
 /// One image per Scene::outputs, in that order. An error with code `unsupported` when the scene uses

@@ -87,7 +87,7 @@ class PassRenderer {
             } else {
                 const StoredTexel& texel = attachment(a)->at(x, y, s);
                 state.colors[i] = texel.channels;
-                state.flags[i] = a.loadOp == VK_ATTACHMENT_LOAD_OP_LOAD ? texel.flags : uint8_t{kOracleUnknown};
+                state.flags[i] = a.loadOp == VK_ATTACHMENT_LOAD_OP_LOAD ? texel.flags : OracleFlags{kOracleUnknown};
             }
         }
         if (output_.depthFormat) {
@@ -101,7 +101,7 @@ class PassRenderer {
                 state.depth = texel.channels[0];
                 state.stencil = static_cast<uint8_t>(texel.channels[1].value);
                 state.flags[kDepthFlags] =
-                    a.loadOp == VK_ATTACHMENT_LOAD_OP_LOAD ? texel.flags : uint8_t{kOracleUnknown};
+                    a.loadOp == VK_ATTACHMENT_LOAD_OP_LOAD ? texel.flags : OracleFlags{kOracleUnknown};
             }
         }
         return state;
@@ -116,7 +116,7 @@ class PassRenderer {
         if (Status s = checkModelled(pipeline); !s) return s;
         OutputState output = output_;
         output.pipeline = &pipeline;
-        ShaderResources vertexResources(scene_, images_, draw);
+        ShaderResources vertexResources(scene_, images_, draw, rules_);
         const uint32_t viewIndex = view_ ? layer_ : 0;
         auto geometry = assembleDraw(scene_, draw, vertexResources, viewIndex);
         if (!geometry) return geometry.error();
@@ -132,7 +132,8 @@ class PassRenderer {
                                      {width_, height_},
                                      rules_.subPixelBits,
                                      output_.depthFormat,
-                                     view_ ? std::nullopt : std::optional(layer_)};
+                                     view_ ? std::nullopt : std::optional(layer_),
+                                     rules_.majorAxisLines};
         const Result<std::vector<PreparedPrimitive>> primitives = preparePrimitives(context, *geometry);
         if (!primitives) return primitives.error();
         positions_ = locations(pipeline);
@@ -144,7 +145,7 @@ class PassRenderer {
         std::vector<std::thread> workers;
         for (uint32_t t = 0; t < threads; ++t) {
             workers.emplace_back([&, t] {
-                ShaderResources resources(scene_, images_, draw);
+                ShaderResources resources(scene_, images_, draw, rules_);
                 for (uint32_t row = t * 2; row < height_ && status[t].ok(); row += threads * 2) {
                     for (const PreparedPrimitive& primitive : *primitives) {
                         status[t] = shadeRow(primitive, row, shader ? &*shader : nullptr, output, resources);

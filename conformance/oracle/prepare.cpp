@@ -173,7 +173,9 @@ class Preparer {
 
     Status addShape(const FragmentSource& source, const PixelBounds& bounds, std::optional<LineShape> line,
                     std::optional<PointShape> point) {
-        auto carrier = Triangle::createCarrier(setupOf(source.vertices));
+        const bool majorAxis =
+            context_.majorAxisLines && line && context_.pipeline.lineMode == VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT;
+        auto carrier = Triangle::createCarrier(setupOf(source.vertices), majorAxis);
         if (!carrier || bounds.empty()) return {};
         const uint64_t origin = carrier->identity();
         result_.push_back(

@@ -36,6 +36,7 @@ struct PrepareContext {
     int subPixelBits = 8;
     const PixelFormat* depthFormat = nullptr;
     std::optional<uint32_t> layer;  // only primitives of this layer
+    bool majorAxisLines = false;    // OracleRules::majorAxisLines
 };
 
 /// In the order of the draw. The geometry must outlive the result.

@@ -212,12 +212,14 @@ void writeColors(const OutputState& output, const FragmentResult& fragment, Samp
                 budget[c] = exactly && stored ? 0 : kBlendBudget;
             }
         }
-        uint8_t& flags = s.flags[i];
+        OracleFlags& flags = s.flags[i];
         if (!blend && !logic && mask == present) flags = 0;
         flags |= fragment.colorFlags[i];
         for (const Component& c : format->all()) {
             if (!(mask & (1u << c.channel))) continue;
-            if (result[c.channel].isNan()) flags |= kOracleUnknown;
+            // Vulkan defines no fixed-point code for NaN; floats keep it.
+            const bool isFloat = c.encoding == Encoding::sfloat || c.encoding == Encoding::ufloat;
+            if (result[c.channel].isNan()) flags |= isFloat ? kOracleUnknown : kOracleUndefined;
             if (logic && takesLogicOps(*format)) {
                 s.colors[i][c.channel] =
                     logicComponent(output.pipeline->logicOp, c, result[c.channel], s.colors[i][c.channel]);
@@ -259,16 +261,17 @@ class Splitter {
                 add(std::move(state), nominal);
                 return;
             }
+            mark(state, edge.tie ? kOracleTie : kOracleSnap);
             SampleState outside = state;
             outside.decisions.push_back({edge.key, !edge.insideSide});
             add(std::move(outside), nominal && !edge.nominalInside);
             state.decisions.push_back({edge.key, edge.insideSide});
             nominal = nominal && edge.nominalInside;
         }
-        splitOff(state, nominal, verdict.openAsWhole, verdict.nominalAsWhole);
-        splitOff(state, nominal, verdict.cutOpen, verdict.cutNominal);
-        splitOff(state, nominal, input_.coverageOpen, true);
-        splitOff(state, nominal, input_.fragment->discardOpen, !input_.fragment->discarded);
+        splitOff(state, nominal, verdict.openAsWhole, verdict.nominalAsWhole, kOracleSnap);
+        splitOff(state, nominal, verdict.cutOpen, verdict.cutNominal, kOracleSnap);
+        splitOff(state, nominal, input_.coverageOpen, true, kOraclePattern);
+        splitOff(state, nominal, input_.fragment->discardOpen, !input_.fragment->discarded, OracleFlag{});
         if (input_.fragment->discarded && !input_.fragment->discardOpen) {
             add(std::move(state), nominal);
             return;
@@ -283,9 +286,15 @@ class Splitter {
         if (index != 0) std::swap(states_[0], states_[index]);
     }
 
+    /// Notes a reason why what is drawn is open.
+    static void mark(SampleState& state, OracleFlag reason) {
+        for (OracleFlags& flags : state.flags) flags |= reason;
+    }
+
     // The uncovered alternative of an open question goes its own way.
-    void splitOff(const SampleState& state, bool& nominal, bool open, bool covered) {
+    void splitOff(SampleState& state, bool& nominal, bool open, bool covered, OracleFlag reason) {
         if (!open) return;
+        mark(state, reason);
         add(state, nominal && !covered);
         nominal = nominal && covered;
     }
@@ -305,7 +314,7 @@ class Splitter {
                 add(std::move(state), nominal);
                 return;
             }
-            splitOff(state, nominal, above.open || below.open, above.value && below.value);
+            splitOff(state, nominal, above.open || below.open, above.value && below.value, kOracleOrder);
         }
         if (stencilTest) {
             const auto masked = [&stencil](uint32_t v) { return static_cast<double>(v & stencil.compareMask & 0xff); };
@@ -328,6 +337,7 @@ class Splitter {
                 input_.depthOrigin != 0 && input_.depthOrigin == state.depthOrigin && !input_.fragment->depth;
             passes = compareDepth(pipeline.depthCompare, depth, state.depth, same);
         }
+        if (passes.open) mark(state, kOracleOrder);
         if (passes.open || !passes.value) {
             SampleState failed = state;
             if (stencilTest) updateStencil(stencil, stencil.depthFailOp, failed);
@@ -338,7 +348,7 @@ class Splitter {
             if (depthTest && pipeline.depthWrite) {
                 state.depth = depth;
                 state.depthOrigin = input_.fragment->depth ? 0 : input_.depthOrigin;
-                state.flags[kDepthFlags] &= static_cast<uint8_t>(~kOracleUnknown);
+                state.flags[kDepthFlags] &= static_cast<OracleFlags>(~kOracleUnknown);
             }
             writeColors(output_, *input_.fragment, state);
             add(std::move(state), nominal && passes.value);
@@ -354,7 +364,7 @@ class Splitter {
         }
         into.depth = into.depth.united(last.depth);
         if (into.depthOrigin != last.depthOrigin) into.depthOrigin = 0;
-        const uint8_t lost = into.stencil == last.stencil ? kOracleEdge : kOracleEdge | kOracleUnknown;
+        const OracleFlags lost = into.stencil == last.stencil ? kOracleEdge : kOracleEdge | kOracleUnknown;
         for (size_t i = 0; i < into.flags.size(); ++i) into.flags[i] |= last.flags[i] | lost;
         into.decisions.clear();
     }

@@ -30,7 +30,7 @@ struct SampleState {
     Interval depth;
     uint64_t depthOrigin = 0;  // identity of the triangle that wrote the depth; 0: none
     uint8_t stencil = 0;
-    std::array<uint8_t, kMaxColorAttachments + 1> flags{};  // per attachment
+    std::array<OracleFlags, kMaxColorAttachments + 1> flags{};  // per attachment
     std::vector<EdgeDecision> decisions;
 
     bool sameContents(const SampleState& other) const;
@@ -42,9 +42,9 @@ using Sample = std::vector<SampleState>;
 /// What the fragment shader left for one fragment.
 struct FragmentResult {
     std::array<Color, kMaxColorAttachments> colors{};
-    std::array<uint8_t, kMaxColorAttachments> colorFlags{};  // of OracleFlag
-    std::optional<Color> source1;                            // dual-source blending
-    std::optional<Interval> depth;                           // FragDepth
+    std::array<OracleFlags, kMaxColorAttachments> colorFlags{};  // of OracleFlag
+    std::optional<Color> source1;                                // dual-source blending
+    std::optional<Interval> depth;                               // FragDepth
     bool discarded = false, discardOpen = false;
 };
 

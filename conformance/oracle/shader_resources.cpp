@@ -5,9 +5,23 @@
 
 namespace vernier::conformance::exact {
 
-namespace {
+ShaderResources::ShaderResources(const Scene& scene, const std::vector<ImageStore>& images, const SceneDraw& draw,
+                                 const OracleRules& rules)
+    : scene_(scene), images_(images), draw_(draw), rules_(rules), pushConstants_(draw.pushConstants) {
+    for (const SceneBinding& binding : draw.bindings) {
+        Bytes bytes;
+        if (binding.buffer < scene.buffers.size()) {
+            const Bytes& data = scene.buffers[binding.buffer].data;
+            const size_t begin = std::min<size_t>(binding.offset, data.size());
+            const size_t length = std::min<size_t>(binding.range, data.size() - begin);
+            bytes.assign(data.begin() + static_cast<ptrdiff_t>(begin),
+                         data.begin() + static_cast<ptrdiff_t>(begin + length));
+        }
+        buffers_.push_back(std::move(bytes));
+    }
+}
 
-SampleQuery queryOf(const reference::ImageRequest<double>& r) {
+SampleQuery ShaderResources::queryOf(const reference::ImageRequest<double>& r) const {
     SampleQuery q;
     q.s = r.coordinates[0];
     q.t = r.shape.dim == spv::Dim1D ? 0.5 : r.coordinates[1];
@@ -21,24 +35,9 @@ SampleQuery queryOf(const reference::ImageRequest<double>& r) {
     q.bias = r.bias;
     if (r.minLod) q.minLod = *r.minLod;
     q.dref = r.dref;
+    q.weightSlack = std::ldexp(1.0, -rules_.weightBits);
+    q.levelSlack = rules_.levelSlack;
     return q;
-}
-
-}  // namespace
-
-ShaderResources::ShaderResources(const Scene& scene, const std::vector<ImageStore>& images, const SceneDraw& draw)
-    : scene_(scene), images_(images), draw_(draw), pushConstants_(draw.pushConstants) {
-    for (const SceneBinding& binding : draw.bindings) {
-        Bytes bytes;
-        if (binding.buffer < scene.buffers.size()) {
-            const Bytes& data = scene.buffers[binding.buffer].data;
-            const size_t begin = std::min<size_t>(binding.offset, data.size());
-            const size_t length = std::min<size_t>(binding.range, data.size() - begin);
-            bytes.assign(data.begin() + static_cast<ptrdiff_t>(begin),
-                         data.begin() + static_cast<ptrdiff_t>(begin + length));
-        }
-        buffers_.push_back(std::move(bytes));
-    }
 }
 
 const SceneBinding* ShaderResources::find(const reference::Descriptor& descriptor) const {

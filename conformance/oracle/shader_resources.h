@@ -17,11 +17,12 @@ enum class RangeEnd : uint8_t { nominal, low, high };
 
 class ShaderResources : public reference::Resources<double> {
   public:
-    ShaderResources(const Scene& scene, const std::vector<ImageStore>& images, const SceneDraw& draw);
+    ShaderResources(const Scene& scene, const std::vector<ImageStore>& images, const SceneDraw& draw,
+                    const OracleRules& rules = {});
 
     RangeEnd end = RangeEnd::nominal;
     bool sawRange = false;  // a texture read had more than one permitted value; sticky until reset by the caller
-    uint8_t flags = 0;      // of OracleFlag, from the texels read; sticky
+    OracleFlags flags = 0;  // of OracleFlag, from the texels read; sticky
     bool wrote = false;     // a storage buffer or image was asked for; sticky
 
     std::span<std::byte> buffer(reference::BufferKind kind, const reference::Descriptor& descriptor) override;
@@ -35,6 +36,7 @@ class ShaderResources : public reference::Resources<double> {
     std::array<double, 2> queryLod(const reference::ImageRequest<double>& request) override;
 
   private:
+    SampleQuery queryOf(const reference::ImageRequest<double>& request) const;
     const SceneBinding* find(const reference::Descriptor& descriptor) const;
     const ImageStore* imageOf(const reference::Descriptor& descriptor) const;
     const SceneSampler* samplerOf(const reference::Descriptor& descriptor) const;
@@ -43,6 +45,7 @@ class ShaderResources : public reference::Resources<double> {
     const Scene& scene_;
     const std::vector<ImageStore>& images_;
     const SceneDraw& draw_;
+    const OracleRules rules_;
     std::vector<Bytes> buffers_;  // private copies of what the draw binds, by binding
     Bytes pushConstants_;
 };

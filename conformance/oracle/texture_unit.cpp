@@ -17,8 +17,7 @@ namespace {
 // compared); 6 bits of level of detail. Derivatives may be coarse or fine, which moves lambda a little more
 // on perspective surfaces.
 constexpr double kCoordinateSlack = 0x1p-20;
-constexpr double kWeightSlack = 0x1p-8;
-constexpr double kLodSlack = 0x1p-6 + 0.03;
+constexpr double kWeightSlack = 0x1p-8;  // of blits
 // Rounding of a compared reference value.
 constexpr double kReferenceSlack = 0x1p-20;
 
@@ -28,7 +27,7 @@ struct Sampler {
     uint32_t layer = 0;
     std::array<int32_t, 2> offset{};
     std::optional<Interval> dref;
-    double weightSlack = kWeightSlack;
+    double weightSlack = 0;
 };
 
 Color borderColor(const SceneSampler& sampler) {
@@ -222,9 +221,9 @@ SampleResult filterFootprint(const Sampler& s, const SampleQuery& query, const I
     const auto levelAt = [&](double lod) { return static_cast<uint32_t>(std::clamp(lod, 0.0, last)); };
     for (uint32_t mip = levelAt(std::floor(narrow)); mip <= levelAt(std::ceil(lambda.high)); ++mip) {
         const VkExtent2D extent = s.image.level(mip, s.layer).extent;
-        const auto range = [](double at, double reach, double size) {
+        const auto range = [&s](double at, double reach, double size) {
             // A linear filter reaches half a texel further; more than all texels are all of them.
-            const double half = std::min(reach + 0.5 + kWeightSlack + kCoordinateSlack * size, size);
+            const double half = std::min(reach + 0.5 + s.weightSlack + kCoordinateSlack * size, size);
             return std::pair(static_cast<int64_t>(std::floor(at - half)), static_cast<int64_t>(std::floor(at + half)));
         };
         const double width = extent.width, height = extent.height;
@@ -257,7 +256,8 @@ bool isAddressable(const SampleQuery& query) {
 
 SampleResult unknownTexel() {
     SampleResult unknown;
-    unknown.flags = kOracleUnknown;
+    unknown.flags = kOracleUndefined;
+    for (Interval& c : unknown.color) c = {0, -HUGE_VAL, HUGE_VAL};
     return unknown;
 }
 
@@ -267,7 +267,7 @@ uint32_t selectLayer(const ImageStore& image, double layer) {
 }
 
 Sampler prepare(const ImageStore& image, const SceneSampler& state, const SampleQuery& query) {
-    Sampler s{image, state, selectLayer(image, query.layer), query.offset, std::nullopt};
+    Sampler s{image, state, selectLayer(image, query.layer), query.offset, std::nullopt, query.weightSlack};
     if (query.dref && state.compareEnable) {
         const double slack = kReferenceSlack * std::max(1.0, std::abs(*query.dref));
         Interval dref = Interval(*query.dref).widened(slack);
@@ -288,14 +288,15 @@ Interval levelOfDetail(const SampleQuery& query, const SceneSampler& sampler, Vk
     Interval lambda;
     if (query.lod) {
         lambda = Interval(*query.lod + sampler.mipLodBias);
-        if (lambda.value != std::floor(lambda.value)) lambda = lambda.widened(kLodSlack);
+        if (lambda.value != std::floor(lambda.value)) lambda = lambda.widened(query.levelSlack);
     } else {
         const double ux = query.ddx[0] * extent.width, vx = query.ddx[1] * extent.height;
         const double uy = query.ddy[0] * extent.width, vy = query.ddy[1] * extent.height;
         const double mu = std::max(std::abs(ux), std::abs(uy)), mv = std::max(std::abs(vx), std::abs(vy));
         const double rho = std::max(std::hypot(ux, vx), std::hypot(uy, vy));
         if (!(rho > 0)) return {-infinity, -infinity, -infinity};
-        lambda = {std::log2(rho), std::log2(std::max(mu, mv)) - kLodSlack, std::log2(mu + mv) + kLodSlack};
+        lambda = {std::log2(rho), std::log2(std::max(mu, mv)) - query.levelSlack,
+                  std::log2(mu + mv) + query.levelSlack};
         const double bias = query.bias + sampler.mipLodBias;
         lambda = lambda + Interval(bias);
     }
@@ -316,6 +317,15 @@ SampleResult sampleImage(const ImageStore& image, const SceneSampler& sampler, c
     lambda = lambda.clamped(floorLod, std::numeric_limits<double>::max());
     const bool anisotropic = sampler.maxAnisotropy > 1 && !query.lod;
     SampleResult result = anisotropic ? filterFootprint(s, query, lambda) : filterLod(s, lambda, query.s, query.t);
+    if (!result.isExact()) {
+        // Whatever one level of detail leaves open are weights; what others add is the level.
+        const bool several = image.mipLevels() > 1 || sampler.magFilter != sampler.minFilter;
+        const bool levels = anisotropic || (several && !lambda.isExact());
+        const SampleResult there =
+            levels && !anisotropic ? filterLod(s, Interval(lambda.value), query.s, query.t) : result;
+        if (!there.isExact()) result.flags |= kOracleWeights;
+        if (anisotropic || there.color != result.color) result.flags |= kOracleLevel;
+    }
     if (!s.dref) allowFilterRounding(image.format(), result);
     return result;
 }
@@ -335,8 +345,8 @@ SampleResult gatherImage(const ImageStore& image, const SceneSampler& sampler, c
     for (size_t i = 0; i < 4; ++i) {
         Box box;
         box.add(at(u, v, i));
-        for (const double du : {-kWeightSlack, kWeightSlack}) {
-            for (const double dv : {-kWeightSlack, kWeightSlack}) box.add(at(u + du, v + dv, i));
+        for (const double du : {-s.weightSlack, s.weightSlack}) {
+            for (const double dv : {-s.weightSlack, s.weightSlack}) box.add(at(u + du, v + dv, i));
         }
         result.color[i] = box.result().color[s.dref ? 0 : channel];
         result.flags |= box.result().flags;

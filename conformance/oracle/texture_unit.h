@@ -24,11 +24,13 @@ struct SampleQuery {
     double minLod = 0;
     std::array<int32_t, 2> offset{};
     std::optional<double> dref;  // depth comparison; the result is in channel 0
+    // What the implementation declares: OracleRules.
+    double weightSlack = 0x1p-8, levelSlack = OracleRules().levelSlack;
 };
 
 struct SampleResult {
     Color color{};
-    uint8_t flags = 0;  // of OracleFlag, from the texels read
+    OracleFlags flags = 0;  // of OracleFlag, from the texels read
 
     bool isExact() const;
 };

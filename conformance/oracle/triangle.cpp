@@ -150,7 +150,7 @@ void Triangle::findDepths(const Setup& setup) {
     }
 }
 
-std::optional<Triangle> Triangle::createCarrier(const Setup& setup) {
+std::optional<Triangle> Triangle::createCarrier(const Setup& setup, bool majorAxis) {
     std::array<WindowVertex<double>, 3> v;
     for (size_t i = 0; i < 2; ++i) {
         for (const double c : setup.position[i]) {
@@ -164,8 +164,11 @@ std::optional<Triangle> Triangle::createCarrier(const Setup& setup) {
     // A point has no direction: its second vertex lies beside it, with the same values.
     if (length == 0) v[1].x += v[1].w;
     v[2] = v[0];
-    v[2].x += v[0].w * (length == 0 ? 0 : -dy / length);
-    v[2].y += v[0].w * (length == 0 ? 1 : dx / length);
+    // Across: at a right angle to the line, or along its minor axis.
+    std::array<double, 2> across = length == 0 ? std::array{0.0, 1.0} : std::array{-dy / length, dx / length};
+    if (majorAxis) across = std::abs(dx) >= std::abs(dy) ? std::array{0.0, 1.0} : std::array{1.0, 0.0};
+    v[2].x += v[0].w * across[0];
+    v[2].y += v[0].w * across[1];
     Triangle t{HomogeneousTriangle<double>(v)};
     if (!t.addCuts(setup)) return std::nullopt;
     t.side_ = t.shape_.determinant < 0 ? -1 : 1;
@@ -200,8 +203,8 @@ PixelBounds Triangle::bounds(const PixelBounds& within) const {
     return result;
 }
 
-OpenEdge Triangle::openEdge(size_t oppositeVertex, bool nominalInside) const {
-    return {edgeKey_[oppositeVertex], edgeForward_[oppositeVertex] == (side_ > 0), nominalInside};
+OpenEdge Triangle::openEdge(size_t oppositeVertex, bool nominalInside, bool tie) const {
+    return {edgeKey_[oppositeVertex], edgeForward_[oppositeVertex] == (side_ > 0), nominalInside, tie};
 }
 
 SampleVerdict Triangle::classifySnapped(const GridPoint& sample) const {
@@ -223,7 +226,8 @@ SampleVerdict Triangle::classifySnapped(const GridPoint& sample) const {
             const GridPoint& a = side_ > 0 ? grid_[j] : grid_[k];
             const GridPoint& b = side_ > 0 ? grid_[k] : grid_[j];
             const Wide exactly = edgeFunction(a, b, sample);
-            verdict.edges[verdict.edgeCount++] = openEdge(i, exactly > 0 || (exactly == 0 && isTopLeft(a, b)));
+            verdict.edges[verdict.edgeCount++] =
+                openEdge(i, exactly > 0 || (exactly == 0 && isTopLeft(a, b)), exactly == 0);
         }
     }
     if (orientationOpen_) {
@@ -248,7 +252,7 @@ SampleVerdict Triangle::classifyHomogeneous(const GridPoint& sample) const {
         if (e < -support) return verdict;
         if (e > support) continue;
         const double dx = side_ * a, dy = side_ * b;
-        verdict.edges[verdict.edgeCount++] = openEdge(i, e > 0 || (e == 0 && (dx > 0 || (dx == 0 && dy > 0))));
+        verdict.edges[verdict.edgeCount++] = openEdge(i, e > 0 || (e == 0 && (dx > 0 || (dx == 0 && dy > 0))), e == 0);
     }
     verdict.possible = true;
     return verdict;

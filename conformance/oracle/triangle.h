@@ -26,6 +26,7 @@ struct OpenEdge {
     uint64_t key = 0;
     bool insideSide = false;     // the side, relative to the key, that is inside this triangle
     bool nominalInside = false;  // the declared answer
+    bool tie = false;            // the sample lies on the edge exactly
 };
 
 struct SampleVerdict {
@@ -64,7 +65,7 @@ class Triangle {
     /// the two ends and a point beside the first that has all of the first's values, so that everything interpolated
     /// depends on the place along the line alone. For a point both ends are its vertex. Nothing when an end is not in
     /// front of the eye or not finite, or when all is clipped.
-    static std::optional<Triangle> createCarrier(const Setup& setup);
+    static std::optional<Triangle> createCarrier(const Setup& setup, bool majorAxis = false);
     /// Half-space tests of the cuts alone.
     SampleVerdict classifyCuts(const GridPoint& sample) const;
 
@@ -97,7 +98,7 @@ class Triangle {
     SampleVerdict classifySnapped(const GridPoint& sample) const;
     SampleVerdict classifyHomogeneous(const GridPoint& sample) const;
     void applyCuts(const GridPoint& sample, SampleVerdict& verdict) const;
-    OpenEdge openEdge(size_t oppositeVertex, bool nominalInside) const;
+    OpenEdge openEdge(size_t oppositeVertex, bool nominalInside, bool tie) const;
 
     HomogeneousTriangle<double> shape_;
     bool snapped_ = false;

@@ -27,10 +27,22 @@ Rgb8 classColor(PixelClass pixelClass) {
             return {38, 43, 54};
         case PixelClass::rounding:
             return {72, 120, 96};
-        case PixelClass::tolerance:
+        case PixelClass::weights:
+            return {110, 180, 110};
+        case PixelClass::level:
+            return {60, 160, 170};
+        case PixelClass::interpolation:
             return {86, 170, 140};
-        case PixelClass::edge:
+        case PixelClass::tie:
+            return {120, 150, 230};
+        case PixelClass::snap:
             return {90, 130, 200};
+        case PixelClass::order:
+            return {70, 100, 170};
+        case PixelClass::pattern:
+            return {150, 130, 200};
+        case PixelClass::undefined:
+            return {130, 130, 130};
         case PixelClass::otherWrong:
             return {178, 132, 214};
         case PixelClass::undecided:
@@ -55,7 +67,8 @@ Picture heatMap(const ImageDiff& diff, uint32_t spread) {
                     if (weight(near) > weight(shown)) shown = near;
                 }
             }
-            picture.at(x, y) = heatColor(shown.error, shown.pixelClass == PixelClass::edge);
+            picture.at(x, y) =
+                heatColor(shown.error, shown.pixelClass >= PixelClass::tie && shown.pixelClass <= PixelClass::pattern);
         }
     }
     return picture;

@@ -42,6 +42,10 @@ std::string verdictPill(const ReportScene& scene);
 /// The pages (report.h's writeReport() stores them).
 std::string indexPage(const Report& report);
 std::string scenePage(const Report& report, const ReportScene& scene);
+/// Who is right in a scene, and why drivers differ; empty without an oracle.
+std::string verdictSection(const Report& report, const ReportScene& scene);
+/// The same of one driver in a sentence.
+std::string verdictText(const ReportDriver& driver, const ReportVerdict& verdict);
 std::string reportJson(const Report& report);
 
 /// The style sheet; light and dark follow the reader's setting.

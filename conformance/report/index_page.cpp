@@ -96,7 +96,13 @@ std::string sceneRow(const Report& report, const ReportScene& scene) {
     } else {
         html += figure(missing("nothing to compare", false), "signed difference", "&nbsp;");
     }
-    return html + "</div>" + comparisonRows(report, scene) + "</section>\n";
+    html += "</div>" + comparisonRows(report, scene);
+    for (const ReportDriver& driver : report.drivers) {
+        const auto verdict = scene.verdicts.find(driver.name);
+        if (verdict == scene.verdicts.end() || verdict->second.wrong == 0) continue;
+        html += "<p class=\"counts\"><span>" + escapeHtml(verdictText(driver, verdict->second)) + "</span></p>";
+    }
+    return html + "</section>\n";
 }
 
 std::string list(const std::vector<std::string>& lines, const char* style) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/result.h"
+#include "conformance/arbiter/arbiter.h"
 #include "conformance/differ/classify.h"
 #include "conformance/differ/known_gaps.h"
 #include "conformance/drivers/driver.h"
@@ -32,6 +33,12 @@ struct ReportRendering {
     std::vector<std::string> notNeeded;  // Driver::notNeeded()
 };
 
+/// How a driver stands to the oracle in one scene.
+struct ReportVerdict {
+    uint64_t wrong = 0;                      // pixels of all outputs that the specification does not permit
+    std::optional<Explanation> explanation;  // what it does instead
+};
+
 /// One of our renderings against another driver's, or against the oracle, in one output.
 struct ReportComparison {
     std::string ours, other;  // driver names; other may be "oracle"
@@ -47,8 +54,9 @@ struct ReportScene {
     double oracleSeconds = 0;
     std::optional<ReportRendering> everything;  // by Vernier's API with nothing left out; images are not kept
     std::vector<ReportComparison> comparisons;
-    bool judged = false;  // at least one driver of ours was tried
-    bool failed = false;  // a finding that no known gap covers
+    std::map<std::string, ReportVerdict> verdicts;  // by driver name; empty without an oracle
+    bool judged = false;                            // at least one driver of ours was tried
+    bool failed = false;                            // a finding that no known gap covers
 };
 
 struct Report {

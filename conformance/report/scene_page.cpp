@@ -184,7 +184,7 @@ std::string scenePage(const Report& report, const ReportScene& scene) {
     std::string html = "<main><header class=\"top\"><p><a href=\"index.html\">Vernier conformance</a></p><h1>" +
                        scene.scene.name + "<small>" + verdictPill(scene) + "</small></h1><p>" +
                        escapeHtml(scene.scene.description) + "</p></header>";
-    html += outputViewers(report, scene);
+    html += outputViewers(report, scene) + verdictSection(report, scene);
     for (const ReportComparison& comparison : scene.comparisons) html += comparisonSection(report, scene, comparison);
     html += times(report, scene);
     html += notNeededSection(scene);

@@ -60,6 +60,15 @@ std::string reportJson(const Report& report) {
                                          {"frameMs", timing.frame},         {"frames", timing.frames}};
         }
         entry["comparisons"] = nlohmann::json::array();
+        for (const auto& [driver, verdict] : scene.verdicts) {
+            entry["verdicts"][driver] = {{"wrong", verdict.wrong}};
+            if (!verdict.explanation) continue;
+            const Explanation& why = *verdict.explanation;
+            entry["verdicts"][driver]["explanation"] = {{"hypothesis", why.hypothesis->name},
+                                                        {"explained", why.explained},
+                                                        {"broken", why.broken},
+                                                        {"text", describe(why)}};
+        }
         for (const ReportComparison& each : scene.comparisons) entry["comparisons"].push_back(comparisonJson(each));
         document["scenes"].push_back(std::move(entry));
     }

@@ -1,5 +1,6 @@
 // vernier-conformance: draws the conformance scenes, compares what the drivers made of them, and writes the
 // report.
+#include "conformance/arbiter/hypotheses.h"
 #include "conformance/report/picture.h"
 #include "conformance/scenes/scenes.h"
 #include "conformance/tool/driver_choice.h"
@@ -68,13 +69,19 @@ int render(const DriverPaths& paths, const RenderOptions& options) {
     return 0;
 }
 
-/// The oracle's verdict on one scene, into a file.
-int judge(const std::string& name, const std::filesystem::path& out) {
+/// The oracle's verdict on one scene, or on what a hypothesis makes of it, into a file.
+int judge(const std::string& name, const std::string& hypothesisName, const std::filesystem::path& out) {
     const SceneEntry* entry = findScene(name);
     if (entry == nullptr) return fail(invalidArgument("--scene: no scene is called '" + name + "'"));
-    const Result<Scene> scene = entry->build();
+    Result<Scene> scene = entry->build();
     if (!scene) return fail(scene.error());
-    const Result<std::vector<OracleImage>> images = judgeScene(scene.value());
+    OracleRules rules;
+    if (!hypothesisName.empty()) {
+        const Hypothesis* hypothesis = findHypothesis(hypothesisName);
+        if (hypothesis == nullptr) return fail(invalidArgument("--hypothesis: there is no '" + hypothesisName + "'"));
+        hypothesis->apply(*scene, rules);
+    }
+    const Result<std::vector<OracleImage>> images = judgeScene(scene.value(), rules);
     if (!images) return fail(images.error());
     if (const Status status = saveOracle(images.value(), out); !status) return fail(status.error());
     return 0;
@@ -96,9 +103,10 @@ int run(int argc, char** argv) {
     renderCommand->add_flag("--png", renderOptions.png, "Write a PNG file beside each raw image");
 
     CLI::App* oracleCommand = app.add_subcommand("oracle", "Compute what the specification permits in one scene");
-    std::string oracleScene;
+    std::string oracleScene, oracleHypothesis;
     std::filesystem::path oracleOut;
     oracleCommand->add_option("--scene", oracleScene, "Name of the scene")->required();
+    oracleCommand->add_option("--hypothesis", oracleHypothesis, "What an implementation might do instead");
     oracleCommand->add_option("--out", oracleOut, "File for the result")->required();
 
     CLI::App* runCommand = app.add_subcommand("run", "Draw all scenes with all drivers, compare, and write the report");
@@ -119,7 +127,7 @@ int run(int argc, char** argv) {
     const std::vector<DriverChoice> choices = driverChoices(paths);
     if (*listCommand) return list(choices);
     if (*renderCommand) return render(paths, renderOptions);
-    if (*oracleCommand) return judge(oracleScene, oracleOut);
+    if (*oracleCommand) return judge(oracleScene, oracleHypothesis, oracleOut);
     runOptions.oracle = !withoutOracle;
     runOptions.commonArguments = driverArguments(paths);
     const Result<bool> passed = runComparison(choices, runOptions);

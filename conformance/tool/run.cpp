@@ -16,6 +16,8 @@
 #include <cstdio>
 #include <ctime>
 #include <fstream>
+#include <map>
+#include <optional>
 #include <system_error>
 #include <thread>
 
@@ -119,19 +121,27 @@ ReportRendering renderEverything(const DriverChoice& api, const ReportScene& sce
     return rendering;
 }
 
-void oracleInChild(const RunOptions& options, ReportScene& scene) {
+/// The oracle's images of a scene, or of what a hypothesis makes of it, from a child process; otherwise why there are
+/// none.
+Result<std::vector<OracleImage>> oracleInChild(const RunOptions& options, const std::string& scene,
+                                               const std::string& hypothesis) {
     const std::filesystem::path folder = options.out / "work" / "oracle";
-    const std::filesystem::path file = folder / (scene.scene.name + ".bin");
+    const std::string name = hypothesis.empty() ? scene : scene + "-" + hypothesis;
+    const std::filesystem::path file = folder / (name + ".bin");
     std::error_code ignored;
     std::filesystem::create_directories(folder, ignored);
     std::filesystem::remove(file, ignored);
+    std::vector<std::string> arguments{"oracle", "--scene", scene, "--out", file.string()};
+    if (!hypothesis.empty()) arguments.insert(arguments.end(), {"--hypothesis", hypothesis});
+    const ChildResult child = runChild(arguments, folder / (name + ".log"), options.oracleTimeoutSeconds);
+    if (!child.ok) return unsupported(child.failure);
+    return loadOracle(file);
+}
+
+void askOracle(const RunOptions& options, ReportScene& scene) {
     const Stopwatch watch;
-    const ChildResult child = runChild({"oracle", "--scene", scene.scene.name, "--out", file.string()},
-                                       folder / (scene.scene.name + ".log"), options.oracleTimeoutSeconds);
+    Result<std::vector<OracleImage>> images = oracleInChild(options, scene.scene.name, {});
     scene.oracleSeconds = watch.milliseconds() / 1000;
-    scene.oracleAbsence = child.failure;
-    if (!child.ok) return;
-    Result<std::vector<OracleImage>> images = loadOracle(file);
     if (!images) {
         scene.oracleAbsence = images.error().message;
     } else if (images->size() != scene.scene.outputs.size()) {
@@ -139,7 +149,32 @@ void oracleInChild(const RunOptions& options, ReportScene& scene) {
                               std::to_string(scene.scene.outputs.size());
     } else {
         scene.oracle = std::move(images).value();
+        scene.oracleAbsence.clear();
     }
+}
+
+/// How every driver stands to the oracle, and what is behind what is wrong. Hypotheses are computed once for a scene.
+Status findVerdicts(const RunOptions& options, ReportScene& scene) {
+    if (scene.oracle.empty()) return {};
+    std::map<std::string_view, std::optional<std::vector<OracleImage>>> known;
+    const AskOracle ask = [&](const Hypothesis& hypothesis) {
+        const auto [entry, fresh] = known.try_emplace(hypothesis.name);
+        if (fresh) {
+            Result<std::vector<OracleImage>> images =
+                oracleInChild(options, scene.scene.name, std::string(hypothesis.name));
+            if (images) entry->second = std::move(images).value();
+        }
+        return entry->second;
+    };
+    for (const auto& [name, rendering] : scene.renderings) {
+        if (!rendering.failure.empty() || rendering.images.size() != scene.oracle.size()) continue;
+        const Result<uint64_t> wrong = wrongPixels(rendering.images, scene.oracle);
+        if (!wrong) return wrong.error();
+        Result<std::optional<Explanation>> why = explainWrong(scene.scene, rendering.images, scene.oracle, ask);
+        if (!why) return why.error();
+        scene.verdicts[name] = {*wrong, std::move(why).value()};
+    }
+    return {};
 }
 
 Result<std::vector<const SceneEntry*>> chosenScenes(const RunOptions& options) {
@@ -216,10 +251,11 @@ Result<bool> runComparison(const std::vector<DriverChoice>& choices, const RunOp
         scene.oracleAbsence = "not asked for";
         if (options.oracle) {
             progress.step("oracle " + scene.scene.name);
-            oracleInChild(options, scene);
+            askOracle(options, scene);
         }
         if (!scene.oracle.empty()) extent.drivers.push_back("oracle");
         VERNIER_TRY(compareScene(scene, report.drivers));
+        VERNIER_TRY(findVerdicts(options, scene));
         const std::vector<Finding> found = findingsOf(scene, report.drivers);
         scene.judged = std::any_of(report.drivers.begin(), report.drivers.end(),
                                    [](const ReportDriver& driver) { return driver.ours && driver.absence.empty(); });

@@ -98,11 +98,32 @@ TEST(Differ, ToleranceAndEdge) {
     set(other, 1, 1, 0, 150);
     set(ours, 2, 1, 2, 0);
     const ImageDiff diff = compare(ours, other, &oracle);
-    EXPECT_EQ(classAt(diff, 1, 1), PixelClass::tolerance);
-    EXPECT_EQ(classAt(diff, 2, 1), PixelClass::edge);
+    EXPECT_EQ(classAt(diff, 1, 1), PixelClass::interpolation);
+    EXPECT_EQ(classAt(diff, 2, 1), PixelClass::snap);
     EXPECT_EQ(diff.failures(), 0u);
     set(other, 1, 1, 0, 160);  // beyond the interval
     EXPECT_EQ(classAt(compare(ours, other, &oracle), 1, 1), PixelClass::otherWrong);
+}
+
+TEST(Differ, LegalDifferencesHaveACause) {
+    const std::pair<int, PixelClass> causes[] = {{kOracleEdge | kOracleSnap, PixelClass::snap},
+                                                 {kOracleEdge | kOracleTie, PixelClass::tie},
+                                                 {kOracleEdge | kOracleOrder, PixelClass::order},
+                                                 {kOracleEdge | kOraclePattern, PixelClass::pattern},
+                                                 {kOracleTie | kOracleWeights, PixelClass::weights},
+                                                 {kOracleLevel | kOracleWeights, PixelClass::level},
+                                                 {0, PixelClass::interpolation},
+                                                 {kOracleUndefined, PixelClass::undefined},
+                                                 {kOracleEdge | kOracleTie | kOracleSnap, PixelClass::snap}};
+    for (const auto& [flags, cause] : causes) {
+        OracleImage oracle = exactly(0.5, 0.5, 0.5);
+        at(oracle, 1, 1) = {{0.5, 0.5, 0.5, 1}, {0, 0, 0, 1}, {1, 1, 1, 1}, static_cast<OracleFlags>(flags)};
+        RenderedImage ours = flat(127, 127, 127), other = flat(127, 127, 127);
+        set(other, 1, 1, 0, 150);
+        const ImageDiff diff = compare(ours, other, &oracle);
+        EXPECT_EQ(classAt(diff, 1, 1), cause) << flags;
+        EXPECT_EQ(diff.failures(), 0u);
+    }
 }
 
 TEST(Differ, NeitherLegalIsUnexplainedEvenWhenEqual) {
@@ -204,8 +225,8 @@ TEST(Differ, AgainstTheOracleAlone) {
     ASSERT_TRUE(diff.ok());
     EXPECT_EQ(classAt(diff.value(), 0, 0), PixelClass::equal);
     EXPECT_EQ(classAt(diff.value(), 1, 0), PixelClass::rounding);
-    EXPECT_EQ(classAt(diff.value(), 2, 0), PixelClass::tolerance);
-    EXPECT_EQ(classAt(diff.value(), 3, 0), PixelClass::edge);
+    EXPECT_EQ(classAt(diff.value(), 2, 0), PixelClass::interpolation);
+    EXPECT_EQ(classAt(diff.value(), 3, 0), PixelClass::snap);
     EXPECT_EQ(classAt(diff.value(), 4, 0), PixelClass::oursWrong);
     EXPECT_EQ(diff.value().pixels[4].error, 2);
 }
@@ -237,8 +258,8 @@ TEST(KnownGaps, AreReadAndChecked) {
     const auto message = [](const char* json) { return parseKnownGaps(json).error().message; };
     EXPECT_THAT(message("{"), HasSubstr("known gaps"));
     EXPECT_THAT(message(R"({"gaps": [{"scene": "srgb"}]})"), HasSubstr("driver"));
-    EXPECT_THAT(message(R"({"gaps": [{"scene": "a", "driver": "b", "class": "edge", "max": 1, "reason": "c"}]})"),
-                HasSubstr("'edge'"));
+    EXPECT_THAT(message(R"({"gaps": [{"scene": "a", "driver": "b", "class": "snap", "max": 1, "reason": "c"}]})"),
+                HasSubstr("'snap'"));
     EXPECT_THAT(message(R"({"gaps": [{"scene": "a", "driver": "b", "class": "oursWrong", "max": 0, "reason": "c"}]})"),
                 HasSubstr("max is 0"));
     EXPECT_THAT(message(R"({"gaps": [{"scene": "a", "driver": "b", "class": "oursWrong", "max": 1, "reason": ""}]})"),
@@ -279,7 +300,7 @@ TEST(PixelClasses, HaveNamesTextsAndThoseThatFail) {
     EXPECT_TRUE(isFailure(PixelClass::oursWrong));
     EXPECT_TRUE(isFailure(PixelClass::undecided));
     EXPECT_FALSE(isFailure(PixelClass::otherWrong));
-    EXPECT_FALSE(isFailure(PixelClass::edge));
+    EXPECT_FALSE(isFailure(PixelClass::snap));
 }
 
 }  // namespace

@@ -1,0 +1,159 @@
+// Renderers with one deliberate fault each: the oracle catches them, and the arbiter names the fault.
+#include "conformance/arbiter/arbiter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "conformance/scenes/scenes.h"
+#include "conformance/scenes/shapes.h"
+#include "tests/oracle/rendered.h"
+#include "tests/oracle/small_scene.h"
+
+namespace vernier::conformance {
+namespace {
+
+using namespace small_scene;
+
+std::vector<OracleImage> answer(const Scene& scene, const OracleRules& rules = {}) {
+    auto images = renderOracle(scene, rules);
+    EXPECT_TRUE(images.ok()) << (images.ok() ? "" : images.error().message);
+    return images ? std::move(images).value() : std::vector<OracleImage>{};
+}
+
+std::vector<RenderedImage> drawn(const std::vector<OracleImage>& images) {
+    std::vector<RenderedImage> result;
+    for (const OracleImage& image : images) result.push_back(renderedFrom(image));
+    return result;
+}
+
+/// What the arbiter says of images of a scene.
+std::optional<Explanation> explain(const Scene& scene, const std::vector<RenderedImage>& images) {
+    const AskOracle ask = [&scene](const Hypothesis& hypothesis) -> std::optional<std::vector<OracleImage>> {
+        Scene changed = scene;
+        OracleRules rules;
+        hypothesis.apply(changed, rules);
+        return answer(changed, rules);
+    };
+    const auto why = explainWrong(scene, images, answer(scene), ask);
+    EXPECT_TRUE(why.ok()) << (why.ok() ? "" : why.error().message);
+    return why ? *why : std::nullopt;
+}
+
+/// The declared rendering of what a hypothesis makes of the scene must be put down to that hypothesis.
+void expectNamed(const Scene& scene, const char* name) {
+    Scene changed = scene;
+    OracleRules rules;
+    ASSERT_TRUE(findHypothesis(name)->apply(changed, rules)) << name;
+    const auto why = explain(scene, drawn(answer(changed, rules)));
+    ASSERT_TRUE(why) << name << " is not caught";
+    EXPECT_EQ(why->hypothesis->name, name) << describe(*why);
+    EXPECT_TRUE(why->convinces()) << describe(*why);
+}
+
+std::vector<Vertex> quad() {
+    std::vector<Vertex> vertices;
+    for (const auto& [x, y] :
+         {std::pair{1.0f, 1.0f}, {15.0f, 1.0f}, {1.0f, 15.0f}, {15.0f, 15.0f}, {1.0f, 15.0f}, {15.0f, 1.0f}})
+        vertices.push_back(vertex(x, y, kRed));
+    return vertices;
+}
+
+std::vector<Vertex> colorful() {
+    return {vertex(1, 1, {1, 0, 0, 1}), vertex(14, 2, {0, 1, 0, 1}), vertex(3, 13, {0, 0, 1, 1})};
+}
+
+TEST(Arbiter, HasNothingToExplainWhenAllIsRight) {
+    const Scene scene = drawScene(colorful(), kSmooth);
+    EXPECT_FALSE(explain(scene, drawn(answer(scene))));
+}
+
+TEST(Arbiter, NamesTheSwappedProvokingVertex) {
+    expectNamed(drawScene(colorful(), kFlat), "provoking");
+}
+
+TEST(Arbiter, NamesScissorsThatAreOffByOne) {
+    const Scene scene = drawScene(quad(), kFlat, [](Scene& s) { passOf(s).draws[0].scissor = {{4, 6}, {6, 4}}; });
+    for (const char* name : {"scissorWide", "scissorNarrow", "scissorLate", "scissorEarly"}) expectNamed(scene, name);
+}
+
+TEST(Arbiter, NamesCoarserSnapping) {
+    // The lower border lies 0.02 pixels below a row of centres: on it for 4 bits, beyond it for 8.
+    std::vector<Vertex> vertices = quad();
+    for (Vertex& v : vertices) {
+        if (v.position[1] > 0.5f) v.position[1] = 8.52f / 8 - 1;
+    }
+    expectNamed(drawScene(vertices, kFlat), "snap4");
+}
+
+TEST(Arbiter, NamesFacingThatIsSwapped) {
+    expectNamed(drawScene(colorful(), kFlat, [](Scene& s) { s.pipelines[0].cullMode = VK_CULL_MODE_BACK_BIT; }),
+                "facing");
+}
+
+TEST(Arbiter, NamesAttributesAlongTheMajorAxis) {
+    const auto scene = findScene("lines_bresenham")->build();
+    ASSERT_TRUE(scene.ok());
+    expectNamed(*scene, "majorAxis");
+}
+
+TEST(Arbiter, NamesClippingThatClampingTurnsOff) {
+    const auto scene = findScene("depth_clamp")->build();
+    ASSERT_TRUE(scene.ok());
+    expectNamed(*scene, "clipWhenClamped");
+}
+
+// Weights cut off to so many bits, of a ramp between two texels.
+TEST(Arbiter, NamesWeightsOfSevenBits) {
+    SceneRecorder record("weights", "");
+    const VkExtent2D wide{1024, 1};
+    const std::vector<uint16_t> texels{0, 0, 0, 65535, 65535, 65535, 65535, 65535};
+    const uint32_t texture = record.texture("ramp", VK_FORMAT_R16G16B16A16_UNORM, {2, 1}, {bytesOf(texels)});
+    const uint32_t target = record.colorTarget("color", VK_FORMAT_R32G32B32A32_SFLOAT, wide);
+    const uint32_t pipeline = record.pipeline(record.vertex(kCoverVertexGlsl), record.fragment(R"(#version 450
+layout(binding = 0) uniform sampler2D ramp;
+layout(location = 0) out vec4 color;
+void main() { color = textureLod(ramp, vec2(gl_FragCoord.x / 1024.0, 0.5), 0.0); }
+)"));
+    record.pass(wide).color(target, {0, 0, 0, 0});
+    record.draw(pipeline, 3).texture(0, texture, record.sampler(VK_FILTER_LINEAR));
+    record.output(target);
+    const auto scene = record.finish();
+    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    const std::vector<OracleImage> oracle = answer(*scene);
+    const auto cut = [&oracle](int bits) {
+        std::vector<OracleImage> images = oracle;
+        for (uint32_t x = 0; x < 1024; ++x) {
+            const double u = std::clamp((x + 0.5) / 512 - 0.5, 0.0, 1.0);
+            for (size_t c = 0; c < 3; ++c)
+                images[0].pixels[x].value[c] = std::ldexp(std::floor(std::ldexp(u, bits)), -bits);
+        }
+        return drawn(images);
+    };
+    EXPECT_FALSE(explain(*scene, cut(8)));
+    for (const auto& [bits, name] : {std::pair{7, "weights7"}, {6, "weights6"}, {4, "weights4"}}) {
+        const auto why = explain(*scene, cut(bits));
+        ASSERT_TRUE(why) << bits << " bits are not caught";
+        EXPECT_EQ(why->hypothesis->name, name) << describe(*why);
+        EXPECT_EQ(why->explained, why->wrong);
+    }
+}
+
+TEST(Arbiter, SaysSoWhenNoHypothesisFits) {
+    const Scene scene = drawScene(colorful(), kSmooth);
+    std::vector<RenderedImage> images = drawn(answer(scene));
+    for (std::byte& b : images[0].texels) b ^= std::byte{0x55};
+    const auto why = explain(scene, images);
+    EXPECT_FALSE(why && why->convinces()) << describe(*why);
+}
+
+TEST(Arbiter, TellsInWords) {
+    const Explanation all{findHypothesis("weights7"), 83, 83, 0}, some{findHypothesis("snap4"), 100, 60, 1};
+    EXPECT_EQ(describe(all), "All 83 wrong pixels are right if weights of linear filters have 7 bits");
+    EXPECT_EQ(describe(some),
+              "60 of 100 wrong pixels are right if vertices are snapped to 4 sub-pixel bits (no hypothesis explains "
+              "them all)");
+}
+
+}  // namespace
+}  // namespace vernier::conformance
