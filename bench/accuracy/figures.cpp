@@ -52,7 +52,7 @@ void judgeImage(const RenderedImage& image, const OracleImage& oracle, const Ora
             isOtherSurface(got, exact.pixels[i], format.componentCount))
             ++figures.misplaced;
         if (pixel.flags & kOracleUnknown) ++figures.undecided;
-        if (pixel.flags) continue;
+        if ((pixel.flags & kOracleOpen) != 0) continue;
         ++figures.judged;
         bool inside = true;
         for (size_t c = 0; c < format.componentCount; ++c) {
@@ -86,7 +86,7 @@ std::vector<double> signedErrors(const RenderedImage& image, const OracleImage& 
     const SceneFormat& format = *sceneFormat(image.format);
     std::vector<double> errors(oracle.pixels.size());
     for (size_t i = 0; i < errors.size(); ++i) {
-        if (oracle.pixels[i].flags) continue;
+        if ((oracle.pixels[i].flags & kOracleOpen) != 0) continue;
         const std::array<double, 4> got = valuesAt(image, format, i);
         for (size_t c = 0; c < format.componentCount; ++c) {
             const double error = signedError(got[c], oracle.pixels[i].value[c]);

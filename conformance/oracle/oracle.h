@@ -24,6 +24,8 @@ enum OracleFlag : uint16_t {
     kOracleUndefined = 256,  // the specification defines no value
 };
 using OracleFlags = uint16_t;
+/// Those of a pixel whose value cannot be held against anyone to the last digit.
+inline constexpr OracleFlags kOracleOpen = kOracleEdge | kOracleUnknown | kOracleUndefined;
 
 /// In decoded component values (linear for sRGB); low..high = what the specification permits.
 struct OraclePixel {
