@@ -1,8 +1,10 @@
 #include "conformance/oracle/image_store.h"
 
+#include "conformance/oracle/block_decode.h"
 #include "conformance/oracle/quantise.h"
 
 #include <algorithm>
+#include <span>
 #include <string>
 
 namespace vernier::conformance::exact {
@@ -16,45 +18,91 @@ StoredTexel decodeStored(const PixelFormat& format, const std::byte* bytes) {
     return texel;
 }
 
+/// The format whose channels and precision stand for a block-compressed one.
+const PixelFormat* decodedFormat(VkFormat format) {
+    switch (format) {
+        case VK_FORMAT_BC3_SRGB_BLOCK:
+            return findPixelFormat(VK_FORMAT_R8G8B8A8_SRGB);
+        case VK_FORMAT_BC4_UNORM_BLOCK:
+            return findPixelFormat(VK_FORMAT_R8_UNORM);
+        case VK_FORMAT_BC4_SNORM_BLOCK:
+            return findPixelFormat(VK_FORMAT_R8_SNORM);
+        case VK_FORMAT_BC5_UNORM_BLOCK:
+            return findPixelFormat(VK_FORMAT_R8G8_UNORM);
+        case VK_FORMAT_BC5_SNORM_BLOCK:
+            return findPixelFormat(VK_FORMAT_R8G8_SNORM);
+        case VK_FORMAT_EAC_R11_UNORM_BLOCK:
+            return findPixelFormat(VK_FORMAT_R16_UNORM);
+        case VK_FORMAT_EAC_R11G11_UNORM_BLOCK:
+            return findPixelFormat(VK_FORMAT_R16G16_UNORM);
+        default:
+            return findPixelFormat(VK_FORMAT_R8G8B8A8_UNORM);
+    }
+}
+
+/// Fills a level from its bytes, `first` bytes on; false when there are too few.
+bool fillLevel(ImageLevel& level, VkFormat format, const PixelFormat& texel, const Bytes& data, size_t first) {
+    const VkExtent2D extent = level.extent;
+    if (isDecodedBlockFormat(format)) {
+        const size_t columns = (extent.width + 3) / 4, rows = (extent.height + 3) / 4, bytes = blockBytes(format);
+        if (data.size() < first + columns * rows * bytes) return false;
+        for (uint32_t y = 0; y < extent.height; ++y) {
+            for (uint32_t x = 0; x < extent.width; ++x) {
+                const size_t block = first + (y / 4 * columns + x / 4) * bytes;
+                level.at(x, y).channels = decodeBlockTexel(format, std::span(data).subspan(block, bytes), x % 4, y % 4);
+            }
+        }
+        return true;
+    }
+    const size_t pixels = static_cast<size_t>(extent.width) * extent.height;
+    if (data.size() < first + pixels * texel.bytes) return false;
+    for (size_t i = 0; i < level.texels.size(); ++i)
+        level.texels[i] = decodeStored(texel, data.data() + first + i / level.samples * texel.bytes);
+    return true;
+}
+
+size_t levelBytes(VkFormat format, const PixelFormat& texel, VkExtent2D extent) {
+    if (isDecodedBlockFormat(format))
+        return size_t{(extent.width + 3) / 4} * ((extent.height + 3) / 4) * blockBytes(format);
+    return size_t{extent.width} * extent.height * texel.bytes;
+}
+
 }  // namespace
 
 Result<ImageStore> ImageStore::create(const SceneImage& image) {
     ImageStore store;
-    store.format_ = findPixelFormat(image.format);
+    store.format_ = isDecodedBlockFormat(image.format) ? decodedFormat(image.format) : findPixelFormat(image.format);
     if (!store.format_) {
         return unsupported("oracle: image '" + image.name + "' has format " + std::to_string(image.format) +
                            ", which is not in the oracle's table");
     }
-    const bool flat = image.viewType == VK_IMAGE_VIEW_TYPE_MAX_ENUM || image.viewType == VK_IMAGE_VIEW_TYPE_2D ||
-                      image.viewType == VK_IMAGE_VIEW_TYPE_2D_ARRAY;
-    if (!flat) {
-        return unsupported("oracle: image '" + image.name + "' has view type " + std::to_string(image.viewType) +
-                           "; only 2D images are judged");
-    }
+    const bool cube = image.viewType == VK_IMAGE_VIEW_TYPE_CUBE || image.viewType == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY;
+    store.kind_ = image.viewType == VK_IMAGE_VIEW_TYPE_3D ? ImageKind::volume
+                  : cube                                  ? ImageKind::cube
+                                                          : ImageKind::flat;
     store.mipLevels_ = image.mipLevels;
     store.arrayLayers_ = image.arrayLayers;
+    store.depth_ = image.depth;
     for (uint32_t mip = 0; mip < image.mipLevels; ++mip) {
-        for (uint32_t layer = 0; layer < image.arrayLayers; ++layer) {
+        store.firstOfMip_.push_back(store.levels_.size());
+        const uint32_t slices = store.depth(mip);
+        for (uint32_t layer = 0; layer < image.arrayLayers * slices; ++layer) {
             ImageLevel level;
             level.extent = {std::max(1u, image.extent.width >> mip), std::max(1u, image.extent.height >> mip)};
             level.samples = image.samples;
-            const size_t pixels = static_cast<size_t>(level.extent.width) * level.extent.height;
-            level.texels.resize(pixels * level.samples);
-            const size_t index = static_cast<size_t>(mip) * image.arrayLayers + layer;
-            const size_t bytes = store.format_->bytes;
-            const bool given = index < image.data.size() && !image.data[index].empty();
-            if (given && image.data[index].size() != pixels * bytes) {
-                return invalidArgument("oracle: image '" + image.name + "', data[" + std::to_string(index) + "] has " +
-                                       std::to_string(image.data[index].size()) + " bytes, not " +
-                                       std::to_string(pixels * bytes));
-            }
-            for (size_t i = 0; i < level.texels.size(); ++i) {
-                if (given) {
-                    level.texels[i] =
-                        decodeStored(*store.format_, image.data[index].data() + i / level.samples * bytes);
-                } else {
-                    level.texels[i].flags = kOracleUnknown;
+            level.texels.resize(size_t{level.extent.width} * level.extent.height * level.samples);
+            // All slices of a volume's level are one entry.
+            const size_t index = size_t{mip} * image.arrayLayers + layer / slices;
+            if (index < image.data.size() && !image.data[index].empty()) {
+                const size_t bytes = levelBytes(image.format, *store.format_, level.extent);
+                if (!fillLevel(level, image.format, *store.format_, image.data[index], layer % slices * bytes) ||
+                    image.data[index].size() != bytes * slices) {
+                    return invalidArgument("oracle: image '" + image.name + "', data[" + std::to_string(index) +
+                                           "] has " + std::to_string(image.data[index].size()) + " bytes, not " +
+                                           std::to_string(bytes * slices));
                 }
+            } else {
+                for (StoredTexel& texel : level.texels) texel.flags = kOracleUnknown;
             }
             store.levels_.push_back(std::move(level));
         }

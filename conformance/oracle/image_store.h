@@ -7,6 +7,7 @@
 #include "conformance/oracle/pixel_format.h"
 #include "conformance/scene/scene.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace vernier::conformance::exact {
@@ -31,6 +32,9 @@ struct ImageLevel {
     }
 };
 
+/// What a texture lookup does with an image's layers.
+enum class ImageKind : uint8_t { flat, volume, cube };
+
 class ImageStore {
   public:
     /// Takes over the image's initial contents; texels without any are flagged kOracleUnknown.
@@ -40,12 +44,19 @@ class ImageStore {
     uint32_t mipLevels() const { return mipLevels_; }
     uint32_t arrayLayers() const { return arrayLayers_; }
 
-    ImageLevel& level(uint32_t mip, uint32_t layer) { return levels_[mip * arrayLayers_ + layer]; }
-    const ImageLevel& level(uint32_t mip, uint32_t layer) const { return levels_[mip * arrayLayers_ + layer]; }
+    ImageKind kind() const { return kind_; }
+    /// Of a volume's level; 1 of all others.
+    uint32_t depth(uint32_t mip) const { return kind_ == ImageKind::volume ? std::max(1u, depth_ >> mip) : 1; }
+
+    /// Of a volume `layer` is a slice.
+    ImageLevel& level(uint32_t mip, uint32_t layer) { return levels_[firstOfMip_[mip] + layer]; }
+    const ImageLevel& level(uint32_t mip, uint32_t layer) const { return levels_[firstOfMip_[mip] + layer]; }
 
   private:
     const PixelFormat* format_ = nullptr;
-    uint32_t mipLevels_ = 1, arrayLayers_ = 1;
+    ImageKind kind_ = ImageKind::flat;
+    uint32_t mipLevels_ = 1, arrayLayers_ = 1, depth_ = 1;
+    std::vector<size_t> firstOfMip_;  // into levels_
     std::vector<ImageLevel> levels_;
 };
 

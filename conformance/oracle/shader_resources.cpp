@@ -5,6 +5,22 @@
 
 namespace vernier::conformance::exact {
 
+namespace {
+
+/// Whether a shader's image type can be bound to such an image.
+bool fits(spv::Dim dim, ImageKind kind) {
+    switch (kind) {
+        case ImageKind::volume:
+            return dim == spv::Dim3D;
+        case ImageKind::cube:
+            return dim == spv::DimCube;
+        default:
+            return dim == spv::Dim2D || dim == spv::Dim1D;
+    }
+}
+
+}  // namespace
+
 ShaderResources::ShaderResources(const Scene& scene, const std::vector<ImageStore>& images, const SceneDraw& draw,
                                  const OracleRules& rules)
     : scene_(scene), images_(images), draw_(draw), rules_(rules), pushConstants_(draw.pushConstants) {
@@ -25,8 +41,10 @@ SampleQuery ShaderResources::queryOf(const reference::ImageRequest<double>& r) c
     SampleQuery q;
     q.s = r.coordinates[0];
     q.t = r.shape.dim == spv::Dim1D ? 0.5 : r.coordinates[1];
-    if (r.shape.arrayed) q.layer = r.coordinates[r.shape.dim == spv::Dim1D ? 1 : 2];
-    for (size_t i = 0; i < 2; ++i) {
+    const bool three = r.shape.dim == spv::Dim3D || r.shape.dim == spv::DimCube;
+    if (three) q.r = r.coordinates[2];
+    if (r.shape.arrayed) q.layer = r.coordinates[r.shape.dim == spv::Dim1D ? 1 : three ? 3 : 2];
+    for (size_t i = 0; i < 3; ++i) {
         q.ddx[i] = r.ddx[i];
         q.ddy[i] = r.ddy[i];
         q.offset[i] = r.offset[i];
@@ -82,7 +100,7 @@ reference::Texel<double> ShaderResources::deliver(const SampleResult& result, co
 reference::Texel<double> ShaderResources::sample(const reference::ImageRequest<double>& request) {
     const ImageStore* image = imageOf(request.image);
     const SceneSampler* sampler = samplerOf(request.sampler);
-    if (!image || !sampler || (request.shape.dim != spv::Dim2D && request.shape.dim != spv::Dim1D)) {
+    if (!image || !sampler || !fits(request.shape.dim, image->kind())) {
         flags |= kOracleUnknown;
         return {};
     }
@@ -101,9 +119,15 @@ reference::Texel<double> ShaderResources::gather(const reference::ImageRequest<d
 
 reference::Texel<double> ShaderResources::fetch(const reference::ImageRequest<double>& request) {
     const ImageStore* image = imageOf(request.image);
-    if (!image || (request.shape.dim != spv::Dim2D && request.shape.dim != spv::Dim1D)) {
+    if (!image || request.shape.dim == spv::DimCube || !fits(request.shape.dim, image->kind())) {
         flags |= kOracleUnknown;
         return {};
+    }
+    if (image->kind() == ImageKind::volume) {
+        return deliver(fetchImage(*image, int64_t{request.texel[0]} + request.offset[0],
+                                  int64_t{request.texel[1]} + request.offset[1],
+                                  int64_t{request.texel[2]} + request.offset[2], request.texelLod, 0),
+                       request.shape);
     }
     const bool oneDimensional = request.shape.dim == spv::Dim1D;
     const int64_t y = oneDimensional ? 0 : int64_t{request.texel[1]} + request.offset[1];
@@ -118,7 +142,10 @@ std::array<int32_t, 4> ShaderResources::querySize(const reference::Descriptor& d
     const ImageStore* image = imageOf(descriptor);
     if (!image || lod < 0 || static_cast<uint32_t>(lod) >= image->mipLevels()) return {};
     const VkExtent2D extent = image->level(static_cast<uint32_t>(lod), 0).extent;
-    const auto layers = static_cast<int32_t>(image->arrayLayers());
+    const auto mip = static_cast<uint32_t>(lod);
+    const auto layers = static_cast<int32_t>(image->kind() == ImageKind::volume ? image->depth(mip)
+                                             : image->kind() == ImageKind::cube ? image->arrayLayers() / 6
+                                                                                : image->arrayLayers());
     if (shape.dim == spv::Dim1D) return {static_cast<int32_t>(extent.width), layers};
     return {static_cast<int32_t>(extent.width), static_cast<int32_t>(extent.height), layers};
 }
@@ -131,7 +158,10 @@ int32_t ShaderResources::queryLevels(const reference::Descriptor& descriptor, co
 std::array<double, 2> ShaderResources::queryLod(const reference::ImageRequest<double>& request) {
     const ImageStore* image = imageOf(request.image);
     const SceneSampler* sampler = samplerOf(request.sampler);
-    if (!image || !sampler) return {};
+    if (!image || !sampler || image->kind() != ImageKind::flat) {
+        flags |= kOracleUnknown;
+        return {};
+    }
     SceneSampler unclamped = *sampler;
     unclamped.minLod = -VK_LOD_CLAMP_NONE;
     SampleQuery query = queryOf(request);

@@ -1,5 +1,6 @@
 #include "conformance/oracle/texture_unit.h"
 
+#include "conformance/oracle/cube.h"
 #include "conformance/oracle/filtering.h"
 #include "conformance/oracle/quantise.h"
 
@@ -25,7 +26,7 @@ struct Sampler {
     const ImageStore& image;
     const SceneSampler& state;
     uint32_t layer = 0;
-    std::array<int32_t, 2> offset{};
+    std::array<int32_t, 3> offset{};
     std::optional<Interval> dref;
     double weightSlack = 0;
 };
@@ -77,20 +78,61 @@ Interval compareRanges(VkCompareOp op, const Interval& a, const Interval& b) {
     return open ? Interval(value, 0, 1) : Interval(value);
 }
 
+SampleResult averageOf(const std::array<SampleResult, 3>& texels) {
+    // Vulkan, Cube Map Edge Handling: the average of the three is recommended; any mixture of them is what is certain.
+    SampleResult result = texels[0];
+    for (size_t c = 0; c < 4; ++c) {
+        double sum = 0;
+        for (const SampleResult& each : texels) {
+            sum += each.color[c].value;
+            result.color[c] = result.color[c].united(each.color[c]);
+            result.flags |= each.flags;
+        }
+        result.color[c].value = sum / 3;
+    }
+    return result;
+}
+
+// The texel of a cube at integer coordinates of the sampler's face.
+SampleResult cubeTap(const Sampler& s, uint32_t mip, int64_t x, int64_t y) {
+    const int64_t n = s.image.level(mip, s.layer).extent.width;
+    const uint32_t face = s.layer % 6, cube = s.layer - face;
+    const auto read = [&](int64_t atX, int64_t atY) {
+        // Further out than one texel only what a filter's freedom reaches.
+        const auto near = [n](int64_t c) { return std::clamp<int64_t>(c, -1, n); };
+        const CubeTexel where = *cubeTexel(face, near(atX), near(atY), n);
+        const StoredTexel& texel =
+            s.image.level(mip, cube + where.face).at(static_cast<uint32_t>(where.x), static_cast<uint32_t>(where.y));
+        return SampleResult{texel.channels, texel.flags};
+    };
+    const int64_t insideX = std::clamp<int64_t>(x, 0, n - 1), insideY = std::clamp<int64_t>(y, 0, n - 1);
+    if (x == insideX || y == insideY) return read(x, y);
+    return averageOf({read(insideX, insideY), read(x, insideY), read(insideX, y)});
+}
+
 // The texel at integer coordinates after wrapping, compared if the sampler compares.
-SampleResult tap(const Sampler& s, uint32_t mip, int64_t x, int64_t y) {
-    const ImageLevel& level = s.image.level(mip, s.layer);
-    const auto column = wrapTexel(s.state.addressModeU, x + s.offset[0], level.extent.width);
-    const auto row = wrapTexel(s.state.addressModeV, y + s.offset[1], level.extent.height);
+SampleResult tap(const Sampler& s, uint32_t mip, int64_t x, int64_t y, int64_t z) {
     SampleResult result;
-    if (column && row) {
-        const StoredTexel& texel = level.at(static_cast<uint32_t>(*column), static_cast<uint32_t>(*row));
-        result = {texel.channels, texel.flags};
+    if (s.image.kind() == ImageKind::cube) {
+        result = cubeTap(s, mip, x, y);
     } else {
-        // Vulkan, Texel Replacement and Conversion to RGBA: channels that the format lacks are 0, alpha is 1.
-        const Color border = borderColor(s.state);
-        const PixelFormat& format = s.image.format();
-        for (uint8_t c = 0; c < 4; ++c) result.color[c] = format.channel(c) ? border[c] : Interval(c == 3 ? 1.0 : 0.0);
+        const VkExtent2D extent = s.image.level(mip, s.layer).extent;
+        const auto column = wrapTexel(s.state.addressModeU, x + s.offset[0], extent.width);
+        const auto row = wrapTexel(s.state.addressModeV, y + s.offset[1], extent.height);
+        std::optional<int64_t> slice = s.layer;
+        if (s.image.kind() == ImageKind::volume)
+            slice = wrapTexel(s.state.addressModeW, z + s.offset[2], s.image.depth(mip));
+        if (column && row && slice) {
+            const StoredTexel& texel = s.image.level(mip, static_cast<uint32_t>(*slice))
+                                           .at(static_cast<uint32_t>(*column), static_cast<uint32_t>(*row));
+            result = {texel.channels, texel.flags};
+        } else {
+            // Vulkan, Texel Replacement and Conversion to RGBA: channels that the format lacks are 0, alpha is 1.
+            const Color border = borderColor(s.state);
+            const PixelFormat& format = s.image.format();
+            for (uint8_t c = 0; c < 4; ++c)
+                result.color[c] = format.channel(c) ? border[c] : Interval(c == 3 ? 1.0 : 0.0);
+        }
     }
     if (s.dref) {
         result.color[0] = compareRanges(s.state.compareOp, *s.dref, result.color[0]);
@@ -104,22 +146,34 @@ Interval mix(const Interval& a, const Interval& b, double t) {
     return {a.value + t * (b.value - a.value), a.low + t * (b.low - a.low), a.high + t * (b.high - a.high)};
 }
 
-SampleResult mix(const SampleResult& a, const SampleResult& b, double t) {
+// Two texels, or filtered values, of which the second has weight t: mixed, or the smaller or larger one
+// (VK_EXT_sampler_filter_minmax), among those that have a weight at all.
+SampleResult mix(const Sampler& s, const SampleResult& a, const SampleResult& b, double t) {
     SampleResult result;
-    for (size_t c = 0; c < 4; ++c) result.color[c] = mix(a.color[c], b.color[c], t);
+    for (size_t c = 0; c < 4; ++c) {
+        result.color[c] = s.state.reduction == VK_SAMPLER_REDUCTION_MODE_MIN   ? smaller(a.color[c], b.color[c])
+                          : s.state.reduction == VK_SAMPLER_REDUCTION_MODE_MAX ? larger(a.color[c], b.color[c])
+                                                                               : mix(a.color[c], b.color[c], t);
+    }
     result.flags = a.flags | b.flags;
     return result;
 }
 
-SampleResult bilinearAt(const Sampler& s, uint32_t mip, double u, double v) {
-    const double x = std::floor(u - 0.5), y = std::floor(v - 0.5);
-    const double a = u - 0.5 - x, b = v - 0.5 - y;
-    const auto i = static_cast<int64_t>(x), j = static_cast<int64_t>(y);
+/// A place in texels; of volumes with its third coordinate.
+struct Place {
+    double u = 0, v = 0, w = 0.5;
+};
+
+SampleResult linearAt(const Sampler& s, uint32_t mip, const Place& place) {
+    const double x = std::floor(place.u - 0.5), y = std::floor(place.v - 0.5), z = std::floor(place.w - 0.5);
+    const double a = place.u - 0.5 - x, b = place.v - 0.5 - y, c = place.w - 0.5 - z;
+    const auto i = static_cast<int64_t>(x), j = static_cast<int64_t>(y), k = static_cast<int64_t>(z);
     // A tap without weight is not read: what lies beyond it must not leak in.
-    const auto row = [&](int64_t at) {
-        return a == 0 ? tap(s, mip, i, at) : mix(tap(s, mip, i, at), tap(s, mip, i + 1, at), a);
+    const auto row = [&](int64_t atY, int64_t atZ) {
+        return a == 0 ? tap(s, mip, i, atY, atZ) : mix(s, tap(s, mip, i, atY, atZ), tap(s, mip, i + 1, atY, atZ), a);
     };
-    return b == 0 ? row(j) : mix(row(j), row(j + 1), b);
+    const auto slice = [&](int64_t atZ) { return b == 0 ? row(j, atZ) : mix(s, row(j, atZ), row(j + 1, atZ), b); };
+    return c == 0 ? slice(k) : mix(s, slice(k), slice(k + 1), c);
 }
 
 // Accumulates the box over several evaluations; the first one is the nominal value.
@@ -148,42 +202,58 @@ std::vector<double> breaks(double at, double reach, double phase) {
     return result;
 }
 
-SampleResult filterLevel(const Sampler& s, uint32_t mip, VkFilter filter, double sCoordinate, double tCoordinate) {
+SampleResult filterLevel(const Sampler& s, uint32_t mip, VkFilter filter, const Place& at) {
     const VkExtent2D extent = s.image.level(mip, s.layer).extent;
-    const double u = sCoordinate * extent.width, v = tCoordinate * extent.height;
-    const double reachU = s.weightSlack + kCoordinateSlack * extent.width * std::max(1.0, std::abs(sCoordinate));
-    const double reachV = s.weightSlack + kCoordinateSlack * extent.height * std::max(1.0, std::abs(tCoordinate));
+    const bool volume = s.image.kind() == ImageKind::volume, cube = s.image.kind() == ImageKind::cube;
+    const double depth = s.image.depth(mip);
+    const Place place{at.u * extent.width, at.v * extent.height, volume ? at.w * depth : 0.5};
+    const auto reach = [&s](double size, double coordinate) {
+        return s.weightSlack + kCoordinateSlack * size * std::max(1.0, std::abs(coordinate));
+    };
+    const double reachU = reach(extent.width, at.u), reachV = reach(extent.height, at.v),
+                 reachW = volume ? reach(depth, at.w) : 0;
     Box box;
     if (filter == VK_FILTER_NEAREST) {
-        const auto nearest = [&](double x, double y) {
-            return tap(s, mip, static_cast<int64_t>(std::floor(x)), static_cast<int64_t>(std::floor(y)));
+        const auto nearest = [&](double x, double y, double z) {
+            const auto texel = [](double c) { return static_cast<int64_t>(std::floor(c)); };
+            return tap(s, mip, texel(x), texel(y), texel(z));
         };
-        box.add(nearest(u, v));
+        // The far border of a face belongs to it.
+        const auto within = [cube](double c, uint32_t size) { return cube ? std::min(c, size - 0.5) : c; };
+        const double u = within(place.u, extent.width), v = within(place.v, extent.height);
+        box.add(nearest(u, v, place.w));
         for (const double x : {u - reachU, u + reachU}) {
             for (const double y : {v - reachV, v + reachV}) {
-                if (std::floor(x) != std::floor(u) || std::floor(y) != std::floor(v)) box.add(nearest(x, y));
+                for (const double z : {place.w - reachW, place.w + reachW}) {
+                    if (std::floor(x) != std::floor(u) || std::floor(y) != std::floor(v) ||
+                        std::floor(z) != std::floor(place.w))
+                        box.add(nearest(x, y, z));
+                }
             }
         }
         return box.result();
     }
-    box.add(bilinearAt(s, mip, u, v));
-    for (const double x : breaks(u, reachU, 0.5)) {
-        for (const double y : breaks(v, reachV, 0.5)) box.add(bilinearAt(s, mip, x, y));
+    box.add(linearAt(s, mip, place));
+    const std::vector<double> slices = volume ? breaks(place.w, reachW, 0.5) : std::vector<double>{0.5};
+    for (const double x : breaks(place.u, reachU, 0.5)) {
+        for (const double y : breaks(place.v, reachV, 0.5)) {
+            for (const double z : slices) box.add(linearAt(s, mip, {x, y, z}));
+        }
     }
     return box.result();
 }
 
 // All that one lambda allows: magnification at or below 0, otherwise the minification filter over one or two
 // levels.
-void addAtLod(Box& box, const Sampler& s, double lambda, bool magnify, double sCoordinate, double tCoordinate) {
+void addAtLod(Box& box, const Sampler& s, double lambda, bool magnify, const Place& place) {
     if (magnify) {
-        box.add(filterLevel(s, 0, s.state.magFilter, sCoordinate, tCoordinate));
+        box.add(filterLevel(s, 0, s.state.magFilter, place));
         return;
     }
     const double last = s.image.mipLevels() - 1;
     const VkFilter filter = s.state.minFilter;
     const auto at = [&](double level) {
-        return filterLevel(s, static_cast<uint32_t>(std::clamp(level, 0.0, last)), filter, sCoordinate, tCoordinate);
+        return filterLevel(s, static_cast<uint32_t>(std::clamp(level, 0.0, last)), filter, place);
     };
     if (s.state.mipmapMode == VK_SAMPLER_MIPMAP_MODE_NEAREST) {
         box.add(at(std::ceil(lambda + 0.5) - 1));
@@ -191,19 +261,19 @@ void addAtLod(Box& box, const Sampler& s, double lambda, bool magnify, double sC
         return;
     }
     const double clamped = std::clamp(lambda, 0.0, last), low = std::floor(clamped);
-    box.add(clamped == low ? at(low) : mix(at(low), at(low + 1), clamped - low));
+    box.add(clamped == low ? at(low) : mix(s, at(low), at(low + 1), clamped - low));
 }
 
-SampleResult filterLod(const Sampler& s, const Interval& lambda, double sCoordinate, double tCoordinate) {
+SampleResult filterLod(const Sampler& s, const Interval& lambda, const Place& place) {
     Box box;
-    addAtLod(box, s, lambda.value, lambda.value <= 0, sCoordinate, tCoordinate);
+    addAtLod(box, s, lambda.value, lambda.value <= 0, place);
     std::vector<double> candidates{lambda.low, lambda.high};
     const double first = std::max(lambda.low, -1.0), last = std::min(lambda.high, s.image.mipLevels() * 1.0);
     for (double k = std::ceil(first * 2); k / 2 <= last; ++k) candidates.push_back(k / 2);
     for (const double candidate : candidates) {
-        if (candidate <= 0) addAtLod(box, s, candidate, true, sCoordinate, tCoordinate);
+        if (candidate <= 0) addAtLod(box, s, candidate, true, place);
         if (candidate > 0 || (candidate == 0 && lambda.high > 0)) {
-            addAtLod(box, s, candidate, false, sCoordinate, tCoordinate);
+            addAtLod(box, s, candidate, false, place);
         }
     }
     return box.result();
@@ -217,7 +287,7 @@ SampleResult filterFootprint(const Sampler& s, const SampleQuery& query, const I
     const double narrow = lambda.low - std::log2(std::max(1.0f, s.state.maxAnisotropy));
     // The declared value is the isotropic one: of no consequence where more than one is permitted.
     Box box;
-    box.add(filterLod(s, Interval(std::max(lambda.value, -1.0)), query.s, query.t));
+    box.add(filterLod(s, Interval(std::max(lambda.value, -1.0)), {query.s, query.t}));
     const auto levelAt = [&](double lod) { return static_cast<uint32_t>(std::clamp(lod, 0.0, last)); };
     for (uint32_t mip = levelAt(std::floor(narrow)); mip <= levelAt(std::ceil(lambda.high)); ++mip) {
         const VkExtent2D extent = s.image.level(mip, s.layer).extent;
@@ -232,7 +302,7 @@ SampleResult filterFootprint(const Sampler& s, const SampleQuery& query, const I
         const auto [top, bottom] =
             range(query.t * height, (std::abs(query.ddx[1]) + std::abs(query.ddy[1])) / 2 * height, height);
         for (int64_t y = top; y <= bottom; ++y) {
-            for (int64_t x = left; x <= right; ++x) box.add(tap(s, mip, x, y));
+            for (int64_t x = left; x <= right; ++x) box.add(tap(s, mip, x, y, 0));
         }
     }
     return box.result();
@@ -251,7 +321,7 @@ void allowFilterRounding(const PixelFormat& format, SampleResult& result) {
 // Coordinates whose texels are known: not NaN, and not so large that no implementation's float has a fraction left.
 bool isAddressable(const SampleQuery& query) {
     constexpr double kLimit = 0x1p30;
-    return std::abs(query.s) < kLimit && std::abs(query.t) < kLimit;
+    return std::abs(query.s) < kLimit && std::abs(query.t) < kLimit && std::abs(query.r) < kLimit;
 }
 
 SampleResult unknownTexel() {
@@ -283,7 +353,7 @@ bool SampleResult::isExact() const {
     return std::ranges::all_of(color, [](const Interval& c) { return c.isExact(); });
 }
 
-Interval levelOfDetail(const SampleQuery& query, const SceneSampler& sampler, VkExtent2D extent) {
+Interval levelOfDetail(const SampleQuery& query, const SceneSampler& sampler, VkExtent2D extent, uint32_t depth) {
     const double infinity = std::numeric_limits<double>::infinity();
     Interval lambda;
     if (query.lod) {
@@ -292,11 +362,13 @@ Interval levelOfDetail(const SampleQuery& query, const SceneSampler& sampler, Vk
     } else {
         const double ux = query.ddx[0] * extent.width, vx = query.ddx[1] * extent.height;
         const double uy = query.ddy[0] * extent.width, vy = query.ddy[1] * extent.height;
-        const double mu = std::max(std::abs(ux), std::abs(uy)), mv = std::max(std::abs(vx), std::abs(vy));
-        const double rho = std::max(std::hypot(ux, vx), std::hypot(uy, vy));
+        const double wx = depth > 1 ? query.ddx[2] * depth : 0, wy = depth > 1 ? query.ddy[2] * depth : 0;
+        const double mu = std::max(std::abs(ux), std::abs(uy)), mv = std::max(std::abs(vx), std::abs(vy)),
+                     mw = std::max(std::abs(wx), std::abs(wy));
+        const double rho = std::max(std::hypot(ux, vx, wx), std::hypot(uy, vy, wy));
         if (!(rho > 0)) return {-infinity, -infinity, -infinity};
-        lambda = {std::log2(rho), std::log2(std::max(mu, mv)) - query.levelSlack,
-                  std::log2(mu + mv) + query.levelSlack};
+        lambda = {std::log2(rho), std::log2(std::max({mu, mv, mw})) - query.levelSlack,
+                  std::log2(mu + mv + mw) + query.levelSlack};
         const double bias = query.bias + sampler.mipLodBias;
         lambda = lambda + Interval(bias);
     }
@@ -304,27 +376,63 @@ Interval levelOfDetail(const SampleQuery& query, const SceneSampler& sampler, Vk
     return lambda.clamped(low, std::max<double>(low, sampler.maxLod));
 }
 
-SampleResult sampleImage(const ImageStore& image, const SceneSampler& sampler, const SampleQuery& asked) {
-    SampleQuery query = asked;
-    if (sampler.unnormalized) {
-        query.s /= image.level(0, 0).extent.width;
-        query.t /= image.level(0, 0).extent.height;
-    }
-    const Sampler s = prepare(image, sampler, query);
-    Interval lambda = levelOfDetail(query, sampler, image.level(0, s.layer).extent);
-    if (!isAddressable(query) || std::isnan(lambda.value)) return unknownTexel();
+namespace {
+
+// At one place of one layer, slice range or face.
+SampleResult sampleFlat(const Sampler& s, const SampleQuery& query) {
+    const ImageStore& image = s.image;
+    const SceneSampler& sampler = s.state;
+    Interval lambda = levelOfDetail(query, sampler, image.level(0, s.layer).extent, image.depth(0));
+    if (std::isnan(lambda.value)) return unknownTexel();
     const double floorLod = -1;  // anything below magnifies alike
     lambda = lambda.clamped(floorLod, std::numeric_limits<double>::max());
-    const bool anisotropic = sampler.maxAnisotropy > 1 && !query.lod;
-    SampleResult result = anisotropic ? filterFootprint(s, query, lambda) : filterLod(s, lambda, query.s, query.t);
+    const Place place{query.s, query.t, query.r};
+    const bool anisotropic = sampler.maxAnisotropy > 1 && !query.lod && image.kind() == ImageKind::flat;
+    SampleResult result = anisotropic ? filterFootprint(s, query, lambda) : filterLod(s, lambda, place);
     if (!result.isExact()) {
         // Whatever one level of detail leaves open are weights; what others add is the level.
         const bool several = image.mipLevels() > 1 || sampler.magFilter != sampler.minFilter;
         const bool levels = anisotropic || (several && !lambda.isExact());
-        const SampleResult there =
-            levels && !anisotropic ? filterLod(s, Interval(lambda.value), query.s, query.t) : result;
+        const SampleResult there = levels && !anisotropic ? filterLod(s, Interval(lambda.value), place) : result;
         if (!there.isExact()) result.flags |= kOracleWeights;
         if (anisotropic || there.color != result.color) result.flags |= kOracleLevel;
+    }
+    return result;
+}
+
+}  // namespace
+
+SampleResult sampleImage(const ImageStore& image, const SceneSampler& sampler, const SampleQuery& asked) {
+    SampleQuery query = asked;
+    if (!isAddressable(query)) return unknownTexel();
+    if (sampler.unnormalized) {
+        query.s /= image.level(0, 0).extent.width;
+        query.t /= image.level(0, 0).extent.height;
+    }
+    Sampler s = prepare(image, sampler, query);
+    SampleResult result;
+    if (image.kind() == ImageKind::cube) {
+        const uint32_t cubes = image.arrayLayers() / 6;
+        const auto cube = static_cast<uint32_t>(
+            std::isnan(query.layer) ? 0 : std::clamp(std::nearbyint(query.layer), 0.0, cubes - 1.0));
+        Box box;
+        const std::vector<CubePlace> places =
+            cubePlaces({query.s, query.t, query.r}, query.ddx, query.ddy, kCoordinateSlack);
+        if (places.empty()) return unknownTexel();
+        for (const CubePlace& place : places) {
+            s.layer = cube * 6 + place.face;
+            SampleQuery onFace = query;
+            onFace.s = place.s;
+            onFace.t = place.t;
+            onFace.r = 0;
+            onFace.ddx = {place.ddx[0], place.ddx[1], 0};
+            onFace.ddy = {place.ddy[0], place.ddy[1], 0};
+            box.add(sampleFlat(s, onFace));
+        }
+        result = box.result();
+    } else {
+        if (image.kind() == ImageKind::volume) s.layer = 0;
+        result = sampleFlat(s, query);
     }
     if (!s.dref) allowFilterRounding(image.format(), result);
     return result;
@@ -340,7 +448,7 @@ SampleResult gatherImage(const ImageStore& image, const SceneSampler& sampler, c
     const std::array<std::array<int, 2>, 4> order{{{0, 1}, {1, 1}, {1, 0}, {0, 0}}};
     const auto at = [&](double x, double y, size_t i) {
         return tap(s, 0, static_cast<int64_t>(std::floor(x)) + order[i][0],
-                   static_cast<int64_t>(std::floor(y)) + order[i][1]);
+                   static_cast<int64_t>(std::floor(y)) + order[i][1], 0);
     };
     for (size_t i = 0; i < 4; ++i) {
         Box box;
@@ -355,7 +463,8 @@ SampleResult gatherImage(const ImageStore& image, const SceneSampler& sampler, c
 }
 
 SampleResult fetchImage(const ImageStore& image, int64_t x, int64_t y, int64_t layer, int64_t mip, uint32_t sample) {
-    if (mip < 0 || mip >= image.mipLevels() || layer < 0 || layer >= image.arrayLayers()) return {};
+    if (mip < 0 || mip >= image.mipLevels() || layer < 0) return {};
+    if (layer >= image.arrayLayers() * image.depth(static_cast<uint32_t>(mip))) return {};
     const ImageLevel& level = image.level(static_cast<uint32_t>(mip), static_cast<uint32_t>(layer));
     if (x < 0 || y < 0 || x >= level.extent.width || y >= level.extent.height || sample >= level.samples) return {};
     const StoredTexel& texel = level.at(static_cast<uint32_t>(x), static_cast<uint32_t>(y), sample);
@@ -368,7 +477,7 @@ SampleResult blitTexel(const ImageStore& image, uint32_t mip, uint32_t layer, do
     // Texel centres map to dyadic positions in nearly all blits: a nearest blit has coordinate error only.
     const Sampler s{image, state, layer, {}, std::nullopt, filter == VK_FILTER_NEAREST ? 0 : kWeightSlack};
     const VkExtent2D extent = image.level(mip, layer).extent;
-    return filterLevel(s, mip, filter, u / extent.width, v / extent.height);
+    return filterLevel(s, mip, filter, {u / extent.width, v / extent.height});
 }
 
 }  // namespace vernier::conformance::exact

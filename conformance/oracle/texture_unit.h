@@ -16,13 +16,13 @@ namespace vernier::conformance::exact {
 
 /// What a shader hands to the sampler; coordinates are normalised.
 struct SampleQuery {
-    double s = 0, t = 0;
+    double s = 0, t = 0, r = 0;  // r: of volumes; of cubes all three are the direction
     double layer = 0;
-    std::array<double, 2> ddx{}, ddy{};  // of s, t along the framebuffer's x and y
+    std::array<double, 3> ddx{}, ddy{};  // of s, t, r along the framebuffer's x and y
     std::optional<double> lod;           // explicit: replaces the derivatives
     double bias = 0;
     double minLod = 0;
-    std::array<int32_t, 2> offset{};
+    std::array<int32_t, 3> offset{};
     std::optional<double> dref;  // depth comparison; the result is in channel 0
     // What the implementation declares: OracleRules.
     double weightSlack = 0x1p-8, levelSlack = OracleRules().levelSlack;
@@ -48,6 +48,6 @@ SampleResult fetchImage(const ImageStore& image, int64_t x, int64_t y, int64_t l
 SampleResult blitTexel(const ImageStore& image, uint32_t mip, uint32_t layer, double u, double v, VkFilter filter);
 
 /// Nominal level of detail with its range, before clamping to the image: -infinity without any derivative.
-Interval levelOfDetail(const SampleQuery& query, const SceneSampler& sampler, VkExtent2D extent);
+Interval levelOfDetail(const SampleQuery& query, const SceneSampler& sampler, VkExtent2D extent, uint32_t depth = 1);
 
 }  // namespace vernier::conformance::exact
