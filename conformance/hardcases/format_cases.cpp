@@ -80,7 +80,7 @@ void b05(CaseInput& input) {
             if (code == codes.nearest) continue;
             const std::string text =
                 std::to_string(values[x]) + " is encoded as " + codeText(code) + ", nearest " + codeText(codes.nearest);
-            worst = worst.worse(codes.permits(code) ? Verdict::allowed(text) : Verdict::wrong(text));
+            worst = worst.worse(Verdict::inexact(codes.permits(code), text));
         }
         return worst;
     });
@@ -107,7 +107,7 @@ void b05(CaseInput& input) {
                                      ", exactly " + std::to_string(expected);
             // No precision is stated; less than half a code away it reads back as that code.
             const double half = (exact::srgbDecode((code + 1) / 255.0) - expected) / 2;
-            worst = worst.worse(std::abs(seen - expected) < half ? Verdict::allowed(text) : Verdict::wrong(text));
+            worst = worst.worse(Verdict::inexact(std::abs(seen - expected) < half, text));
         }
         return worst;
     });
@@ -138,7 +138,7 @@ void b12(CaseInput& input) {
                 const exact::CodeSet codes = exact::encode(component, exact::rational(value));
                 if (code == codes.nearest) continue;
                 const std::string nearest = text + ", nearest " + codeText(codes.nearest);
-                worst = worst.worse(codes.permits(code) ? Verdict::allowed(nearest) : Verdict::wrong(nearest));
+                worst = worst.worse(Verdict::inexact(codes.permits(code), nearest));
             }
         }
         return worst;

@@ -286,7 +286,7 @@ void b14(CaseInput& input) {
                             if (code == codes.nearest) continue;
                             const std::string text = pixelText(x, y) + " channel " + "RGBA"[c.channel] + " has code " +
                                                      quoted(code) + ", nearest " + quoted(codes.nearest);
-                            worst = worst.worse(codes.permits(code) ? Verdict::allowed(text) : Verdict::wrong(text));
+                            worst = worst.worse(Verdict::inexact(codes.permits(code), text));
                         }
                     }
                 }

@@ -330,7 +330,7 @@ void main() { gl_FragDepth = texelFetch(values, ivec2(gl_FragCoord.xy), 0).r; }
                 if (code == codes.nearest) continue;
                 const std::string text = "depth " + number(values[i]) + " is stored as " + std::to_string(code) +
                                          ", nearest " + std::to_string(codes.nearest);
-                worst = worst.worse(codes.permits(code) ? Verdict::allowed(text) : Verdict::wrong(text));
+                worst = worst.worse(Verdict::inexact(codes.permits(code), text));
             }
             return worst;
         });

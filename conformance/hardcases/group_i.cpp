@@ -132,8 +132,7 @@ void i02(CaseInput& input) {
                 std::snprintf(text, sizeof text, " is %.9g, exactly %.9g: error %.3g of the attribute's range",
                               observed, expected, error);
                 const bool legal = error <= 0.5 / 255 + snapping;
-                worst = worst.worse(legal ? Verdict::allowed(pixelText(x, y) + text)
-                                          : Verdict::wrong(pixelText(x, y) + text));
+                worst = worst.worse(Verdict::inexact(legal, pixelText(x, y) + text));
             }
             return worst;
         });
@@ -166,8 +165,7 @@ void i03(CaseInput& input) {
                         char text[120];
                         std::snprintf(text, sizeof text, " is %.9g and, with the vertices rotated, %.9g", w, v);
                         const bool legal = std::abs(v - w) <= 1e-4 * std::max(1.0, std::abs(w));
-                        worst = worst.worse(legal ? Verdict::allowed(pixelText(x, y) + text)
-                                                  : Verdict::wrong(pixelText(x, y) + text));
+                        worst = worst.worse(Verdict::inexact(legal, pixelText(x, y) + text));
                     }
                 }
             }
@@ -194,8 +192,7 @@ void i04(CaseInput& input) {
                     if (error <= 64 * 4 * 0x1p-23) continue;
                     char text[80];
                     std::snprintf(text, sizeof text, " is off the plane by %.3g", error);
-                    worst = worst.worse(error <= 64 * 1e-4 ? Verdict::allowed(pixelText(x, y) + text)
-                                                           : Verdict::wrong(pixelText(x, y) + text));
+                    worst = worst.worse(Verdict::inexact(error <= 64 * 1e-4, pixelText(x, y) + text));
                 }
             }
         }
@@ -350,8 +347,7 @@ void main() {
                         std::snprintf(text, sizeof text, ": at an offset of (%.4f, %.4f) the ramp is off by %.3g",
                                       static_cast<double>(dx), static_cast<double>(dy), error);
                         // Offsets have at least four fraction bits, which these do.
-                        worst = worst.worse(error <= 128e-5 ? Verdict::allowed(pixelText(x, y) + text)
-                                                            : Verdict::wrong(pixelText(x, y) + text));
+                        worst = worst.worse(Verdict::inexact(error <= 128e-5, pixelText(x, y) + text));
                     }
                 }
                 return worst;
@@ -403,8 +399,7 @@ void i13(CaseInput& input) {
                                               std::abs(pixels.number(x, y, 1) - (1e6 + (y + 0.5) / 64)));
                 if (error <= 0.0625) continue;  // one ULP of 10^6
                 worst =
-                    worst.worse(error <= 10 ? Verdict::allowed(pixelText(x, y) + " is off by " + std::to_string(error))
-                                            : Verdict::wrong(pixelText(x, y) + " is off by " + std::to_string(error)));
+                    worst.worse(Verdict::inexact(error <= 10, pixelText(x, y) + " is off by " + std::to_string(error)));
             }
         }
         return worst;

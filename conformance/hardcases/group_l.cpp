@@ -60,8 +60,7 @@ void judgeRamp(CaseInput& input, size_t scene) {
                 char text[100];
                 std::snprintf(text, sizeof text, ": the derivatives of 3 x - 2 y are (%.9g, %.9g)",
                               static_cast<double>(pixels.number(x, y, 0)), static_cast<double>(pixels.number(x, y, 1)));
-                worst = worst.worse(error <= 320 * 2e-5 + snapping ? Verdict::allowed(pixelText(x, y) + text)
-                                                                   : Verdict::wrong(pixelText(x, y) + text));
+                worst = worst.worse(Verdict::inexact(error <= 320 * 2e-5 + snapping, pixelText(x, y) + text));
             }
         }
         return worst;
@@ -195,7 +194,7 @@ void main() {
                 if (std::abs(level - 1.5) <= 1.0 / 64) continue;
                 const std::string text = "a footprint of level 1.5 reads level " + std::to_string(level);
                 const bool legal = level >= 1.5 - 0.5 - 0.07 && level <= 1.5 + 1 + 0.07;
-                worst = worst.worse(legal ? Verdict::allowed(text) : Verdict::wrong(text));
+                worst = worst.worse(Verdict::inexact(legal, text));
             }
             return worst;
         });
@@ -264,8 +263,7 @@ void l10(CaseInput& input) {
             // Exact levels, up to roundings of the mix; one quantum of at least four bits is permitted.
             if (std::abs(level - lod) <= 1e-5) continue;
             const std::string text = "level of detail " + std::to_string(lod) + " mixes as " + std::to_string(level);
-            worst =
-                worst.worse(std::abs(level - lod) <= 1.0 / 16 + 1e-3 ? Verdict::allowed(text) : Verdict::wrong(text));
+            worst = worst.worse(Verdict::inexact(std::abs(level - lod) <= 1.0 / 16 + 1e-3, text));
         }
         return worst;
     });
@@ -289,7 +287,7 @@ void l11(CaseInput& input) {
             if (difference <= 1.0 / 256) continue;
             const std::string text = "lookup " + std::to_string(x) + " mixes level " + std::to_string(sampled) +
                                      ", the query says " + std::to_string(queried);
-            worst = worst.worse(difference <= 1.0 / 8 ? Verdict::allowed(text) : Verdict::wrong(text));
+            worst = worst.worse(Verdict::inexact(difference <= 1.0 / 8, text));
         }
         return worst;
     });
@@ -320,7 +318,7 @@ void l12(CaseInput& input) {
                 if (error <= 1e-7) continue;
                 const std::string text =
                     "a texture of one colour is filtered " + std::to_string(error) + " off that colour";
-                worst = worst.worse(error <= 1e-4 ? Verdict::allowed(text) : Verdict::wrong(text));
+                worst = worst.worse(Verdict::inexact(error <= 1e-4, text));
             }
             return worst;
         });

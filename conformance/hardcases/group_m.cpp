@@ -340,8 +340,7 @@ void m09(CaseInput& input) {
                         const std::string text = pixelText(x, y) + " has " + std::to_string(covered) +
                                                  " samples, exactly " + std::to_string(exactly) +
                                                  "; the AND of coverage and masks";
-                        worst = worst.worse(covered >= low && covered <= high ? Verdict::allowed(text)
-                                                                              : Verdict::wrong(text));
+                        worst = worst.worse(Verdict::inexact(covered >= low && covered <= high, text));
                     }
                 }
                 return worst;

@@ -68,7 +68,7 @@ Verdict judgeShapes(const Drawn& drawn, const std::vector<Shape>& shapes, int bi
             const std::string text = pixelText(x, y) + " is covered " + std::to_string(count) + " times, exactly " +
                                      std::to_string(exactly) + ", permitted " + std::to_string(low) + ".." +
                                      std::to_string(high) + "; " + rule;
-            worst = worst.worse(count >= low && count <= high ? Verdict::allowed(text) : Verdict::wrong(text));
+            worst = worst.worse(Verdict::inexact(count >= low && count <= high, text));
         }
     }
     return worst;
@@ -282,8 +282,7 @@ void main() { color = vec4(gl_PointCoord, 1.0, 1.0); }
                     char text[120];
                     std::snprintf(text, sizeof text, ": PointCoord is off by %.3g, exactly (%.9g, %.9g)", error, u, v);
                     const bool legal = error <= std::ldexp(1.0, -declared.subPixelBits) / dot.size + 1e-5;
-                    worst = worst.worse(legal ? Verdict::allowed(pixelText(x, y) + text)
-                                              : Verdict::wrong(pixelText(x, y) + text));
+                    worst = worst.worse(Verdict::inexact(legal, pixelText(x, y) + text));
                 }
             }
             return seen < 1000 ? Verdict::wrong("only " + std::to_string(seen) + " pixels are covered") : worst;

@@ -151,7 +151,7 @@ void t08(CaseInput& input) {
             if (mixed == texel) continue;
             const std::string text =
                 "between two texels of " + std::to_string(texel) + " the filter gives " + std::to_string(mixed);
-            worst = worst.worse(std::abs(mixed - texel) <= 1e-5f ? Verdict::allowed(text) : Verdict::wrong(text));
+            worst = worst.worse(Verdict::inexact(std::abs(mixed - texel) <= 1e-5f, text));
         }
         return worst;
     });
@@ -177,8 +177,7 @@ void decodes(CaseInput& input, std::string_view name, VkFormat format, double (*
             const std::string text = "code " + std::to_string(code) + " decodes to " + std::to_string(got) +
                                      ", exactly " + std::to_string(expected);
             const bool ends = expected == 0 || std::abs(expected) == 1;
-            worst =
-                worst.worse(!ends && std::abs(got - expected) <= 1e-5 ? Verdict::allowed(text) : Verdict::wrong(text));
+            worst = worst.worse(Verdict::inexact(!ends && std::abs(got - expected) <= 1e-5, text));
         }
         return worst;
     });

@@ -44,6 +44,11 @@ struct Verdict {
     static Verdict allowed(std::string witness) { return {Outcome::allowed, std::move(witness)}; }
     static Verdict unsupported(std::string witness) { return {Outcome::unsupported, std::move(witness)}; }
 
+    /// Not exact: permitted or not.
+    static Verdict inexact(bool permitted, std::string witness) {
+        return {permitted ? Outcome::allowed : Outcome::wrong, std::move(witness)};
+    }
+
     /// The more severe of the two; the first one when they are equal.
     Verdict worse(const Verdict& other) const { return other.outcome > outcome ? other : *this; }
 };

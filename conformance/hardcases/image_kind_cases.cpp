@@ -200,7 +200,7 @@ void main() {
                                                      ", by the projection on its face " + std::to_string(range.ideal);
                             const bool legal =
                                 level >= std::max(0.0, range.low) - slack && level <= std::max(0.0, range.high) + slack;
-                            worst = worst.worse(legal ? Verdict::allowed(text) : Verdict::wrong(text));
+                            worst = worst.worse(Verdict::inexact(legal, text));
                         }
                     }
                     return worst;
@@ -322,8 +322,7 @@ void t17(CaseInput& input) {
             if (std::abs(seen - average) <= 1e-5) continue;
             const std::string text = vectorText(v) + " mixes " + std::to_string(seen) + ", the average of its " +
                                      std::to_string(axes.size()) + " texels is " + std::to_string(average);
-            worst =
-                worst.worse(seen >= low - 1e-4 && seen <= high + 1e-4 ? Verdict::allowed(text) : Verdict::wrong(text));
+            worst = worst.worse(Verdict::inexact(seen >= low - 1e-4 && seen <= high + 1e-4, text));
         }
         return worst;
     });
@@ -339,7 +338,7 @@ void t17(CaseInput& input) {
             if (seen == expected) continue;
             const std::string text =
                 "lookup " + std::to_string(x) + " of a constant cube gives " + std::to_string(seen);
-            worst = worst.worse(std::abs(seen - expected) <= 1e-5f ? Verdict::allowed(text) : Verdict::wrong(text));
+            worst = worst.worse(Verdict::inexact(std::abs(seen - expected) <= 1e-5f, text));
         }
         return worst;
     });
@@ -373,7 +372,7 @@ void t20(CaseInput& input) {
                                              "), channel " + "RGBA"[c] + ": " + std::to_string(seen) + ", exactly " +
                                              std::to_string(expected[c].value);
                     const bool legal = seen >= expected[c].low - 1e-5 && seen <= expected[c].high + 1e-5;
-                    worst = worst.worse(legal ? Verdict::allowed(text) : Verdict::wrong(text));
+                    worst = worst.worse(Verdict::inexact(legal, text));
                 }
             }
             return worst;

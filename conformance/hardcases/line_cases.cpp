@@ -164,7 +164,7 @@ void addStippled(CaseInput& input, const std::vector<WindowPoint>& points, bool 
             const std::string text = pixelText(x, y) + " is drawn " + std::to_string((*counts)[i]) +
                                      " times, exactly " + std::to_string(exactly[i]) +
                                      " by bit (fragment / factor) mod 16 of the pattern";
-            worst = worst.worse((*counts)[i] <= most ? Verdict::allowed(text) : Verdict::wrong(text));
+            worst = worst.worse(Verdict::inexact((*counts)[i] <= most, text));
         }
         return worst;
     });

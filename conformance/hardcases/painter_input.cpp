@@ -91,7 +91,7 @@ size_t addPainter(CaseInput& input, std::string_view name, const WindowTriangles
                 const std::string text = pixelText(x, y) + " shows triangle " + std::to_string(seen) + ", exactly " +
                                          std::to_string(declaredCode) + " (0: none); " +
                                          (options.firstWins ? "the first" : "the last") + " in API order is seen";
-                worst = worst.worse(legal ? Verdict::allowed(text) : Verdict::wrong(text));
+                worst = worst.worse(Verdict::inexact(legal, text));
             }
         }
         return worst;
