@@ -16,6 +16,14 @@ using ir::Op;
 using ir::Type;
 using ir::ValueId;
 
+namespace {
+
+[[noreturn]] void refuseModule(const std::string& reason) {
+    throw LoweringError{Error{ErrorCode::invalidArgument, "SPIR-V: " + reason}};
+}
+
+}  // namespace
+
 // --- values
 // -------------------------------------------------------------------------------------------------------------
 
@@ -90,7 +98,27 @@ ValueId Emitter::simplified(Op op, Type type, std::span<const ValueId> operands)
     }
 }
 
+ValueId Emitter::defined(ValueId value) const {
+    if (value >= program_.valueTypes.size()) refuseModule("an operand has no value");
+    return value;
+}
+
+void Emitter::check(Op op, Type type, std::span<const ValueId> operands, uint64_t imm) const {
+    Inst inst;
+    inst.op = op;
+    inst.type = type;
+    inst.imm = imm;
+    const auto allows = [](uint32_t types, Type given) { return (types >> static_cast<uint32_t>(given) & 1) != 0; };
+    const bool typed = op == Op::image || op == Op::imageStore || allows(ir::resultTypes(op), type);
+    bool fits = typed && operands.size() == ir::operandCountOf(program_, inst);
+    for (uint32_t k = 0; fits && k < operands.size(); ++k) {
+        fits = allows(ir::operandTypes(program_, inst, k), typeOf(operands[k]));
+    }
+    if (!fits) refuseModule("the operands of " + std::string(ir::opInfo(op).name) + " are not of its types");
+}
+
 ValueId Emitter::emit(Op op, Type type, std::span<const ValueId> operands, uint64_t imm) {
+    check(op, type, operands, imm);
     if (ir::opInfo(op).kind == 'P' && !operands.empty() && operands.size() <= 4) {
         uint64_t bits[4] = {};
         size_t known = 0;
@@ -158,6 +186,8 @@ void Emitter::endLoop(BlockId header) {
 }
 
 void Emitter::addEdge(BlockId to) {
+    // Back into a loop that is open, or on to what is still to come.
+    if (states_[to].placed && states_[to].sealed) refuseModule("a branch goes back to a block that is no loop header");
     program_.blocks[current_].successors.push_back(to);
     program_.blocks[to].predecessors.push_back(current_);
 }
@@ -176,6 +206,7 @@ void Emitter::jump(BlockId to) {
 }
 
 void Emitter::branch(ValueId condition, BlockId ifTrue, BlockId ifFalse) {
+    if (!hasType(condition, Type::b1)) refuseModule("a condition is no boolean");
     const std::optional<uint64_t> bits = constantBits(condition);
     if (bits || ifTrue == ifFalse) return jump(bits == 0u ? ifFalse : ifTrue);
     terminate(Op::branch, {condition});
@@ -185,6 +216,7 @@ void Emitter::branch(ValueId condition, BlockId ifTrue, BlockId ifFalse) {
 
 void Emitter::switchOn(ValueId selector, BlockId otherwise, std::span<const int32_t> cases,
                        std::span<const BlockId> targets) {
+    if (!hasType(selector, Type::i32)) refuseModule("a selector is no integer");
     if (const std::optional<uint64_t> bits = constantBits(selector)) {
         for (size_t i = 0; i < cases.size(); ++i) {
             if (static_cast<uint32_t>(cases[i]) == *bits) return jump(targets[i]);
@@ -304,7 +336,10 @@ void Emitter::finish() {
         state.phis.erase(std::remove_if(state.phis.begin(), state.phis.end(), replaced), state.phis.end());
         block.insts.insert(block.insts.begin(), state.phis.begin(), state.phis.end());
         for (BlockId& p : block.predecessors) p = place[p];
-        for (BlockId& s : block.successors) s = place[s];
+        for (BlockId& s : block.successors) {
+            s = place[s];
+            if (s == ir::kNoIndex) refuseModule("a branch goes to a block outside of the structure");
+        }
         block.loopHeader = state.loopEnd != 0;
         block.loopEnd = state.loopEnd;
     }

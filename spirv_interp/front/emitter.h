@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "spirv_interp/front/scalars.h"
 #include "spirv_interp/ir/ops.h"
 
 namespace vernier {
@@ -35,11 +36,15 @@ class Emitter {
     ir::ValueId constantBool(bool value) { return constant(ir::Type::b1, value ? ir::kTrueBits : 0); }
     ir::ValueId constantFloat(ir::Type type, double value);
     ir::ValueId undef(ir::Type type);
-    ir::Type typeOf(ir::ValueId value) const { return program_.valueTypes[value]; }
+    ir::Type typeOf(ir::ValueId value) const { return program_.valueTypes[defined(value)]; }
+    bool hasType(ir::ValueId value, ir::Type type) const {
+        return value < program_.valueTypes.size() && program_.valueTypes[value] == type;
+    }
     /// The bits of a value that is constant.
     std::optional<uint64_t> constantBits(ir::ValueId value);
     bool isUndef(ir::ValueId value);
     /// Appends an instruction to the current block, or finds its value without one. Not for phis and terminators.
+    /// Operands and results that the operation does not take end the lowering, as do edges that no structure has.
     ir::ValueId emit(ir::Op op, ir::Type type, std::span<const ir::ValueId> operands, uint64_t imm = 0);
     ir::ValueId emit(ir::Op op, ir::Type type, std::initializer_list<ir::ValueId> operands, uint64_t imm = 0) {
         return emit(op, type, std::span<const ir::ValueId>(operands.begin(), operands.size()), imm);
@@ -105,6 +110,10 @@ class Emitter {
         std::vector<Slot> slots_;
         size_t used_ = 0;
     };
+
+    /// The value, if there is one.
+    ir::ValueId defined(ir::ValueId value) const;
+    void check(ir::Op op, ir::Type type, std::span<const ir::ValueId> operands, uint64_t imm) const;
 
     static uint64_t key(ir::BlockId block, uint32_t variable) { return static_cast<uint64_t>(block) << 32 | variable; }
     void define(ir::BlockId block, uint32_t variable, ir::ValueId value) {

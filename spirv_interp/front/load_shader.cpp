@@ -2,6 +2,8 @@
 #include "spirv_interp/front/lower_module.h"
 #include "spirv_interp/front/lowering.h"
 #include "spirv_interp/front/spirv_tools.h"
+#include "spirv_interp/ir/analyse.h"
+#include "spirv_interp/ir/cfg.h"
 #include "spirv_interp/ir/optimise.h"
 #include "spirv_interp/ir/verify.h"
 
@@ -59,6 +61,15 @@ Result<ir::Program> lowerModule(const ShaderSource& source) {
     } catch (const LoweringError& error) {
         return error.error;
     }
+    return program;
+}
+
+Result<ir::Program> lowerAnyModule(const ShaderSource& source) {
+    Result<ir::Program> program = lowerModule(source);
+    if (!program) return program;
+    ir::removeUnreachable(*program);
+    ir::analyse(*program);
+    if (const Status verified = ir::verify(*program, ir::LoopForm::open); !verified) return verified.error();
     return program;
 }
 

@@ -124,7 +124,7 @@ bool Lowering::lowerElementwise(const Instruction& inst) {
                                     [&](const Elementwise& entry) { return entry.spirv == inst.op; });
     if (found == std::end(kElementwise)) return false;
     const LeafType type = scalarType(inst[1]);
-    const std::span<ir::ValueId> leaves = newLeaves(leafTypes(inst[1]).size());
+    const NewScalars leaves = newLeaves(leafTypes(inst[1]).size());
     Leaves operands[4];
     for (uint32_t k = 0; k < found->operands; ++k) operands[k] = leavesOf(inst[3 + k]);
     const LeafType from = scalarOfId(inst[3]);
@@ -185,7 +185,7 @@ bool Lowering::lowerExtendedResult(const Instruction& inst) {
         case spv::Op::OpFwidthCoarse: {
             const bool coarse = inst.op == spv::Op::OpFwidthCoarse;
             const Leaves operand = leavesOf(inst[3]);
-            const std::span<ir::ValueId> leaves = newLeaves(operand.size());
+            const NewScalars leaves = newLeaves(operand.size());
             for (size_t i = 0; i < leaves.size(); ++i) {
                 leaves[i] = add(unary(Op::fabs, unary(coarse ? Op::ddxCoarse : Op::ddxFine, operand[i])),
                                 unary(Op::fabs, unary(coarse ? Op::ddyCoarse : Op::ddyFine, operand[i])));
@@ -200,7 +200,7 @@ bool Lowering::lowerExtendedResult(const Instruction& inst) {
             // A struct of two: the low part, then carry, borrow or high part.
             const Leaves a = leavesOf(inst[3]), b = leavesOf(inst[4]);
             const LeafType type = scalarOfId(inst[3]);
-            const std::span<ir::ValueId> leaves = newLeaves(a.size() * 2);
+            const NewScalars leaves = newLeaves(a.size() * 2);
             for (size_t i = 0; i < a.size(); ++i) {
                 const auto [low, high] = extended(inst.op, a[i], b[i], type);
                 leaves[i] = low;
@@ -223,7 +223,7 @@ bool Lowering::lowerExtendedResult(const Instruction& inst) {
 void Lowering::lowerSelect(const Instruction& inst) {
     if (leafTypes(inst[1]).empty()) refuse(inst, "a choice between images or pointers to variables is not supported");
     const Leaves condition = leavesOf(inst[3]), yes = leavesOf(inst[4]), no = leavesOf(inst[5]);
-    const std::span<ir::ValueId> leaves = newLeaves(yes.size());
+    const NewScalars leaves = newLeaves(yes.size());
     for (size_t i = 0; i < yes.size(); ++i) {
         leaves[i] = emitter_.emit(Op::select, emitter_.typeOf(yes[i]),
                                   {condition[std::min(i, condition.size() - 1)], yes[i], no[i]});
@@ -249,13 +249,13 @@ std::pair<ir::ValueId, ir::ValueId> Lowering::extended(spv::Op op, ir::ValueId a
 
 /// The bits of the operand's components, lowest first, dealt out to the result's.
 void Lowering::lowerBitcast(const Instruction& inst) {
-    const std::vector<LeafType>& types = leafTypes(inst[1]);
+    const LeafTypes types = leafTypes(inst[1]);
     if (types.empty() || isBufferPointer(inst[1]) || isBufferPointer(module_.definition(inst[3])[1])) {
         refuse(inst, "only pointers into physical storage buffers have bits");
     }
     const Leaves operand = leavesOf(inst[3]);
     const LeafType from = scalarOfId(inst[3]), to = types[0];
-    const std::span<ir::ValueId> leaves = newLeaves(types.size());
+    const NewScalars leaves = newLeaves(types.size());
     if (operand.size() * from.bits != leaves.size() * to.bits) refuse(inst, "the widths differ");
     const auto split = [&](ir::ValueId piece, uint32_t width, uint32_t index) {
         if (width == 64) {

@@ -95,7 +95,7 @@ ir::ValueId Lowering::subgroupMask(spv::BuiltIn builtin) {
 
 Lowering::Leaves Lowering::builtinLeaves(spv::BuiltIn builtin) {
     const auto each = [this](uint8_t count, auto&& component) -> Leaves {
-        const std::span<ir::ValueId> leaves = newLeaves(count);
+        const NewScalars leaves = newLeaves(count);
         for (uint8_t c = 0; c < count; ++c) leaves[c] = component(c);
         return leaves;
     };

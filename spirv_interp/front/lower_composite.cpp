@@ -40,7 +40,7 @@ bool Lowering::lowerComposite(const Instruction& inst) {
             setValue(id, type, leavesOf(inst[3]));
             return true;
         case spv::Op::OpCompositeConstruct: {
-            const std::span<ir::ValueId> leaves = newLeaves(leafTypes(type).size());
+            const NewScalars leaves = newLeaves(leafTypes(type).size());
             size_t next = 0;
             for (uint32_t word = 3; word < inst.count; ++word) {
                 const bool empty =
@@ -63,14 +63,14 @@ bool Lowering::lowerComposite(const Instruction& inst) {
         case spv::Op::OpCompositeInsert: {
             uint32_t part = 0;
             const uint32_t leaf = leafOfPart(type, inst, 5, part);
-            const std::span<ir::ValueId> leaves = arena_.copy(leavesOf(inst[4]));
+            const NewScalars leaves = arena_.copy(leavesOf(inst[4]));
             std::ranges::copy(leavesOf(inst[3]), leaves.begin() + leaf);
             setValue(id, type, leaves);
             return true;
         }
         case spv::Op::OpVectorShuffle: {
             const Leaves a = leavesOf(inst[3]), b = leavesOf(inst[4]);
-            const std::span<ir::ValueId> leaves = newLeaves(leafTypes(type).size());
+            const NewScalars leaves = newLeaves(leafTypes(type).size());
             for (uint32_t i = 0; i < leaves.size(); ++i) {
                 const uint32_t from = inst[5 + i];
                 // 0xFFFFFFFF: a component without a source.
@@ -92,7 +92,7 @@ bool Lowering::lowerComposite(const Instruction& inst) {
         case spv::Op::OpVectorInsertDynamic: {
             const Leaves vector = leavesOf(inst[3]);
             const ir::ValueId component = scalarOf(inst[4]), index = indexOf(inst[5]);
-            const std::span<ir::ValueId> leaves = newLeaves(vector.size());
+            const NewScalars leaves = newLeaves(vector.size());
             for (uint32_t i = 0; i < leaves.size(); ++i) {
                 const ir::ValueId here = compare(ir::Op::ieq, index, emitter_.constantI32(i));
                 leaves[i] = emitter_.emit(ir::Op::select, emitter_.typeOf(component), {here, component, vector[i]});

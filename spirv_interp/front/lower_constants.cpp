@@ -33,7 +33,7 @@ void Lowering::lowerConstant(const Instruction& inst) {
         }
         case spv::Op::OpConstantComposite:
         case spv::Op::OpSpecConstantComposite: {
-            const std::span<ir::ValueId> leaves = newLeaves(leafTypes(type).size());
+            const NewScalars leaves = newLeaves(leafTypes(type).size());
             size_t next = 0;
             for (uint32_t word = 3; word < inst.count; ++word) {
                 if (typeInfo(typeOfId(inst[word])).leaves == 0) continue;
@@ -111,8 +111,8 @@ uint32_t Lowering::constantIndex(uint32_t id) {
 }
 
 Lowering::Leaves Lowering::zeroOf(uint32_t type) {
-    const std::vector<LeafType>& types = leafTypes(type);
-    const std::span<ir::ValueId> leaves = newLeaves(types.size());
+    const LeafTypes types = leafTypes(type);
+    const NewScalars leaves = newLeaves(types.size());
     for (size_t i = 0; i < types.size(); ++i) leaves[i] = emitter_.constant(types[i], 0);
     // A null pointer into a buffer has no descriptor and no handle.
     if (isBufferPointer(type)) leaves[0] = emitter_.constantI32(ir::kNullHandle);
@@ -120,8 +120,8 @@ Lowering::Leaves Lowering::zeroOf(uint32_t type) {
 }
 
 Lowering::Leaves Lowering::undefOf(uint32_t type) {
-    const std::vector<LeafType>& types = leafTypes(type);
-    const std::span<ir::ValueId> leaves = newLeaves(types.size());
+    const LeafTypes types = leafTypes(type);
+    const NewScalars leaves = newLeaves(types.size());
     for (size_t i = 0; i < types.size(); ++i) leaves[i] = emitter_.undef(types[i]);
     return leaves;
 }

@@ -42,7 +42,7 @@ bool Lowering::lowerIntegerDot(const Instruction& inst) {
     const auto components = [&](uint32_t id, bool isSigned) {
         const Leaves given = leavesOf(id);
         LeafType type = scalarOfId(id);
-        std::span<ir::ValueId> parts = arena_.copy(given);
+        NewScalars parts = arena_.copy(given);
         if (given.size() == 1) {
             // PackedVectorFormat4x8Bit: the first component in the lowest byte.
             parts = newLeaves(4);

@@ -114,8 +114,8 @@ void Lowering::lowerBlock(const SpirvBlock& block, Frame& frame) {
     // A line ends with its block.
     emitter_.setLine(0);
     for (const Frame::PhiVariables& phi : frame.phis[index]) {
-        const std::vector<LeafType>& types = leafTypes(phi.inst[1]);
-        const std::span<ir::ValueId> leaves = newLeaves(types.size());
+        const LeafTypes types = leafTypes(phi.inst[1]);
+        const NewScalars leaves = newLeaves(types.size());
         for (uint32_t i = 0; i < types.size(); ++i) leaves[i] = emitter_.read(phi.first + i, types[i]);
         setValue(phi.inst[2], phi.inst[1], leaves);
     }
@@ -127,6 +127,7 @@ void Lowering::lowerBlock(const SpirvBlock& block, Frame& frame) {
             refuse(inst, "the program is too large: over " + std::to_string(kMaxInstructions) + " operations");
         }
     }
+    refuseId(block.label, "has no end: the block lacks a branch or return");
 }
 
 void Lowering::lowerInstruction(const Instruction& inst) {
@@ -251,6 +252,7 @@ void Lowering::writePhis(uint32_t fromLabel, const Instruction& terminator, Fram
             for (uint32_t word = 3; word + 1 < phi.inst.count; word += 2) {
                 if (phi.inst[word + 1] != fromLabel) continue;
                 const Leaves leaves = leavesOf(phi.inst[word]);
+                require(leaves, phi.inst[1], phi.inst[word]);
                 for (uint32_t i = 0; i < leaves.size(); ++i) emitter_.write(phi.first + i, leaves[i]);
                 break;
             }
@@ -263,17 +265,22 @@ void Lowering::lowerCall(const Instruction& inst) {
     if (callee == nullptr || callee->blocks.empty()) refuse(inst, "the function has no body");
     for (size_t i = 0; i < callee->parameters.size(); ++i) {
         // Values, pointers and images alike: the parameter is another name for the argument.
-        ids_[callee->parameters[i]] = idValue(inst[static_cast<uint32_t>(4 + i)]);
+        const uint32_t argument = inst[static_cast<uint32_t>(4 + i)];
+        if (module_.definition(argument)[1] != module_.definition(callee->parameters[i])[1]) {
+            refuseId(argument, "is not of the type of the parameter");
+        }
+        ids_[callee->parameters[i]] = idValue(argument);
     }
     const uint32_t line = emitter_.line(), file = emitter_.file();
     Frame inner;
     inner.function = callee;
     lowerFunction(*callee, inner);
     emitter_.setLine(line, file);
+    if (inst[1] != callee->resultType) refuse(inst, "the result is not of the function's type");
     const SpirvType& type = typeInfo(inst[1]);
     if (type.leaves != 0) {
-        const std::vector<LeafType>& types = leafTypes(inst[1]);
-        const std::span<ir::ValueId> leaves = newLeaves(types.size());
+        const LeafTypes types = leafTypes(inst[1]);
+        const NewScalars leaves = newLeaves(types.size());
         for (uint32_t i = 0; i < types.size(); ++i) leaves[i] = emitter_.read(inner.returnVariables + i, types[i]);
         setValue(inst[2], inst[1], leaves);
     } else if (type.kind != SpirvType::Kind::void_) {
@@ -284,6 +291,7 @@ void Lowering::lowerCall(const Instruction& inst) {
 void Lowering::lowerReturn(const Instruction& inst, Frame& frame) {
     if (inst.op == spv::Op::OpReturnValue && typeInfo(frame.function->resultType).leaves != 0) {
         const Leaves leaves = leavesOf(inst[1]);
+        require(leaves, frame.function->resultType, inst[1]);
         for (uint32_t i = 0; i < leaves.size(); ++i) emitter_.write(frame.returnVariables + i, leaves[i]);
     }
     if (frame.returnBlock == ir::kNoIndex) {

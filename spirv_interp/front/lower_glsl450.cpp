@@ -102,7 +102,7 @@ bool Lowering::lowerExtendedElementwise(const Instruction& inst) {
     Leaves operands[3];
     const auto apply = [&](uint32_t count, const auto& each) {
         for (uint32_t k = 0; k < count; ++k) operands[k] = leavesOf(inst[5 + k]);
-        const std::span<ir::ValueId> leaves = newLeaves(type.leaves);
+        const NewScalars leaves = newLeaves(type.leaves);
         for (size_t i = 0; i < leaves.size(); ++i) {
             ir::ValueId x[3] = {};
             for (uint32_t k = 0; k < count; ++k) x[k] = operands[k][std::min(i, operands[k].size() - 1)];
@@ -162,7 +162,7 @@ void Lowering::lowerSplit(const Instruction& inst) {
     const bool toPointer = inst[4] == GLSLstd450Modf || inst[4] == GLSLstd450Frexp;
     const Leaves operand = leavesOf(inst[5]);
     const size_t count = operand.size();
-    const std::span<ir::ValueId> both = newLeaves(2 * count);
+    const NewScalars both = newLeaves(2 * count);
     for (size_t i = 0; i < count; ++i) {
         const ir::ValueId x = operand[i];
         if (modf) {
@@ -180,9 +180,10 @@ void Lowering::lowerSplit(const Instruction& inst) {
             both[count + i] = convert(Op::ffrexpExponent, ir::Type::i32, x);
         }
     }
+    if (!toPointer && typeInfo(inst[1]).members.size() != 2) refuse(inst, "the result is no structure of two members");
     if (!modf) {
         const LeafType exponent =
-            toPointer ? scalarType(pointerOf(inst[6]).type) : scalarType(typeInfo(inst[1]).members.at(1));
+            toPointer ? scalarType(pointerOf(inst[6]).type) : scalarType(typeInfo(inst[1]).members[1]);
         for (size_t i = count; i < 2 * count; ++i) both[i] = normalised(both[i], exponent);
     }
     if (toPointer) {
@@ -207,8 +208,8 @@ void Lowering::lowerInterpolate(const Instruction& inst) {
                 return emitter_.emit(Op::interpolateAtOffset, ir::Type::f32, {at[0], at[1]}, slot);
         }
     };
-    const std::vector<LeafType>& types = leafTypes(inst[1]);
-    const std::span<ir::ValueId> leaves = newLeaves(types.size());
+    const LeafTypes types = leafTypes(inst[1]);
+    const NewScalars leaves = newLeaves(types.size());
     for (uint32_t i = 0; i < leaves.size(); ++i) {
         if (types[i] != ir::Type::f32) refuse(inst, "the interpolant is not of 32-bit floats");
         if (pointer.dynamic == ir::kNoValue) {
@@ -216,7 +217,7 @@ void Lowering::lowerInterpolate(const Instruction& inst) {
             continue;
         }
         // All that an index could mean; one out of range means the last.
-        const std::span<ir::ValueId> choices = newLeaves(pointer.extent);
+        const NewScalars choices = newLeaves(pointer.extent);
         for (uint32_t slot = 0; slot < pointer.extent; ++slot) {
             const bool fits = program_.inputs[pointer.root + slot].type == ir::Type::f32;
             choices[slot] = fits ? interpolated(pointer.root + slot) : emitter_.undef(ir::Type::f32);

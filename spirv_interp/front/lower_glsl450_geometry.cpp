@@ -11,14 +11,14 @@ using ir::Op;
 bool Lowering::lowerGeometric(const Instruction& inst) {
     const auto operand = [&](uint32_t k) { return leavesOf(inst[5 + k]); };
     const auto minus = [this](Leaves a, Leaves b) {
-        const std::span<ir::ValueId> leaves = newLeaves(a.size());
+        const NewScalars leaves = newLeaves(a.size());
         for (size_t i = 0; i < a.size(); ++i) leaves[i] = sub(a[i], b[i]);
         return leaves;
     };
     const auto length = [this](Leaves v) {
         return v.size() == 1 ? unary(Op::fabs, v[0]) : unary(Op::fsqrt, dot(v, v));
     };
-    std::span<ir::ValueId> leaves;
+    NewScalars leaves;
     switch (inst[4]) {
         case GLSLstd450Length:
             leaves = newLeaves(1);
@@ -77,7 +77,7 @@ bool Lowering::lowerGeometric(const Instruction& inst) {
 
 void Lowering::lowerNormalize(const Instruction& inst) {
     const Leaves v = leavesOf(inst[5]);
-    const std::span<ir::ValueId> leaves = newLeaves(v.size());
+    const NewScalars leaves = newLeaves(v.size());
     if (v.size() == 1) {
         leaves[0] = unary(Op::fsign, v[0]);
     } else {
@@ -99,7 +99,7 @@ void Lowering::lowerRefract(const Instruction& inst) {
     const ir::ValueId k = sub(one, mul(mul(eta, eta), sub(one, mul(d, d))));
     const ir::ValueId total = compare(Op::folt, k, zero);
     const ir::ValueId along = add(mul(eta, d), unary(Op::fsqrt, k));
-    const std::span<ir::ValueId> leaves = newLeaves(i.size());
+    const NewScalars leaves = newLeaves(i.size());
     for (size_t c = 0; c < i.size(); ++c) {
         leaves[c] = emitter_.emit(Op::select, type, {total, zero, sub(mul(eta, i[c]), mul(along, n[c]))});
     }
@@ -120,7 +120,7 @@ ir::ValueId Lowering::determinant(Leaves m, uint32_t size) {
 
 /// The determinant of what is left without a column and a row.
 ir::ValueId Lowering::minorOf(Leaves m, uint32_t size, uint32_t column, uint32_t row) {
-    const std::span<ir::ValueId> rest = newLeaves((size - 1) * (size - 1));
+    const NewScalars rest = newLeaves((size - 1) * (size - 1));
     size_t next = 0;
     for (uint32_t c = 0; c < size; ++c) {
         for (uint32_t r = 0; r < size; ++r) {
@@ -135,7 +135,7 @@ void Lowering::lowerInverse(const Instruction& inst) {
     const Leaves m = leavesOf(inst[5]);
     const uint32_t size = typeInfo(inst[1]).count;
     const ir::Type type = emitter_.typeOf(m[0]);
-    const std::span<ir::ValueId> cofactors = newLeaves(m.size());
+    const NewScalars cofactors = newLeaves(m.size());
     for (uint32_t c = 0; c < size; ++c) {
         for (uint32_t r = 0; r < size; ++r) {
             const ir::ValueId minor = minorOf(m, size, c, r);
@@ -144,7 +144,7 @@ void Lowering::lowerInverse(const Instruction& inst) {
     }
     const ir::ValueId det = dot(m.first(size), cofactors.first(size));
     const ir::ValueId scale = emitter_.emit(Op::fdiv, type, {emitter_.constantFloat(type, 1), det});
-    const std::span<ir::ValueId> leaves = newLeaves(m.size());
+    const NewScalars leaves = newLeaves(m.size());
     for (uint32_t c = 0; c < size; ++c) {
         for (uint32_t r = 0; r < size; ++r) leaves[c * size + r] = mul(cofactors[r * size + c], scale);
     }

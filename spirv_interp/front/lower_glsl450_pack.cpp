@@ -27,7 +27,7 @@ constexpr Packing kPackings[] = {
 bool Lowering::lowerPacking(const Instruction& inst) {
     if (inst[4] < GLSLstd450PackSnorm4x8 || inst[4] > GLSLstd450UnpackDouble2x32) return false;
     const Leaves operand = leavesOf(inst[5]);
-    std::span<ir::ValueId> leaves;
+    NewScalars leaves;
     switch (inst[4]) {
         case GLSLstd450PackHalf2x16:
             leaves = newLeaves(1);

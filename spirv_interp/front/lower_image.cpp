@@ -151,7 +151,7 @@ ir::ValueId Lowering::emitImage(const ir::ImageOp& op, ir::Type type, std::span<
 
 /// The result of an image instruction from its four values.
 void Lowering::setTexel(const Instruction& inst, ir::ValueId first) {
-    const std::span<ir::ValueId> leaves = newLeaves(leafTypes(inst[1]).size());
+    const NewScalars leaves = newLeaves(leafTypes(inst[1]).size());
     if (leaves.empty() || leaves.size() > 4) refuse(inst, "the result is no scalar or vector");
     for (uint32_t i = 0; i < leaves.size(); ++i) leaves[i] = first + i;
     setValue(inst[2], inst[1], leaves);
@@ -250,7 +250,7 @@ void Lowering::lowerGather(const Instruction& inst) {
     const Leaves each = leavesOf(offsets);
     const size_t parts = each.size() / 4;
     op.offsets = static_cast<uint8_t>(parts);
-    const std::span<ir::ValueId> leaves = newLeaves(4);
+    const NewScalars leaves = newLeaves(4);
     for (size_t i = 0; i < 4; ++i) {
         std::vector<ir::ValueId> shifted = operands;
         shifted.insert(shifted.end(), each.begin() + static_cast<std::ptrdiff_t>(i * parts),

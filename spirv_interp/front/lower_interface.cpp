@@ -246,7 +246,7 @@ void Lowering::appendSlots(uint32_t typeId, const SlotPlace& place, ir::Interfac
 void Lowering::storeOutputs() {
     for (const Output& output : outputs_) {
         uint32_t slot = output.firstSlot;
-        const std::vector<LeafType>& types = leafTypes(output.pointer.type);
+        const LeafTypes types = leafTypes(output.pointer.type);
         const Leaves leaves = load(output.pointer);
         for (size_t i = 0; i < leaves.size(); ++i) {
             const ir::ValueId leaf = types[i].isSigned ? signExtended(leaves[i], types[i]) : leaves[i];

@@ -19,7 +19,7 @@ bool Lowering::lowerMatrix(const Instruction& inst) {
         for (uint32_t k = 1; k < vector.size(); ++k) sum = add(sum, mul(matrix[k * rows + row], vector[k]));
         return sum;
     };
-    std::span<ir::ValueId> leaves;
+    NewScalars leaves;
     switch (inst.op) {
         case spv::Op::OpDot:
             leaves = newLeaves(1);

@@ -185,8 +185,8 @@ void Lowering::visitBuffer(const Pointer& pointer, uint32_t at, const Visit& vis
 // ---------------------------------------------------------------------------------------------------
 
 Lowering::Leaves Lowering::load(const Pointer& pointer) {
-    const std::vector<LeafType>& types = leafTypes(pointer.type);
-    const std::span<ir::ValueId> leaves = newLeaves(types.size());
+    const LeafTypes types = leafTypes(pointer.type);
+    const NewScalars leaves = newLeaves(types.size());
     if (pointer.inBytes()) {
         size_t next = 0;
         visitBuffer(pointer, 0,
@@ -202,7 +202,7 @@ Lowering::Leaves Lowering::load(const Pointer& pointer) {
                     leaves[i] = emitter_.read(first, types[i]);
                     break;
                 }
-                const std::span<ir::ValueId> parts = newLeaves(pointer.choices);
+                const NewScalars parts = newLeaves(pointer.choices);
                 for (uint32_t c = 0; c < pointer.choices; ++c) {
                     parts[c] = emitter_.read(first + c * pointer.choiceStride, types[i]);
                 }
@@ -229,8 +229,8 @@ Lowering::Leaves Lowering::load(const Pointer& pointer) {
 }
 
 void Lowering::store(const Pointer& pointer, Leaves leaves) {
-    const std::vector<LeafType>& types = leafTypes(pointer.type);
-    if (leaves.size() != types.size()) refuseId(pointer.root, "is stored to with another type");
+    const LeafTypes types = leafTypes(pointer.type);
+    require(leaves, pointer.type, pointer.root);
     switch (pointer.base) {
         case Base::ssa:
             if (pointer.dynamic != ir::kNoValue) return storeChoice(pointer, leaves);

@@ -122,8 +122,8 @@ ir::ValueId Lowering::normalised(ir::ValueId value, const LeafType& type) {
 }
 
 /// Leaves computed in f32 as values of a type whose floats may be halves.
-Lowering::Leaves Lowering::rounded(uint32_t type, std::span<ir::ValueId> leaves) {
-    const std::vector<LeafType>& types = leafTypes(type);
+Lowering::Leaves Lowering::rounded(uint32_t type, NewScalars leaves) {
+    const LeafTypes types = leafTypes(type);
     for (size_t i = 0; i < leaves.size(); ++i) {
         if (types[i].isHalf()) leaves[i] = normalised(leaves[i], types[i]);
     }

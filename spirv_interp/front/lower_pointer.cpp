@@ -19,7 +19,7 @@ uint32_t Lowering::resourceOrAny(const Pointer& pointer) {
 
 Lowering::Leaves Lowering::pointerLeaves(uint32_t id, const Pointer& pointer) {
     if (pointer.base == Base::address) {
-        const std::span<ir::ValueId> address = newLeaves(1);
+        const NewScalars address = newLeaves(1);
         address[0] = place(pointer, 0);
         return address;
     }
@@ -31,7 +31,7 @@ Lowering::Leaves Lowering::pointerLeaves(uint32_t id, const Pointer& pointer) {
     if (!pointer.wordLayout && (type->kind == SpirvType::Kind::matrix || pointer.elementStride != 0)) {
         refuseId(id, "points to a matrix or a row of one and is used as a value, which is not supported");
     }
-    const std::span<ir::ValueId> leaves = newLeaves(2);
+    const NewScalars leaves = newLeaves(2);
     leaves[0] = descriptorOf(pointer);
     leaves[1] = place(pointer, 0);
     if (!pointer.anyResource && onlyVariableOf(id) == kSeveral) {

@@ -74,14 +74,14 @@ ir::ValueId Lowering::shuffle(Op op, ir::ValueId value, ir::ValueId place) {
 
 void Lowering::shuffleEach(const Instruction& inst, Op op, uint32_t valueId, ir::ValueId place) {
     const Leaves values = leavesOf(valueId);
-    const std::span<ir::ValueId> leaves = newLeaves(values.size());
+    const NewScalars leaves = newLeaves(values.size());
     for (size_t i = 0; i < leaves.size(); ++i) leaves[i] = shuffle(op, values[i], place);
     setValue(inst[2], inst[1], leaves);
 }
 
 /// A ballot is a vector of four words, of which a subgroup fills the first.
 void Lowering::setBallot(const Instruction& inst, ir::ValueId word) {
-    const std::span<ir::ValueId> leaves = newLeaves(4);
+    const NewScalars leaves = newLeaves(4);
     std::fill(leaves.begin(), leaves.end(), emitter_.constantI32(0));
     leaves[0] = word;
     setValue(inst[2], inst[1], leaves);
@@ -111,8 +111,8 @@ void Lowering::lowerReduction(const Instruction& inst, ir::ReduceOp op) {
             refuse(inst, "group operation " + std::to_string(inst[4]) + " is not supported");
     }
     const Leaves values = leavesOf(inst[5]);
-    const std::span<ir::ValueId> leaves = newLeaves(values.size());
-    const std::vector<LeafType>& types = leafTypes(inst[1]);
+    const NewScalars leaves = newLeaves(values.size());
+    const LeafTypes types = leafTypes(inst[1]);
     const auto ofHalves = [](ir::ReduceOp of) {
         return of == ir::ReduceOp::fadd ? ir::ReduceOp::hadd : of == ir::ReduceOp::fmul ? ir::ReduceOp::hmul : of;
     };

@@ -136,7 +136,7 @@ void Lowering::lowerType(const Instruction& inst) {
     leafTypes_.emplace_back();
 }
 
-const std::vector<LeafType>& Lowering::leafTypes(uint32_t id) {
+Lowering::LeafTypes Lowering::leafTypes(uint32_t id) {
     const SpirvType& type = typeInfo(id);
     std::vector<LeafType>& types = leafTypes_[typeIndex_[id]];
     if (types.empty() && type.leaves != 0) {

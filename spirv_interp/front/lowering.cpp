@@ -227,7 +227,7 @@ Lowering::Leaves Lowering::leavesOf(uint32_t id) {
 }
 
 const LeafType& Lowering::scalarOfId(uint32_t id) {
-    const std::vector<LeafType>& types = leafTypes(module_.definition(id)[1]);
+    const LeafTypes types = leafTypes(module_.definition(id)[1]);
     if (types.empty()) refuseId(id, "is not a value of scalars");
     return types[0];
 }
@@ -247,12 +247,20 @@ const Handle& Lowering::handleOf(uint32_t id) const {
     return *value.handle;
 }
 
+void Lowering::require(Leaves leaves, uint32_t type, uint32_t id) {
+    const LeafTypes types = leafTypes(type);
+    bool fits = leaves.size() == types.size();
+    for (size_t i = 0; fits && i < types.size(); ++i) fits = emitter_.hasType(leaves[i], types[i].type);
+    if (!fits) refuseId(id, "is not of the type that is asked for");
+}
+
 void Lowering::setValue(uint32_t id, uint32_t type, Leaves leaves) {
+    require(leaves, type, id);
     ids_[id] = {IdValue::Kind::value, type, leaves, nullptr, nullptr};
 }
 
 void Lowering::setScalar(uint32_t id, uint32_t type, ir::ValueId value) {
-    const std::span<ir::ValueId> leaves = newLeaves(1);
+    const NewScalars leaves = newLeaves(1);
     leaves[0] = value;
     setValue(id, type, leaves);
 }

@@ -4,6 +4,7 @@
 // deep inside expressions, and every one of them ends the whole lowering.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -11,15 +12,12 @@
 #include "base/result.h"
 #include "spirv_interp/front/emitter.h"
 #include "spirv_interp/front/module.h"
+#include "spirv_interp/front/scalars.h"
 #include "spirv_interp/front/structure.h"
 #include "spirv_interp/front/types.h"
 #include "spirv_interp/program.h"
 
 namespace vernier {
-
-struct LoweringError {
-    Error error;
-};
 
 /// Bytes. As far as that nothing lies in a buffer, and two such distances can be added in 32 bits.
 inline constexpr uint32_t kFarOutside = 0x7FFFFFFF;
@@ -66,7 +64,7 @@ struct Handle {
 
 struct Texel {
     Handle image;
-    std::span<const ir::ValueId> coords;
+    Scalars coords;
     ir::ValueId sample = ir::kNoValue;
 };
 
@@ -76,7 +74,7 @@ struct IdValue {
     enum class Kind : uint8_t { none, value, pointer, handle };
     Kind kind = Kind::none;
     uint32_t type = 0;
-    std::span<const ir::ValueId> leaves;
+    Scalars leaves;
     const Pointer* pointer = nullptr;
     const Handle* handle = nullptr;
 };
@@ -90,7 +88,8 @@ class Lowering {
     void run();
 
   private:
-    using Leaves = std::span<const ir::ValueId>;
+    using Leaves = Scalars;
+    using LeafTypes = CheckedSpan<const LeafType>;
     struct Frame;
     /// Where a slot's decorations are: on a variable or on a member of a block.
     struct SlotPlace {
@@ -129,18 +128,24 @@ class Lowering {
     ir::ValueId scalarOf(uint32_t id) { return leavesOf(id)[0]; }
     const Pointer& pointerOf(uint32_t id);
     const Handle& handleOf(uint32_t id) const;
+    /// Ends the lowering when scalars are not those of a type; `id` is what the message names.
+    void require(Leaves leaves, uint32_t type, uint32_t id);
     void setValue(uint32_t id, uint32_t type, Leaves leaves);
     void setScalar(uint32_t id, uint32_t type, ir::ValueId value);
     void setPointer(uint32_t id, const Pointer& pointer);
     void setHandle(uint32_t id, const Handle& handle);
     /// The scalar that a scalar or vector with this id is made of; for a pointer with a value, that value.
     const LeafType& scalarOfId(uint32_t id);
-    std::span<ir::ValueId> newLeaves(size_t count) { return arena_.array<ir::ValueId>(count); }
+    NewScalars newLeaves(size_t count) {
+        const NewScalars leaves = arena_.array<ir::ValueId>(count);
+        std::fill(leaves.begin(), leaves.end(), ir::kNoValue);
+        return leaves;
+    }
 
     // lower_types.cpp
     void lowerType(const Instruction& inst);
     const SpirvType& typeInfo(uint32_t id) const;
-    const std::vector<LeafType>& leafTypes(uint32_t id);
+    LeafTypes leafTypes(uint32_t id);
     void appendLeafTypes(uint32_t id, std::vector<LeafType>& types) const;
     uint32_t typeOfId(uint32_t id) const { return idValue(id).type; }
     const LeafType& scalarType(uint32_t id) const { return typeInfo(id).scalar; }
@@ -254,7 +259,7 @@ class Lowering {
     ir::ValueId emitTyped(ir::Op op, const LeafType& to, Leaves operands, const LeafType& from, uint64_t imm = 0);
     ir::ValueId halfFma(Leaves operands);
     ir::ValueId normalised(ir::ValueId value, const LeafType& type);
-    Leaves rounded(uint32_t type, std::span<ir::ValueId> leaves);
+    Leaves rounded(uint32_t type, NewScalars leaves);
     ir::ValueId signExtended(ir::ValueId value, const LeafType& type);
     ir::ValueId convertNumber(ir::Op op, const LeafType& to, ir::ValueId value, const LeafType& from, uint32_t result);
     ir::ValueId convertInteger(bool isSigned, const LeafType& to, ir::ValueId value, const LeafType& from);

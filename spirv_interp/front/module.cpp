@@ -61,6 +61,10 @@ bool Module::scan(std::string& error) {
                 error = "the result id at word " + std::to_string(start) + " is out of bounds";
                 return false;
             }
+            if (definitions_[id] != 0) {
+                error = "%" + std::to_string(id) + " is defined twice";
+                return false;
+            }
             definitions_[id] = start;
         }
         switch (inst.op) {

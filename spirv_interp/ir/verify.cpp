@@ -12,7 +12,7 @@ namespace {
 
 class Verifier {
   public:
-    explicit Verifier(const Program& program) : program_(program) {}
+    Verifier(const Program& program, LoopForm form) : program_(program), form_(form) {}
 
     Status run() {
         // Each step relies on what the ones before it have established.
@@ -27,6 +27,7 @@ class Verifier {
 
   private:
     const Program& program_;
+    LoopForm form_;
     std::optional<std::string> error_;
     std::vector<BlockId> definedIn_;
     std::vector<uint32_t> definedAt_;  // instruction index in the block
@@ -370,7 +371,7 @@ class Verifier {
                         failInst(b, i, name + " is not defined");
                     } else if (home == where && !phi ? definedAt_[operand] >= i : !cfg.dominates(home, where)) {
                         failInst(b, i, "the definition of " + name + " does not dominate the use");
-                    } else if (!cfg.loopsContain(program_, home, where)) {
+                    } else if (form_ == LoopForm::closed && !cfg.loopsContain(program_, home, where)) {
                         failInst(b, i, name + " is defined in a loop and used outside it without a phi");
                     }
                 }
@@ -381,8 +382,8 @@ class Verifier {
 
 }  // namespace
 
-Status verify(const Program& program) {
-    return Verifier(program).run();
+Status verify(const Program& program, LoopForm form) {
+    return Verifier(program, form).run();
 }
 
 }  // namespace vernier::ir

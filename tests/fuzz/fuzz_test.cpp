@@ -39,6 +39,26 @@ TEST(Fuzz, TheCorpusRuns) {
     EXPECT_GE(valid, 6u);
 }
 
+// Most changed modules are not valid; the lowering refuses them by itself, or makes something of them that runs.
+TEST(Fuzz, InvalidModulesAreRefusedOrLowered) {
+    std::mt19937 random(9);
+    size_t lowered = 0, refused = 0;
+    for (const auto& file : corpus()) {
+        const Words words = read(file);
+        for (int round = 0; round < 40; ++round) {
+            Words changed = words;
+            for (int n = 0; n < 3; ++n) mutateModule(changed, random);
+            for (const ir::Stage stage : {ir::Stage::vertex, ir::Stage::fragment, ir::Stage::compute}) {
+                const Result<ir::Program> program = lowerUnvalidated(changed, stage);
+                (program.ok() ? lowered : refused) += 1;
+                EXPECT_TRUE(program.ok() || !program.error().message.empty());
+            }
+        }
+    }
+    EXPECT_GT(lowered, 20u);
+    EXPECT_GT(refused, 20u);
+}
+
 TEST(Fuzz, ChangedModulesAreRefusedOrRun) {
     std::mt19937 random(5);
     size_t valid = 0, all = 0;
