@@ -84,6 +84,7 @@ constexpr FormSet formSet(Op op) {
         case Op::ior:
         case Op::ixor:
         case Op::xor3:
+        case Op::xorMultiply:
         case Op::andOr:
         case Op::integerMultiplyAdd:
         case Op::foeq:

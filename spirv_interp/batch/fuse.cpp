@@ -92,6 +92,11 @@ struct Matcher {
             if (Match fusion = dot(inst)) return fusion;
         }
         const auto [left, right] = pair(inst);
+        for (const auto& [factors, other] : {std::pair{left, right}, std::pair{right, left}}) {
+            const ir::Inst* product = adds && !scalar[other] ? innerFloat(factors, ir::Op::fmul) : nullptr;
+            if (product == nullptr) continue;
+            if (Match fusion = unpackedTerm(*product, other)) return fusion;
+        }
         if (const ir::Inst* product = innerFloat(left, ir::Op::fmul)) {
             if (Match fusion = converted(*product, adds ? 1 : -1, right)) return fusion;
             const auto [a, b] = pair(*product);
@@ -147,6 +152,27 @@ struct Matcher {
                       {from, shift, mask, scale}};
         if (sign != 0) fusion.operands.push_back(last);
         return fusion;
+    }
+
+    /// A product with a factor that is unpackMultiplySubtract; and a sum, if there is one.
+    Match unpackedTerm(const ir::Inst& product, ValueId sum) const {
+        const auto factors = pair(product);
+        for (const size_t k : {0, 1}) {
+            const ir::Inst* difference = innerFloat(factors[k], ir::Op::fsub);
+            if (difference == nullptr) continue;
+            const auto [scaled, last] = pair(*difference);
+            const ir::Inst* scaling = innerFloat(scaled, ir::Op::fmul);
+            if (scaling == nullptr || !scalar[last]) continue;
+            const Match unpack = converted(*scaling, -1, last);
+            if (!unpack || unpack->op != Op::unpackMultiplySubtract) continue;
+            Fusion fusion{Op::unpackSubtractTimes, {unpack->operands[0], factors[1 - k]}, 2};
+            if (sum != ir::kNoValue) {
+                fusion = {Op::unpackSubtractTimesAdd, {unpack->operands[0], sum, factors[1 - k]}, 3};
+            }
+            fusion.operands.insert(fusion.operands.end(), unpack->operands.begin() + 1, unpack->operands.end());
+            return fusion;
+        }
+        return std::nullopt;
     }
 
     // Integers.
@@ -220,6 +246,8 @@ struct Matcher {
             if (mixed == nullptr || !scalar[operands[1 - k]]) continue;
             const Match shift = shiftedSelf(*mixed, ir::Op::lshr, Op::xorShiftRight);
             if (shift) return Fusion{Op::xorShiftMultiply, {shift->operands[0], shift->operands[1], operands[1 - k]}};
+            const auto [a, b] = pair(*mixed);
+            return Fusion{Op::xorMultiply, {a, b, operands[1 - k]}};
         }
         return std::nullopt;
     }
@@ -227,7 +255,9 @@ struct Matcher {
     Match match(const ir::Inst& inst) const {
         if (inst.type == ir::Type::f32) {
             if (inst.op == ir::Op::fadd || inst.op == ir::Op::fsub) return sum(inst);
-            return inst.op == ir::Op::fmul ? converted(inst, 0, ir::kNoValue) : std::nullopt;
+            if (inst.op != ir::Op::fmul) return std::nullopt;
+            if (Match fusion = unpackedTerm(inst, ir::kNoValue)) return fusion;
+            return converted(inst, 0, ir::kNoValue);
         }
         if (inst.type != ir::Type::i32) return std::nullopt;
         switch (inst.op) {

@@ -13,6 +13,7 @@ struct Fusion {
     Op op = Op::multiplyAdd;
     /// Without the destination. ir::kNoValue: a shift by nothing, or a mask of all bits.
     std::vector<ir::ValueId> operands;
+    size_t shift = 1;  // which operand is the shift
 };
 
 /// The superinstructions of a program.

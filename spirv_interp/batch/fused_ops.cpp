@@ -17,6 +17,7 @@ namespace element {
 VERNIER_ELEMENT(shiftRightAnd, uint32_t, uint32_t, (V a, V b, V c), return hn::And(shiftedRight(a, b), c);)
 VERNIER_ELEMENT(shiftRightXor, uint32_t, uint32_t, (V a, V b, V c), return hn::Xor(shiftedRight(a, b), c);)
 VERNIER_ELEMENT(shiftLeftXor, uint32_t, uint32_t, (V a, V b, V c), return hn::Xor(shiftedLeft(a, b), c);)
+VERNIER_ELEMENT(xorMultiply, uint32_t, uint32_t, (V a, V b, V c), return hn::Mul(hn::Xor(a, b), c);)
 VERNIER_ELEMENT(xor3, uint32_t, uint32_t, (V a, V b, V c), return hn::Xor3(a, b, c);)
 VERNIER_ELEMENT(andOr, uint32_t, uint32_t, (V a, V b, V c), return hn::OrAnd(c, a, b);)
 VERNIER_ELEMENT(integerMultiplyAdd, int32_t, int32_t, (V a, V b, V c), return hn::Add(hn::Mul(a, b), c);)
@@ -37,21 +38,23 @@ VERNIER_ELEMENT(convertMultiply, float, float, (V a, V b), return hn::Mul(conver
 VERNIER_ELEMENT(convertMultiplyAdd, float, float, (V a, V b, V c), return hn::Add(hn::Mul(converted(a), b), c);)
 VERNIER_ELEMENT(convertMultiplySubtract, float, float, (V a, V b, V c), return hn::Sub(hn::Mul(converted(a), b), c);)
 
-/// What unpacking operations have in common, and then what they do with their last operand.
-template <int kSign>
+/// What unpacking operations have in common, and then what they do with their last operand. Their scalars stand from
+/// operand kScalars on.
+template <int kSign, size_t kScalars = 2>
 struct Unpack {
-    static constexpr size_t kInsts = instsFor(kSign == 0 ? 5 : 6);
+    static constexpr size_t kInsts = instsFor(kScalars + (kSign == 0 ? 3 : 4));
 
     template <size_t K, Source kSource>
     static HWY_INLINE VF at(const std::byte* rows, const uint32_t* scalars, const Inst* inst, VU accumulator) {
         const VU from = StripOperand<uint32_t, kSource>::template at<K>(rows, scalars, (*inst)[1], accumulator);
-        const VU bits = hn::And(shiftedRight(from, scalarAt(scalars, inst, 2)), scalarAt(scalars, inst, 3));
-        const VF product =
-            hn::Mul(hn::ConvertTo(kF32, hn::BitCast(kI32, bits)), hn::BitCast(kF32, scalarAt(scalars, inst, 4)));
+        const VU bits =
+            hn::And(shiftedRight(from, scalarAt(scalars, inst, kScalars)), scalarAt(scalars, inst, kScalars + 1));
+        const VF product = hn::Mul(hn::ConvertTo(kF32, hn::BitCast(kI32, bits)),
+                                   hn::BitCast(kF32, scalarAt(scalars, inst, kScalars + 2)));
         if constexpr (kSign == 0) {
             return product;
         } else {
-            const VF last = hn::BitCast(kF32, scalarAt(scalars, inst, 5));
+            const VF last = hn::BitCast(kF32, scalarAt(scalars, inst, kScalars + 3));
             return kSign > 0 ? hn::Add(product, last) : hn::Sub(product, last);
         }
     }
@@ -59,6 +62,36 @@ struct Unpack {
   private:
     static HWY_INLINE VU scalarAt(const uint32_t* scalars, const Inst* inst, size_t k) {
         return hn::Set(kU32, scalars[(*inst)[k]]);
+    }
+};
+
+/// What is unpacked times a factor; with kAdds, in front of the factor stands what is added.
+template <bool kAdds>
+struct UnpackTerm {
+    static constexpr size_t kFactor = kAdds ? 3 : 2;
+    using Value = Unpack<-1, kFactor + 1>;
+    static constexpr size_t kInsts = Value::kInsts;
+
+    static constexpr bool has(Form form) {
+        const Source factor = form.sources[kFactor - 1];
+        if (form.sources[0] == Source::scalar || factor == Source::accumulator) return false;
+        if (!kAdds) return form.sources[2] == Source::row;
+        return form.sources[1] != Source::scalar && form.count(Source::accumulator, 2) < 2;
+    }
+
+    template <size_t K, uint8_t kForm>
+    static HWY_INLINE VF at(const std::byte* rows, const uint32_t* scalars, const Inst* inst, VU accumulator) {
+        constexpr Form form = Form::at(kForm);
+        const VF value = Value::template at<K, form.sources[0]>(rows, scalars, inst, accumulator);
+        const VF factor = StripOperand<float, form.sources[kFactor - 1]>::template at<K>(rows, scalars,
+                                                                                         (*inst)[kFactor], accumulator);
+        const VF product = hn::Mul(value, factor);
+        if constexpr (kAdds) {
+            return hn::Add(
+                product, StripOperand<float, form.sources[1]>::template at<K>(rows, scalars, (*inst)[2], accumulator));
+        } else {
+            return product;
+        }
     }
 };
 
@@ -71,6 +104,8 @@ void addFusedOps(HandlerTables& tables) {
     addCompound<element::Unpack<0>>(tables, Op::unpackMultiply);
     addCompound<element::Unpack<1>>(tables, Op::unpackMultiplyAdd);
     addCompound<element::Unpack<-1>>(tables, Op::unpackMultiplySubtract);
+    addFormed<element::UnpackTerm<false>>(tables, Op::unpackSubtractTimes);
+    addFormed<element::UnpackTerm<true>>(tables, Op::unpackSubtractTimesAdd);
 }
 
 }  // namespace vernier::batch::HWY_NAMESPACE

@@ -93,7 +93,7 @@ bool Lowerer::lowerFused(const ir::Inst& inst) {
     std::vector<Operand> operands;
     for (size_t k = 0; k < fusion->operands.size(); ++k) {
         const ir::ValueId value = fusion->operands[k];
-        const uint32_t neutral = k == 1 ? 0 : ~0u;
+        const uint32_t neutral = k == fusion->shift ? 0 : ~0u;
         operands.push_back(value == ir::kNoValue ? Operand::scalar(scalars_.constant(neutral, false))
                                                  : operandOf(value));
     }

@@ -82,6 +82,8 @@ bool isMovableOp(Op op) {
         case Op::unpackMultiply:
         case Op::unpackMultiplyAdd:
         case Op::unpackMultiplySubtract:
+        case Op::unpackSubtractTimes:
+        case Op::unpackSubtractTimesAdd:
             return true;
         default:
             return false;
@@ -108,6 +110,10 @@ std::optional<StripShape> stripShape(const MachineInst& inst) {
         case Op::copy:
         case Op::broadcast:
             return StripShape{1, 1, true};
+        case Op::unpackSubtractTimes:
+            return StripShape{1, 2, true};
+        case Op::unpackSubtractTimesAdd:
+            return StripShape{1, 3, true};
         case Op::copyMasked:
         case Op::broadcastMasked:
             return StripShape{1, 1, false};

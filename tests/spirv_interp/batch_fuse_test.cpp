@@ -27,6 +27,8 @@ constexpr FuseCase kCases[] = {
     {"xorShiftRight", "i32", "%20 i32 = lshr A %10\n%21 i32 = ixor A %20\n"},
     {"xorShiftLeft", "i32", "%20 i32 = shl A %10\n%21 i32 = ixor %20 A\n"},
     {"xorShiftMultiply", "i32", "%20 i32 = lshr A %10\n%22 i32 = ixor A %20\n%21 i32 = imul %12 %22\n"},
+    {"xorMultiply", "i32", "%20 i32 = ixor A %1\n%21 i32 = imul %12 %20\n"},
+    {"xorMultiply", "i32", "%20 i32 = ixor %12 A\n%21 i32 = imul %20 %12\n"},
     {"xor3", "i32", "%20 i32 = ixor A %1\n%21 i32 = ixor %12 %20\n"},
     {"andOr", "i32", "%20 i32 = iand A %12\n%21 i32 = ior %1 %20\n"},
     {"integerMultiplyAdd", "i32", "%20 i32 = imul A %1\n%21 i32 = iadd %20 %12\n"},
@@ -39,6 +41,18 @@ constexpr FuseCase kCases[] = {
      "%21 f32 = fadd %14 %24\n"},
     {"unpackMultiplySubtract", "f32",
      "%20 i32 = iand A %12\n%23 f32 = stof.i32 %20\n%24 f32 = fmul %13 %23\n%21 f32 = fsub %24 %14\n"},
+    {"unpackSubtractTimes", "f32",
+     "%20 i32 = lshr A %10\n%22 i32 = iand %12 %20\n%23 f32 = stof.i32 %22\n%24 f32 = fmul %13 %23\n"
+     "%25 f32 = fsub %24 %14\n%21 f32 = fmul %25 %2\n"},
+    {"unpackSubtractTimes", "f32",
+     "%20 i32 = lshr A %10\n%23 f32 = stof.i32 %20\n%24 f32 = fmul %13 %23\n%25 f32 = fsub %24 %14\n"
+     "%21 f32 = fmul %13 %25\n"},
+    {"unpackSubtractTimesAdd", "f32",
+     "%20 i32 = lshr A %10\n%22 i32 = iand %12 %20\n%23 f32 = stof.i32 %22\n%24 f32 = fmul %13 %23\n"
+     "%25 f32 = fsub %24 %14\n%26 f32 = fmul %25 %2\n%21 f32 = fadd %26 %2\n"},
+    {"unpackSubtractTimesAdd", "f32",
+     "%20 i32 = iand A %12\n%23 f32 = stof.i32 %20\n%24 f32 = fmul %13 %23\n%25 f32 = fsub %24 %14\n"
+     "%26 f32 = fmul %13 %25\n%27 f32 = fabs %2\n%21 f32 = fadd %27 %26\n"},
 };
 
 /// `chained`: A is what the operation before leaves in the accumulator. `kept`: the result has another reader.
@@ -97,8 +111,9 @@ TEST_P(Superinstruction, GivesTheBitsOfItsParts) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Superinstruction, testing::ValuesIn(kCases),
-                         [](const auto& instance) { return std::string(instance.param.op); });
+INSTANTIATE_TEST_SUITE_P(All, Superinstruction, testing::ValuesIn(kCases), [](const auto& instance) {
+    return std::string(instance.param.op) + "_" + std::to_string(instance.index);
+});
 
 }  // namespace
 }  // namespace vernier
