@@ -8,8 +8,7 @@
 #include <memory>
 
 #include "conformance/drivers/stopwatch.h"
-#include "conformance/drivers/vulkan_context.h"
-#include "conformance/drivers/vulkan_resources.h"
+#include "conformance/drivers/vulkan_compute.h"
 #include "conformance/tool/render_scene.h"
 
 namespace vernier::bench {
@@ -58,8 +57,11 @@ class KernelRun {
     Status prepare() {
         VERNIER_TRY(resources_.create(Scene{}));
         VERNIER_TRY(createBuffers());
-        VERNIER_TRY(createLayouts());
-        VERNIER_TRY(createSet());
+        const Result<StorageBuffers> bound =
+            bindStorageBuffers(device_, resources_.cleanup(), buffers_,
+                               static_cast<uint32_t>(kernel_.pushConstants.size() * sizeof(float)));
+        if (!bound) return bound.error();
+        bound_ = *bound;
         for (const KernelPass& pass : kernel_.passes) {
             Result<std::vector<uint32_t>> words = compileKernel(pass);
             if (!words) return words.error();
@@ -84,19 +86,14 @@ class KernelRun {
 
   private:
     Status createBuffers();
-    Status createLayouts();
-    Status createSet();
     Status createPipeline(const std::vector<uint32_t>& words);
     Status record(bool oneGroup, VkCommandBuffer& commands);
-    static void barrier(VkCommandBuffer commands, VkAccessFlags to, VkPipelineStageFlags stage);
 
     const Kernel& kernel_;
     VulkanResources resources_;
     VkDevice device_;
     std::vector<VulkanBuffer> buffers_;
-    VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
-    VkPipelineLayout layout_ = VK_NULL_HANDLE;
-    VkDescriptorSet set_ = VK_NULL_HANDLE;
+    StorageBuffers bound_;
     std::vector<VkPipeline> pipelines_;
     VkCommandBuffer oneGroup_ = VK_NULL_HANDLE, all_ = VK_NULL_HANDLE;
     double moduleTime_ = 0, pipelineTime_ = 0;
@@ -114,114 +111,37 @@ Status KernelRun::createBuffers() {
     return {};
 }
 
-Status KernelRun::createLayouts() {
-    std::vector<VkDescriptorSetLayoutBinding> bindings;
-    for (uint32_t i = 0; i < buffers_.size(); ++i)
-        bindings.push_back({i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
-    VkDescriptorSetLayoutCreateInfo setInfo{};
-    setInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-    setInfo.bindingCount = static_cast<uint32_t>(bindings.size());
-    setInfo.pBindings = bindings.data();
-    VERNIER_TRY_VK(vkCreateDescriptorSetLayout(device_, &setInfo, nullptr, &setLayout_));
-    resources_.cleanup().add([this] { vkDestroyDescriptorSetLayout(device_, setLayout_, nullptr); });
-    const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0,
-                                    static_cast<uint32_t>(kernel_.pushConstants.size() * sizeof(float))};
-    VkPipelineLayoutCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-    info.setLayoutCount = 1;
-    info.pSetLayouts = &setLayout_;
-    info.pushConstantRangeCount = range.size != 0 ? 1 : 0;
-    info.pPushConstantRanges = &range;
-    VERNIER_TRY_VK(vkCreatePipelineLayout(device_, &info, nullptr, &layout_));
-    resources_.cleanup().add([this] { vkDestroyPipelineLayout(device_, layout_, nullptr); });
-    return {};
-}
-
-Status KernelRun::createSet() {
-    const auto count = static_cast<uint32_t>(buffers_.size());
-    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, count};
-    VkDescriptorPoolCreateInfo poolInfo{};
-    poolInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-    poolInfo.maxSets = 1;
-    poolInfo.poolSizeCount = 1;
-    poolInfo.pPoolSizes = &size;
-    VkDescriptorPool pool = VK_NULL_HANDLE;
-    VERNIER_TRY_VK(vkCreateDescriptorPool(device_, &poolInfo, nullptr, &pool));
-    resources_.cleanup().add([this, pool] { vkDestroyDescriptorPool(device_, pool, nullptr); });
-    VkDescriptorSetAllocateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
-    info.descriptorPool = pool;
-    info.descriptorSetCount = 1;
-    info.pSetLayouts = &setLayout_;
-    VERNIER_TRY_VK(vkAllocateDescriptorSets(device_, &info, &set_));
-    std::vector<VkDescriptorBufferInfo> ranges(count);
-    std::vector<VkWriteDescriptorSet> writes(count);
-    for (uint32_t i = 0; i < count; ++i) {
-        ranges[i] = {buffers_[i].handle, 0, VK_WHOLE_SIZE};
-        writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-        writes[i].dstSet = set_;
-        writes[i].dstBinding = i;
-        writes[i].descriptorCount = 1;
-        writes[i].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-        writes[i].pBufferInfo = &ranges[i];
-    }
-    vkUpdateDescriptorSets(device_, count, writes.data(), 0, nullptr);
-    return {};
-}
-
 Status KernelRun::createPipeline(const std::vector<uint32_t>& words) {
     const Stopwatch moduleWatch;
-    VkShaderModuleCreateInfo moduleInfo{};
-    moduleInfo.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-    moduleInfo.codeSize = words.size() * sizeof(uint32_t);
-    moduleInfo.pCode = words.data();
-    VkShaderModule shader = VK_NULL_HANDLE;
-    VERNIER_TRY_VK(vkCreateShaderModule(device_, &moduleInfo, nullptr, &shader));
-    resources_.cleanup().add([this, shader] { vkDestroyShaderModule(device_, shader, nullptr); });
+    const Result<VkShaderModule> shader = createShaderModule(device_, resources_.cleanup(), words);
+    if (!shader) return shader.error();
     moduleTime_ += moduleWatch.milliseconds();
-
     const Stopwatch watch;
-    VkComputePipelineCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
-    info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-    info.stage.module = shader;
-    info.stage.pName = "main";
-    info.layout = layout_;
-    VkPipeline pipeline = VK_NULL_HANDLE;
-    VERNIER_TRY_VK(vkCreateComputePipelines(device_, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline));
-    resources_.cleanup().add([this, pipeline] { vkDestroyPipeline(device_, pipeline, nullptr); });
+    const Result<VkPipeline> pipeline = createComputePipeline(device_, resources_.cleanup(), bound_.layout, *shader);
+    if (!pipeline) return pipeline.error();
     pipelineTime_ += watch.milliseconds();
-    pipelines_.push_back(pipeline);
+    pipelines_.push_back(*pipeline);
     return {};
-}
-
-void KernelRun::barrier(VkCommandBuffer commands, VkAccessFlags to, VkPipelineStageFlags stage) {
-    VkMemoryBarrier memory{};
-    memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
-    memory.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT;
-    memory.dstAccessMask = to;
-    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, stage, 0, 1, &memory, 0, nullptr, 0, nullptr);
 }
 
 Status KernelRun::record(bool oneGroup, VkCommandBuffer& commands) {
     const Result<VkCommandBuffer> begun = resources_.beginCommands();
     if (!begun) return begun.error();
     commands = *begun;
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 0, 1, &set_, 0, nullptr);
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, bound_.layout, 0, 1, &bound_.set, 0, nullptr);
     if (!kernel_.pushConstants.empty())
-        vkCmdPushConstants(commands, layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0,
+        vkCmdPushConstants(commands, bound_.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
                            static_cast<uint32_t>(kernel_.pushConstants.size() * sizeof(float)),
                            kernel_.pushConstants.data());
     for (size_t i = 0; i < kernel_.passes.size(); ++i) {
         if (i > 0)
-            barrier(commands, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT,
-                    VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT);
+            computeBarrier(commands, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT,
+                           VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT);
         const std::array<uint32_t, 3> groups = oneGroup ? std::array<uint32_t, 3>{1, 1, 1} : kernel_.passes[i].groups;
         vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipelines_[i]);
         vkCmdDispatch(commands, groups[0], groups[1], groups[2]);
     }
-    barrier(commands, VK_ACCESS_HOST_READ_BIT, VK_PIPELINE_STAGE_HOST_BIT);
+    computeBarrier(commands, VK_ACCESS_HOST_READ_BIT, VK_PIPELINE_STAGE_HOST_BIT);
     VERNIER_TRY_VK(vkEndCommandBuffer(commands));
     return {};
 }

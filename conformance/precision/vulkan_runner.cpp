@@ -1,7 +1,7 @@
 // The same calls as a compute shader of whatever Vulkan driver the loader finds.
 #include <algorithm>
 
-#include "conformance/drivers/vulkan_resources.h"
+#include "conformance/drivers/vulkan_compute.h"
 #include "conformance/precision/evaluator.h"
 #include "conformance/precision/glsl.h"
 
@@ -14,9 +14,7 @@ struct VulkanRunner::Impl {
     conformance::VulkanContext context;
     conformance::VulkanResources resources{context};
     VulkanBuffer input, output;
-    VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
-    VkPipelineLayout pipelineLayout = VK_NULL_HANDLE;
-    VkDescriptorSet set = VK_NULL_HANDLE;
+    conformance::StorageBuffers bound;
 
     static constexpr size_t kCalls = size_t{1} << 16;
     static constexpr uint32_t kGroup = 64;
@@ -32,61 +30,14 @@ struct VulkanRunner::Impl {
         buffer = resources.createHostBuffer(kCalls * kResultWords * sizeof(float), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
         if (!buffer) return buffer.error();
         output = *buffer;
-        return createLayout();
-    }
-
-    Status createLayout() {
-        const VkDevice device = context.device();
-        VkDescriptorSetLayoutBinding bindings[2]{};
-        for (uint32_t k = 0; k < 2; ++k) {
-            bindings[k].binding = k;
-            bindings[k].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-            bindings[k].descriptorCount = 1;
-            bindings[k].stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
-        }
-        VkDescriptorSetLayoutCreateInfo setInfo{};
-        setInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-        setInfo.bindingCount = 2;
-        setInfo.pBindings = bindings;
-        VERNIER_TRY_VK(vkCreateDescriptorSetLayout(device, &setInfo, nullptr, &setLayout));
-        resources.cleanup().add([=, layout = setLayout] { vkDestroyDescriptorSetLayout(device, layout, nullptr); });
-        VkPipelineLayoutCreateInfo layoutInfo{};
-        layoutInfo.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-        layoutInfo.setLayoutCount = 1;
-        layoutInfo.pSetLayouts = &setLayout;
-        VERNIER_TRY_VK(vkCreatePipelineLayout(device, &layoutInfo, nullptr, &pipelineLayout));
-        resources.cleanup().add([=, layout = pipelineLayout] { vkDestroyPipelineLayout(device, layout, nullptr); });
-        const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2};
-        VkDescriptorPoolCreateInfo poolInfo{};
-        poolInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-        poolInfo.maxSets = 1;
-        poolInfo.poolSizeCount = 1;
-        poolInfo.pPoolSizes = &size;
-        VkDescriptorPool pool = VK_NULL_HANDLE;
-        VERNIER_TRY_VK(vkCreateDescriptorPool(device, &poolInfo, nullptr, &pool));
-        resources.cleanup().add([=] { vkDestroyDescriptorPool(device, pool, nullptr); });
-        VkDescriptorSetAllocateInfo allocateInfo{};
-        allocateInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
-        allocateInfo.descriptorPool = pool;
-        allocateInfo.descriptorSetCount = 1;
-        allocateInfo.pSetLayouts = &setLayout;
-        VERNIER_TRY_VK(vkAllocateDescriptorSets(device, &allocateInfo, &set));
-        const VkDescriptorBufferInfo buffers[2] = {{input.handle, 0, VK_WHOLE_SIZE}, {output.handle, 0, VK_WHOLE_SIZE}};
-        for (uint32_t k = 0; k < 2; ++k) {
-            VkWriteDescriptorSet write{};
-            write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-            write.dstSet = set;
-            write.dstBinding = k;
-            write.descriptorCount = 1;
-            write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-            write.pBufferInfo = &buffers[k];
-            vkUpdateDescriptorSets(device, 1, &write, 0, nullptr);
-        }
+        const VulkanBuffer buffers[] = {input, output};
+        const auto result = conformance::bindStorageBuffers(context.device(), resources.cleanup(), buffers);
+        if (!result) return result.error();
+        bound = *result;
         return {};
     }
 
     Result<VkPipeline> createPipeline(const Function& function, Cleanup& cleanup) {
-        const VkDevice device = context.device();
         const std::string source = std::string("#version 450\n") + kGlslExtensions + R"(
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 0) readonly buffer Input { float x[]; };
@@ -97,24 +48,9 @@ void main() {
 )" + callText(function) + "results[i] = low; results[n + i] = high;\n}\n";
         const auto words = compileGlsl(VK_SHADER_STAGE_COMPUTE_BIT, source);
         if (!words) return words.error();
-        VkShaderModuleCreateInfo moduleInfo{};
-        moduleInfo.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-        moduleInfo.codeSize = words->size() * sizeof(uint32_t);
-        moduleInfo.pCode = words->data();
-        VkShaderModule module = VK_NULL_HANDLE;
-        VERNIER_TRY_VK(vkCreateShaderModule(device, &moduleInfo, nullptr, &module));
-        cleanup.add([=] { vkDestroyShaderModule(device, module, nullptr); });
-        VkComputePipelineCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
-        info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-        info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-        info.stage.module = module;
-        info.stage.pName = "main";
-        info.layout = pipelineLayout;
-        VkPipeline pipeline = VK_NULL_HANDLE;
-        VERNIER_TRY_VK(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline));
-        cleanup.add([=] { vkDestroyPipeline(device, pipeline, nullptr); });
-        return pipeline;
+        const auto module = conformance::createShaderModule(context.device(), cleanup, *words);
+        if (!module) return module.error();
+        return conformance::createComputePipeline(context.device(), cleanup, bound.layout, *module);
     }
 
     Status run(const Function& function, const Operands& operands, size_t calls, Results& results) {
@@ -130,14 +66,10 @@ void main() {
             const auto commands = resources.beginCommands();
             if (!commands) return commands.error();
             vkCmdBindPipeline(*commands, VK_PIPELINE_BIND_POINT_COMPUTE, *pipeline);
-            vkCmdBindDescriptorSets(*commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipelineLayout, 0, 1, &set, 0, nullptr);
+            vkCmdBindDescriptorSets(*commands, VK_PIPELINE_BIND_POINT_COMPUTE, bound.layout, 0, 1, &bound.set, 0,
+                                    nullptr);
             vkCmdDispatch(*commands, static_cast<uint32_t>(kCalls / kGroup), 1, 1);
-            VkMemoryBarrier barrier{};
-            barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
-            barrier.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT;
-            barrier.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
-            vkCmdPipelineBarrier(*commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
-                                 &barrier, 0, nullptr, 0, nullptr);
+            conformance::computeBarrier(*commands, VK_ACCESS_HOST_READ_BIT, VK_PIPELINE_STAGE_HOST_BIT);
             VERNIER_TRY_VK(vkEndCommandBuffer(*commands));
             VERNIER_TRY(resources.run(*commands));
             for (size_t word = 0; word < kResultWords; ++word) {
