@@ -74,9 +74,10 @@ struct UnpackTerm {
 
     static constexpr bool has(Form form) {
         const Source factor = form.sources[kFactor - 1];
-        if (form.sources[0] == Source::scalar || factor == Source::accumulator) return false;
+        // What is unpacked is taken apart more than once, so that it lies in a row.
+        if (form.sources[0] != Source::row || factor == Source::accumulator) return false;
         if (!kAdds) return form.sources[2] == Source::row;
-        return form.sources[1] != Source::scalar && form.count(Source::accumulator, 2) < 2;
+        return form.sources[1] != Source::scalar;
     }
 
     template <size_t K, uint8_t kForm>
