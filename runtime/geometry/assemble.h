@@ -61,9 +61,7 @@ class Assembler {
         return {windowVertex(triangle.vertex[0]), windowVertex(triangle.vertex[1]), windowVertex(triangle.vertex[2])};
     }
     bool isRouted() const { return !vertices_.layers.empty() || !vertices_.viewports.empty(); }
-    uint32_t attributesOf(uint32_t vertex) const {
-        return vertices_.attributesOf(vertex);
-    }
+    uint32_t attributesOf(uint32_t vertex) const { return vertices_.attributesOf(vertex); }
 
     // Reuse of vertices inside a range: by index where these lie close together; else open addressing, twice as many
     // places as a range can have vertices.

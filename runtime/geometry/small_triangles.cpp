@@ -62,8 +62,7 @@ HWY_INLINE void setUp(const TriangleGroupInput& in, const Gathered& from, uint32
         return hn::Ne(hn::And(hn::Load(i, flags.data() + first), hn::Set(i, static_cast<int32_t>(bits))), zero);
     };
     const M rejected = hn::Or(isSet(from.any, kNotFinite), isSet(from.all, kOutsideVolume | kOutsideUserAll));
-    const M clipped =
-        isSet(from.any, kOutsideGuard | kOutsideNear | kOutsideFar | kOutsideUserAll | kUnusualW);
+    const M clipped = isSet(from.any, kOutsideGuard | kOutsideNear | kOutsideFar | kOutsideUserAll | kUnusualW);
     Corner v[3];
     for (size_t n = 0; n < 3; ++n)
         v[n] = {hn::Load(i, from.x[n].data() + first), hn::Load(i, from.y[n].data() + first),
@@ -105,8 +104,8 @@ HWY_INLINE void setUp(const TriangleGroupInput& in, const Gathered& from, uint32
     const M turns = hn::Not(clockwise);
     const Corner second = choose(turns, v[2], v[1]), third = choose(turns, v[1], v[2]);
     const M secondFirst = before(second, v[0]);
-    const M startsThird = hn::Or(hn::And(secondFirst, before(third, second)),
-                                 hn::AndNot(secondFirst, before(third, v[0])));
+    const M startsThird =
+        hn::Or(hn::And(secondFirst, before(third, second)), hn::AndNot(secondFirst, before(third, v[0])));
     const M startsSecond = hn::AndNot(startsThird, secondFirst);
     const Corner corners[3] = {choose(startsThird, third, choose(startsSecond, second, v[0])),
                                choose(startsThird, v[0], choose(startsSecond, third, second)),
@@ -119,9 +118,8 @@ HWY_INLINE void setUp(const TriangleGroupInput& in, const Gathered& from, uint32
     const V lowHalf = hn::Set(i, 0xFFFF);
     hn::Store(hn::Or(hn::And(x0, lowHalf), hn::ShiftLeft<16>(y0)), i, out.low.data() + first);
     hn::Store(hn::Or(hn::And(x1, lowHalf), hn::ShiftLeft<16>(y1)), i, out.high.data() + first);
-    const auto tileOf = [&](V pixel, int32_t origin) HWY_ATTR {
-        return hn::ShiftRight<6>(hn::Sub(pixel, hn::Set(i, origin)));
-    };
+    const auto tileOf = [&](V pixel, int32_t origin)
+                            HWY_ATTR { return hn::ShiftRight<6>(hn::Sub(pixel, hn::Set(i, origin))); };
     static_assert(kTileSize == 1 << 6);
     const V tx = tileOf(x0, in.gridX), ty = tileOf(y0, in.gridY);
     const M spread = hn::Or(hn::Ne(tx, tileOf(x1, in.gridX)), hn::Ne(ty, tileOf(y1, in.gridY)));

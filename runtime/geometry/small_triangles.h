@@ -1,5 +1,5 @@
-// Set-up of small triangles, a triangle in each SIMD lane: what Assembler and PrimitiveSetup decide about one triangle at
-// a time, with the same results. Triangles that it is not made for are told apart.
+// Set-up of small triangles, a triangle in each SIMD lane: what Assembler and PrimitiveSetup decide about one triangle
+// at a time, with the same results. Triangles that it is not made for are told apart.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@ inline constexpr uint32_t kTriangleGroup = 16;
 
 /// `count` triangles of a draw with PreparedDraw::packsSmall, filled and without depth bias.
 struct TriangleGroupInput {
-    const int32_t *x, *y;   // of all vertices: sub-units
-    const uint32_t* flags;  // VertexFlag
+    const int32_t *x, *y;                                   // of all vertices: sub-units
+    const uint32_t* flags;                                  // VertexFlag
     std::array<const uint32_t*, kTriangleGroup> triangles;  // each: the numbers of its three vertices
     uint32_t count;
     uint32_t subPixelBits;

@@ -39,8 +39,8 @@ void forEachRun(const FragmentBatch& batch, const Function& function) {
     }
 }
 
-/// Lanes by themselves. What says where they lie is copied: texels are bytes, whose stores could change anything that is
-/// read through a pointer.
+/// Lanes by themselves. What says where they lie is copied: texels are bytes, whose stores could change anything that
+/// is read through a pointer.
 template <uint32_t kBytes>
 struct Lanes {
     explicit Lanes(const ColorOutputInput& in)
@@ -78,8 +78,7 @@ void scatter(const ColorOutputInput& in, const std::byte* texels) {
     if (in.batch->order == LaneOrder::spans && in.batch->apart) {
         const Lanes<kBytes> lanes(in);
         for (uint32_t n = 0; n < lanes.count; ++n)
-            if (lanes.mask == nullptr || lanes.mask[n] != 0)
-                std::memcpy(lanes.texel(n), texels + n * kBytes, kBytes);
+            if (lanes.mask == nullptr || lanes.mask[n] != 0) std::memcpy(lanes.texel(n), texels + n * kBytes, kBytes);
         return;
     }
     forEachRun(*in.batch, [&](int32_t x, int32_t y, uint32_t first, uint32_t count) {

@@ -134,9 +134,8 @@ TEST(Scene, MipsAndBlitsAverage) {
 }
 
 TEST(Scene, UnsupportedIsRefusedInWords) {
-    const auto images = renderOracle(drawScene(diagonalQuad(), kFlat, [](Scene& s) {
-        s.pipelines[0].topology = VK_PRIMITIVE_TOPOLOGY_PATCH_LIST;
-    }));
+    const auto images = renderOracle(
+        drawScene(diagonalQuad(), kFlat, [](Scene& s) { s.pipelines[0].topology = VK_PRIMITIVE_TOPOLOGY_PATCH_LIST; }));
     ASSERT_FALSE(images.ok());
     EXPECT_EQ(images.error().code, ErrorCode::unsupported);
     const auto broken =

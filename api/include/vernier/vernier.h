@@ -302,19 +302,19 @@ typedef struct VnRasterStateDesc {
     VkCullModeFlags cullMode;  /* 0: none */
     VkFrontFace frontFace;     /* 0: counter-clockwise, seen in the framebuffer (y down) */
     int depthClamp;            /* nonzero: clamp to the viewport's depth range instead of clipping at near and far */
-    int depthClip;             /* 0: clip at near and far unless depthClamp is set; 1: clip, -1: do not, clamped or not */
-    int depthBias;             /* nonzero: add the following */
-    float depthBiasConstant;   /* in units of the depth format's resolution */
-    float depthBiasSlope;      /* times the slope of the primitive */
-    float depthBiasClamp;      /* 0: none */
-    float lineWidth;           /* pixels; 0: 1 */
-    int provokingVertexLast;   /* nonzero: flat inputs come from the last vertex, as in GL */
-    uint32_t sampleMaskOff;    /* bits of samples that are never written; 0: all samples are */
-    int alphaToCoverage;       /* nonzero: the alpha of colour 0 makes a sample mask: of n samples the first
-                                  round(alpha * n) */
-    int alphaToOne;            /* nonzero: then the alpha of all colours becomes 1 */
-    float minSampleShading;    /* 0 .. 1; above 1 / samples: the fragment shader runs once per sample */
-    int depthNegativeOneToOne; /* nonzero: clip depths from -w to w, as in GL, instead of 0 to w */
+    int depthClip;           /* 0: clip at near and far unless depthClamp is set; 1: clip, -1: do not, clamped or not */
+    int depthBias;           /* nonzero: add the following */
+    float depthBiasConstant; /* in units of the depth format's resolution */
+    float depthBiasSlope;    /* times the slope of the primitive */
+    float depthBiasClamp;    /* 0: none */
+    float lineWidth;         /* pixels; 0: 1 */
+    int provokingVertexLast; /* nonzero: flat inputs come from the last vertex, as in GL */
+    uint32_t sampleMaskOff;  /* bits of samples that are never written; 0: all samples are */
+    int alphaToCoverage;     /* nonzero: the alpha of colour 0 makes a sample mask: of n samples the first
+                                round(alpha * n) */
+    int alphaToOne;          /* nonzero: then the alpha of all colours becomes 1 */
+    float minSampleShading;  /* 0 .. 1; above 1 / samples: the fragment shader runs once per sample */
+    int depthNegativeOneToOne;           /* nonzero: clip depths from -w to w, as in GL, instead of 0 to w */
     VkLineRasterizationModeEXT lineMode; /* 0: rectangles; BRESENHAM, RECTANGULAR_SMOOTH (coverage goes into alpha) */
     uint32_t lineStippleFactor;  /* 1 .. 256: lines are stippled, each bit this many pixels long; 0: they are not */
     uint16_t lineStipplePattern; /* 16 bits, the lowest first; a strip goes on where its segments meet */
