@@ -39,10 +39,11 @@ room(conformance/scenes base conformance/scene)
 # What judges the renderer uses nothing of it.
 room(conformance/oracle base spirv_interp/reference conformance/scene conformance/scenes)
 room(conformance/differ base conformance/scene conformance/oracle)
+room(conformance/arbiter base conformance/scene conformance/oracle conformance/differ)
 room(conformance/drivers base conformance/scene api/include)
-room(conformance/report base conformance/scene conformance/oracle conformance/differ conformance/drivers)
-room(conformance/tool base conformance/scene conformance/scenes conformance/oracle conformance/differ conformance/drivers
-    conformance/report)
+room(conformance/report base conformance/scene conformance/oracle conformance/differ conformance/arbiter conformance/drivers)
+room(conformance/tool base conformance/scene conformance/scenes conformance/oracle conformance/differ conformance/arbiter
+    conformance/drivers conformance/report)
 room(conformance/hardcases base spirv_interp/reference conformance/scene conformance/scenes conformance/oracle conformance/differ
     conformance/drivers conformance/report conformance/tool)
 room(conformance/precision base spirv_interp spirv_interp/reference conformance/drivers api/include)
