@@ -55,8 +55,8 @@ class Stability : public testing::TestWithParam<Parameter> {
   protected:
     /// Checks one soup; a failure is shrunk and told.
     void expectHolds(const Soup& soup, const std::string& where) {
-        const auto& [property, profile] = GetParam();
-        const Canvases canvases = canvasesAt(profile.first);
+        const Named property = std::get<0>(GetParam());
+        const Canvases canvases = canvasesAt(std::get<1>(GetParam()).first);
         const std::string wrong = property->check(soup, canvases);
         ASSERT_EQ(canvases.one.error() + canvases.several.error(), "");
         if (wrong.empty()) return;
