@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <optional>
+
+#include "spirv_interp/atomic.h"
 
 namespace vernier {
 namespace {
@@ -164,70 +165,14 @@ void runStore(const TextureUnit& unit, const ImageCall& call) {
     }
 }
 
-uint32_t applyAtomic(ir::AtomicOp op, std::atomic_ref<uint32_t> memory, uint32_t value, uint32_t comparator) {
-    const auto update = [&](auto combine) {
-        uint32_t old = memory.load();
-        while (!memory.compare_exchange_weak(old, combine(old))) {
-        }
-        return old;
-    };
-    const auto asSigned = [](uint32_t bits) { return static_cast<int32_t>(bits); };
-    const auto asFloat = [](uint32_t bits) { return std::bit_cast<float>(bits); };
-    switch (op) {
-        case ir::AtomicOp::add:
-            return memory.fetch_add(value);
-        case ir::AtomicOp::sub:
-            return memory.fetch_sub(value);
-        case ir::AtomicOp::iand:
-            return memory.fetch_and(value);
-        case ir::AtomicOp::ior:
-            return memory.fetch_or(value);
-        case ir::AtomicOp::ixor:
-            return memory.fetch_xor(value);
-        case ir::AtomicOp::exchange:
-            return memory.exchange(value);
-        case ir::AtomicOp::store:
-            memory.store(value);
-            return value;
-        case ir::AtomicOp::load:
-            return memory.load();
-        case ir::AtomicOp::umin:
-            return update([&](uint32_t old) { return std::min(old, value); });
-        case ir::AtomicOp::umax:
-            return update([&](uint32_t old) { return std::max(old, value); });
-        case ir::AtomicOp::smin:
-            return update([&](uint32_t old) { return asSigned(old) < asSigned(value) ? old : value; });
-        case ir::AtomicOp::smax:
-            return update([&](uint32_t old) { return asSigned(old) > asSigned(value) ? old : value; });
-        // A NaN gives way to the other operand.
-        case ir::AtomicOp::fadd:
-            return update([&](uint32_t old) { return std::bit_cast<uint32_t>(asFloat(old) + asFloat(value)); });
-        case ir::AtomicOp::fmin:
-            return update([&](uint32_t old) {
-                return asFloat(value) != asFloat(value) || asFloat(old) < asFloat(value) ? old : value;
-            });
-        case ir::AtomicOp::fmax:
-            return update([&](uint32_t old) {
-                return asFloat(value) != asFloat(value) || asFloat(old) > asFloat(value) ? old : value;
-            });
-        case ir::AtomicOp::compareExchange: {
-            uint32_t expected = comparator;
-            memory.compare_exchange_strong(expected, value);
-            return expected;
-        }
-    }
-    return 0;
-}
-
 void runAtomic(const TextureUnit& unit, const ImageCall& call) {
     for (uint32_t lane = 0; lane < call.lanes; ++lane) {
         if (call.mask && !call.mask[lane]) continue;
         std::byte* texel = unit.view->texelPitch == 4 ? storageTexel(*unit.view, call, lane) : nullptr;
         uint32_t old = 0;
         if (texel) {
-            const std::atomic_ref<uint32_t> memory(*reinterpret_cast<uint32_t*>(texel));
-            old = applyAtomic(call.op->atomicOp, memory, call.texel[0] ? call.texel[0][lane] : 0,
-                              call.texel[1] ? call.texel[1][lane] : 0);
+            old = atomicApply(call.op->atomicOp, reinterpret_cast<uint32_t*>(texel),
+                              call.texel[0] ? call.texel[0][lane] : 0, call.texel[1] ? call.texel[1][lane] : 0);
         }
         if (call.result[0]) call.result[0][lane] = old;
     }

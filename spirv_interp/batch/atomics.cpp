@@ -7,9 +7,9 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include <atomic>
 #include <cstring>
 
+#include "spirv_interp/atomic.h"
 #include "spirv_interp/batch/handlers.h"
 #include "spirv_interp/batch/memory-inl.h"
 
@@ -17,99 +17,16 @@ HWY_BEFORE_NAMESPACE();
 namespace vernier::batch::HWY_NAMESPACE {
 namespace {
 
-/// A word of an integer and of a float with as many bits.
-template <class U>
-struct Views;
-template <>
-struct Views<uint32_t> {
-    using Signed = int32_t;
-    using Float = float;
-};
-template <>
-struct Views<uint64_t> {
-    using Signed = int64_t;
-    using Float = double;
-};
-
-/// What an operation leaves in a word.
-template <class U>
-U combined(ir::AtomicOp operation, U old, U value, U comparator) {
-    const auto asSigned = [](U x) { return static_cast<typename Views<U>::Signed>(x); };
-    const auto asFloat = [](U x) { return std::bit_cast<typename Views<U>::Float>(x); };
-    const auto isNan = [&](U x) { return asFloat(x) != asFloat(x); };
-    switch (operation) {
-        case ir::AtomicOp::add:
-            return old + value;
-        case ir::AtomicOp::sub:
-            return old - value;
-        case ir::AtomicOp::iand:
-            return old & value;
-        case ir::AtomicOp::ior:
-            return old | value;
-        case ir::AtomicOp::ixor:
-            return old ^ value;
-        case ir::AtomicOp::exchange:
-        case ir::AtomicOp::store:
-            return value;
-        case ir::AtomicOp::load:
-            return old;
-        case ir::AtomicOp::smin:
-            return asSigned(old) < asSigned(value) ? old : value;
-        case ir::AtomicOp::smax:
-            return asSigned(old) > asSigned(value) ? old : value;
-        case ir::AtomicOp::umin:
-            return old < value ? old : value;
-        case ir::AtomicOp::umax:
-            return old > value ? old : value;
-        case ir::AtomicOp::compareExchange:
-            return old == comparator ? value : old;
-        case ir::AtomicOp::fadd:
-            return std::bit_cast<U>(asFloat(old) + asFloat(value));
-        // A NaN gives way to the other operand, as in fmin and fmax.
-        case ir::AtomicOp::fmin:
-            return isNan(value) || asFloat(old) < asFloat(value) ? old : value;
-        case ir::AtomicOp::fmax:
-            return isNan(value) || asFloat(old) > asFloat(value) ? old : value;
-    }
-    return old;
-}
-
-/// The old word. Memory that several threads see is changed in one step.
-template <class U>
-U atomic(ir::AtomicOp operation, U* word, U value, U comparator) {
-    std::atomic_ref target(*word);
-    switch (operation) {
-        case ir::AtomicOp::add:
-            return target.fetch_add(value);
-        case ir::AtomicOp::sub:
-            return target.fetch_sub(value);
-        case ir::AtomicOp::exchange:
-            return target.exchange(value);
-        case ir::AtomicOp::load:
-            return target.load();
-        case ir::AtomicOp::store:
-            target.store(value);
-            return 0;
-        default:
-            break;
-    }
-    U old = target.load(std::memory_order_relaxed);
-    while (!target.compare_exchange_weak(old, combined(operation, old, value, comparator), std::memory_order_acq_rel,
-                                         std::memory_order_relaxed)) {
-    }
-    return old;
-}
-
-/// The same in memory that only this thread sees.
+/// An atomic in memory that only this thread sees.
 template <class U>
 U alone(ir::AtomicOp operation, U* word, U value, U comparator) {
     const U old = *word;
-    *word = combined(operation, old, value, comparator);
+    *word = atomicCombined(operation, old, value, comparator);
     return operation == ir::AtomicOp::store ? 0 : old;
 }
 
 /// Runs an atomic for the lanes whose effects count; find(lane) is the word or nullptr. The others get 0.
-template <class U, auto kApply = atomic<U>, class Find>
+template <class U, auto kApply = atomicApply<U>, class Find>
 void runAtomic(const Frame& frame, uint32_t result, uint32_t operation, uint32_t value, uint32_t comparator,
                Find&& find) {
     for (uint32_t lane = 0; lane < frame.lanes; ++lane) writeLane<U>(frame, result, lane, 0);
@@ -151,8 +68,8 @@ const Inst* atomicShared64(Frame& frame, const Inst* inst) {
         if (memory.size < 8 || offset > memory.size - 8) return;
         uint64_t old = 0;
         std::memcpy(&old, memory.data + offset, sizeof old);
-        const uint64_t next =
-            combined(operation, old, readLane<uint64_t>(frame, in[5], lane), readLane<uint64_t>(frame, in[6], lane));
+        const uint64_t next = atomicCombined(operation, old, readLane<uint64_t>(frame, in[5], lane),
+                                             readLane<uint64_t>(frame, in[6], lane));
         std::memcpy(memory.data + offset, &next, sizeof next);
         writeLane<uint64_t>(frame, in[0], lane, old);
     });
