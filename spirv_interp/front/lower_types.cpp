@@ -87,6 +87,9 @@ void Lowering::lowerType(const Instruction& inst) {
             }
             break;
         case spv::Op::OpTypeForwardPointer:
+            // It names a type that comes later: no result, whose bounds the module has checked.
+            if (id == 0 || id >= typeIndex_.size()) refuse(inst, "the id of the pointer is out of bounds");
+            [[fallthrough]];
         case spv::Op::OpTypePointer:
             type.kind = Kind::pointer;
             type.storage = static_cast<spv::StorageClass>(inst[2]);
