@@ -80,6 +80,44 @@ Result<std::vector<std::byte>> parseBytes(const std::string& text) {
     return bytes;
 }
 
+/// "4x2x1:" and bytes of four components for each texel.
+Result<Image> parseImage(const std::string& text) {
+    Image image;
+    const size_t colon = text.find(':');
+    const std::string extent = text.substr(0, colon), bytes = colon == std::string::npos ? "" : text.substr(colon + 1);
+    char rest = 0;
+    const int count =
+        std::sscanf(extent.c_str(), "%dx%dx%d%c", &image.extent[0], &image.extent[1], &image.extent[2], &rest);
+    int64_t texels = 1;
+    for (const int32_t size : image.extent) texels *= size > 0 && size <= 4096 ? size : 0;
+    if (count < 1 || count > 3 || texels < 1 || texels > (1 << 24))
+        return invalidArgument("\"" + extent + "\" is no size of an image: W, WxH or WxHxD");
+    image.texels.resize(static_cast<size_t>(texels));
+    const bool zero = bytes.starts_with("zero");
+    if (!zero && !bytes.starts_with("f:") && !bytes.starts_with("i:") && !bytes.starts_with("u:"))
+        return invalidArgument("texels are f:, i:, u: or zero, not \"" + bytes.substr(0, bytes.find(':') + 1) + "\"");
+    image.floating = zero || bytes.starts_with("f:");
+    if (zero) return image;
+    const auto values = parseBytes(bytes);
+    if (!values) return values.error();
+    if (values->size() != image.texels.size() * sizeof(Words4)) {
+        return invalidArgument("an image of " + extent + " has " + std::to_string(texels * 4) + " values, not " +
+                               std::to_string(values->size() / 4));
+    }
+    std::memcpy(image.texels.data(), values->data(), values->size());
+    return image;
+}
+
+/// The set and binding of "buffer 0.1" or "image 0.1".
+Result<std::pair<uint32_t, uint32_t>> placeOf(const std::string& name) {
+    unsigned set = 0, binding = 0;
+    const std::string places = name.substr(name.find(' '));
+    char rest = 0;
+    if (std::sscanf(places.c_str(), "%u.%u%c", &set, &binding, &rest) != 2)
+        return invalidArgument("\"" + name + "\" is no \"" + name.substr(0, name.find(' ')) + " SET.BINDING\"");
+    return std::pair<uint32_t, uint32_t>{set, binding};
+}
+
 template <class Number>
 reference::Scalar<Number> scalarOf(reference::ScalarKind kind, const std::string& text) {
     using reference::ScalarKind;
@@ -112,14 +150,18 @@ Status applySetting(const std::string& setting, Invocation& invocation) {
     const size_t equals = setting.find('=');
     if (equals == std::string::npos) return invalidArgument("\"" + setting + "\" has no \"=\"");
     const std::string name = setting.substr(0, equals), value = setting.substr(equals + 1);
-    if (name.starts_with("buffer")) {
-        unsigned set = 0, binding = 0;
-        if (std::sscanf(name.c_str(), "buffer %u.%u", &set, &binding) != 2) {
-            return invalidArgument("\"" + name + "\" is no \"buffer SET.BINDING\"");
-        }
+    if (name.starts_with("buffer ")) {
+        const auto place = placeOf(name);
         auto bytes = parseBytes(value);
+        if (!place) return place.error();
         if (!bytes) return bytes.error();
-        invocation.buffers[{set, binding}] = std::move(*bytes);
+        invocation.buffers[*place] = std::move(*bytes);
+    } else if (name.starts_with("image ")) {
+        const auto place = placeOf(name);
+        auto image = parseImage(value);
+        if (!place) return place.error();
+        if (!image) return image.error();
+        invocation.images[*place] = std::move(*image);
     } else if (name == "push") {
         auto bytes = parseBytes(value);
         if (!bytes) return bytes.error();

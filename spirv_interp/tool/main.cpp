@@ -55,9 +55,11 @@ int parseAndPerform(int argc, char** argv) {
         return sub;
     };
     const auto withInputs = [&](CLI::App* sub) {
-        sub->add_option("settings", a.settings,
-                        "NAME=1,2,3 (also locationN, FragCoord...), \"buffer SET.BINDING=f:1,2,3\", push=f:..., "
-                        "groups=4,1,1; bytes are h: f: d: b: s: i: u: l: or zero:SIZE");
+        sub->add_option(
+            "settings", a.settings,
+            "NAME=1,2,3 (also locationN, FragCoord...), \"buffer SET.BINDING=f:1,2,3\", \"image "
+            "SET.BINDING=WxHxD:f:...\" (f:, i:, u: or zero, four values a texel), push=f:..., groups=4,1,1; "
+            "bytes are h: f: d: b: s: i: u: l: or zero:SIZE");
         sub->add_option("--inputs", a.description, "A file of such settings, one a line");
     };
     add("validate", "Whether the module is valid and can be run",

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "spirv_interp/reference/interpreter.h"
-#include "spirv_interp/tool/invocation.h"
+#include "spirv_interp/tool/invocation_resources.h"
 #include "spirv_interp/tool/module_input.h"
 
 namespace vernier::tool {

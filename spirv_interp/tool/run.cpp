@@ -7,6 +7,7 @@
 
 #include "spirv_interp/reference/module_data.h"
 #include "spirv_interp/reference/number_ops.h"
+#include "spirv_interp/tool/bindings.h"
 #include "spirv_interp/tool/reference_run.h"
 #include "spirv_interp/tool/scalar_text.h"
 #include "spirv_interp/tool/tool.h"
@@ -123,52 +124,6 @@ bool hasDoubles(const reference::Module& module) {
         return type.kind == reference::TypeKind::floating && type.width == 64;
     });
 }
-
-/// The descriptors of a program over the buffers of an invocation.
-struct Bindings {
-    std::vector<BufferBinding> buffers;
-    std::vector<ImageBinding> images;
-    std::vector<const void*> samplers;
-    std::vector<uint32_t> base, count;
-
-    Bindings(const ir::Program& program, Invocation& invocation) {
-        for (const ir::Resource& r : program.resources) {
-            const bool isPush = r.kind == ir::ResourceKind::pushConstants;
-            const bool isBuffer =
-                isPush || r.kind == ir::ResourceKind::uniformBuffer || r.kind == ir::ResourceKind::storageBuffer;
-            const uint32_t descriptors = r.kind == ir::ResourceKind::workgroupMemory ? 0 : std::max(1u, r.arraySize);
-            count.push_back(descriptors);
-            base.push_back(static_cast<uint32_t>(isBuffer                              ? buffers.size()
-                                                 : r.kind == ir::ResourceKind::sampler ? samplers.size()
-                                                                                       : images.size()));
-            for (uint32_t k = 0; k < descriptors; ++k) {
-                if (!isBuffer) {
-                    // Unbound: reads give 0.
-                    if (r.kind == ir::ResourceKind::sampler) samplers.push_back(nullptr);
-                    if (r.kind != ir::ResourceKind::sampler) images.push_back({});
-                    continue;
-                }
-                const auto found = invocation.buffers.find({r.set, r.binding});
-                std::vector<std::byte>* bytes = isPush                              ? &invocation.pushConstants
-                                                : found != invocation.buffers.end() ? &found->second
-                                                                                    : nullptr;
-                buffers.push_back(bytes == nullptr || k > 0
-                                      ? BufferBinding{}
-                                      : BufferBinding{bytes->data(), static_cast<uint32_t>(bytes->size())});
-            }
-        }
-    }
-    ResourceBindings get() const {
-        ResourceBindings bindings;
-        bindings.buffers = buffers.data();
-        bindings.images = images.data();
-        bindings.samplers = samplers.data();
-        bindings.base = base.data();
-        bindings.count = count.data();
-        bindings.combine = [](const ImageBinding& image, const void*) { return image; };
-        return bindings;
-    }
-};
 
 uint32_t inputWord(const ir::InterfaceSlot& slot, const Words& words) {
     uint32_t word = 0;

@@ -103,6 +103,19 @@ const Type* blockOf(const ModuleData& module, uint32_t set, uint32_t binding) {
     return nullptr;
 }
 
+void printImage(std::pair<uint32_t, uint32_t> place, const Image& before, const Image& after) {
+    if (before.texels == after.texels) return;
+    std::printf("  image %u.%u:\n", place.first, place.second);
+    const auto width = static_cast<size_t>(after.extent[0]), height = static_cast<size_t>(after.extent[1]);
+    for (size_t k = 0; k < after.texels.size(); ++k) {
+        if (before.texels[k] == after.texels[k]) continue;
+        std::printf("    [%zu, %zu, %zu] =", k % width, k / width % height, k / width / height);
+        for (const uint32_t word : after.texels[k])
+            std::printf(" %s", scalarText(after.floating ? ScalarKind::float32 : ScalarKind::int32, word).c_str());
+        std::printf("\n");
+    }
+}
+
 }  // namespace
 
 std::string scalarText(ScalarKind kind, uint64_t bits) {
@@ -150,6 +163,7 @@ void printChanges(const reference::Module& module, const Invocation& before, con
         std::printf("  buffer %u.%u:\n", place.first, place.second);
         BlockPrinter(module.data(), old, bytes).visit(*block, 0, "", 0, false);
     }
+    for (const auto& [place, image] : after.images) printImage(place, before.images.at(place), image);
 }
 
 }  // namespace vernier::tool
