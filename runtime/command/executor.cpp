@@ -71,6 +71,7 @@ struct Executor::DispatchWork {
     WorkGroupContext::Grid grid;
     command::BufferRange arguments;  // buffer not nullptr: VkDispatchIndirectCommand
     PassStatistics* statistics;
+    std::span<RunningQuery* const> queries;  // that are open
 };
 
 Executor::Executor(Device& device)
@@ -88,6 +89,7 @@ void Executor::run(const CommandBuffer& commands) {
     indices_ = {};
     runAll(commands);
     if (pass_ != nullptr) run(command::EndRendering{});
+    queries_.abandon();
 }
 
 bool Executor::finish() {
@@ -316,30 +318,36 @@ void Executor::dispatch(const DispatchWork& work) {
     DispatchWork& kept = *dispatchArena_.create(work);
     kept.pipeline = computePipeline_;
     kept.resources = computeResources_;
-    scheduler_.submit([this, &kept] { runDispatch(kept); });
+    kept.queries = dispatchArena_.copy(std::span<RunningQuery* const>(queries_.open()));
+    for (RunningQuery* query : kept.queries) queries_.addPart(*query);
+    scheduler_.submit([this, &kept] {
+        const PassStatistics counted = runDispatch(kept);
+        count(counted, kept.statistics);
+        for (RunningQuery* query : kept.queries) queries_.partEnded(*query, counted);
+    });
 }
 
-void Executor::runDispatch(const DispatchWork& work) {
+PassStatistics Executor::runDispatch(const DispatchWork& work) {
+    PassStatistics counted;
     WorkGroupContext::Grid grid = work.grid;
     if (work.arguments.buffer != nullptr) {
         const auto a = argumentsAt<VkDispatchIndirectCommand>(work.arguments, 0);
-        if (!a) return;
+        if (!a) return counted;
         grid.count = {a->x, a->y, a->z};
-        if (!checkGroupCounts(grid.count)) return;
+        if (!checkGroupCounts(grid.count)) return counted;
     }
-    if (grid.size() == 0) return;
+    if (grid.size() == 0) return counted;
     if (!dispatcher_.run(*work.pipeline, work.resources, grid)) lost_ = true;
-    PassStatistics counted;
     counted.computeInvocations = grid.size() * work.pipeline->invocations();
-    count(counted, work.statistics);
+    return counted;
 }
 
 void Executor::run(const command::Dispatch& command) {
-    dispatch({nullptr, {}, {command.count, command.base}, {}, command.statistics});
+    dispatch({nullptr, {}, {command.count, command.base}, {}, command.statistics, {}});
 }
 
 void Executor::run(const command::DispatchIndirect& command) {
-    dispatch({nullptr, {}, {}, command.arguments, command.statistics});
+    dispatch({nullptr, {}, {}, command.arguments, command.statistics, {}});
 }
 
 void Executor::run(const command::ExecuteCommands& command) {

@@ -1,7 +1,7 @@
 // Walks through the commands of command buffers on the queue's thread and makes passes, dispatches and transfers pieces
 // of work for all threads, with the memory that each reads and writes. Work that does not touch the same memory runs
 // side by side, whatever barriers were recorded; all other work in the order of the commands. What the walk itself
-// needs to know (indirect arguments, queries, events) waits.
+// needs to know (indirect arguments, events) waits.
 #pragma once
 
 #include <array>
@@ -15,6 +15,7 @@
 #include "runtime/command/command_buffer.h"
 #include "runtime/command/device.h"
 #include "runtime/command/dispatcher.h"
+#include "runtime/command/running_queries.h"
 #include "runtime/command/scheduler.h"
 #include "runtime/raster/render_pass.h"
 #include "runtime/raster/render_workers.h"
@@ -37,6 +38,13 @@ class Executor {
 #include "runtime/command/commands.def"
 #undef VERNIER_COMMAND
 
+    /// The segments of a pass that count for a query.
+    struct QueryPart {
+        RunningQuery* query;
+        uint32_t first, end;
+    };
+    static constexpr uint32_t kToTheEnd = ~0u;
+
     /// A pass that is recorded, waits, or runs, with all that its draws point to.
     struct PassWork {
         explicit PassWork(RenderWorkers& workers) : pass(workers) {}
@@ -47,6 +55,7 @@ class Executor {
         bool writesVertices = false;  // vertex programs of it write memory
         AccessSet geometry;           // what its vertex stage reads
         AccessSet rest;               // attachments, and what fragment programs reach
+        std::vector<QueryPart> queries;
     };
     /// One dispatch that waits or runs; lies in dispatchArena_.
     struct DispatchWork;
@@ -60,9 +69,10 @@ class Executor {
     void draw(const command::Draw& command);
     void refreshDrawBindings();
     void dispatch(const DispatchWork& work);
-    void runDispatch(const DispatchWork& work);
+    PassStatistics runDispatch(const DispatchWork& work);
     void count(const PassStatistics& difference, PassStatistics* sink);
-    PassStatistics totals() const;
+    void addQueryPart(PassWork& work, RunningQuery& query, uint32_t first);
+    void writeTimestamps(QueryPool& pool, uint32_t query, uint32_t views);
     uint32_t viewCount() const {
         return pass_ != nullptr && views_ != 0 ? static_cast<uint32_t>(std::popcount(views_)) : 1;
     }
@@ -75,9 +85,8 @@ class Executor {
     uint32_t views_ = 0;        // of it
     std::atomic<bool> lost_{false};
 
-    mutable std::mutex endedMutex_;      // of what follows
+    std::mutex endedMutex_;              // of what follows, and of sinks of statistics
     std::vector<PassWork*> idlePasses_;  // the one that ended last is taken first: its memory is in the caches
-    PassStatistics finished_;            // of the passes and dispatches that have ended
     std::atomic<uint32_t> idleCount_{0};
 
     /// What descriptors and push constants draws, or dispatches, find.
@@ -104,13 +113,7 @@ class Executor {
     const ComputePipeline* computePipeline_ = nullptr;
     ResourceBindings computeResources_;
 
-    struct ActiveQuery {
-        QueryPool* pool;
-        uint32_t query;
-        uint32_t views;
-        PassStatistics start;
-    };
-    std::vector<ActiveQuery> queries_;
+    RunningQueries queries_;
 
     Scheduler scheduler_;  // last: its work uses everything above
 };

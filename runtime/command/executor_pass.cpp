@@ -104,7 +104,7 @@ void Executor::run(const command::BeginRendering& command) {
     addTarget(targets.depthStencil, layers, work.rest);
     addTarget(targets.depthStencilResolve, layers, work.rest);
     work.pass.begin(targets);
-    work.pass.setExactCounts(!queries_.empty());
+    for (RunningQuery* query : queries_.open()) addQueryPart(work, *query, 0);
     pass_ = &work;
     views_ = command.viewMask;
     streamsChanged_ = drawBindings_.changed = true;
@@ -138,6 +138,9 @@ void Executor::submitPass(PassWork& work) {
 void Executor::endPass(PassWork& work) {
     if (!work.pass.end()) lost_ = true;
     count(work.pass.statistics(), work.sink);
+    for (const QueryPart& part : work.queries)
+        queries_.partEnded(*part.query, work.pass.statistics(part.first, part.end));
+    work.queries.clear();
     work.arena.reset();
     const std::lock_guard lock(endedMutex_);
     idlePasses_.push_back(&work);
@@ -164,51 +167,74 @@ void Executor::run(const command::ClearAttachments& command) {
 }
 
 void Executor::count(const PassStatistics& difference, PassStatistics* sink) {
+    if (sink == nullptr) return;
     const std::lock_guard lock(endedMutex_);
-    finished_ = combine(finished_, difference, std::plus<>{});
-    if (sink != nullptr) *sink = combine(*sink, difference, std::plus<>{});
+    *sink = combine(*sink, difference, std::plus<>{});
 }
 
-PassStatistics Executor::totals() const {
-    const std::lock_guard lock(endedMutex_);
-    return pass_ != nullptr ? combine(finished_, pass_->pass.statistics(), std::plus<>{}) : finished_;
+/// What the pass counts from the segment on is the query's.
+void Executor::addQueryPart(PassWork& work, RunningQuery& query, uint32_t first) {
+    work.pass.countExactly();
+    work.queries.push_back({&query, first, kToTheEnd});
+    queries_.addPart(query);
 }
 
 void Executor::run(const command::BeginQuery& command) {
-    catchUp();
-    queries_.push_back({command.pool, command.query, viewCount(), totals()});
-    if (pass_ != nullptr) pass_->pass.setExactCounts(true);
+    queries_.begin(*command.pool, command.query, viewCount());
+    if (pass_ != nullptr) addQueryPart(*pass_, *queries_.open().back(), pass_->pass.nextSegment());
 }
 
 void Executor::run(const command::EndQuery& command) {
-    catchUp();
-    for (auto query = queries_.begin(); query != queries_.end(); ++query) {
-        if (query->pool != command.pool || query->query != command.query) continue;
-        command.pool->write(command.query, combine(totals(), query->start, std::minus<>{}));
-        // With multiview a query takes as many as there are views: "the first contains the result, the others zero".
-        for (uint32_t n = 1; n < query->views; ++n) command.pool->write(command.query + n, {});
-        queries_.erase(query);
-        if (pass_ != nullptr) pass_->pass.setExactCounts(!queries_.empty());
-        return;
+    RunningQuery* query = queries_.find(*command.pool, command.query);
+    if (query == nullptr) return;
+    if (pass_ != nullptr) {
+        const uint32_t end = pass_->pass.nextSegment();
+        for (QueryPart& part : pass_->queries)
+            if (part.query == query && part.end == kToTheEnd) part.end = end;
     }
+    queries_.close(*query);
 }
 
-void Executor::run(const command::WriteTimestamp& command) {
-    catchUp();
+void Executor::writeTimestamps(QueryPool& pool, uint32_t query, uint32_t views) {
     const uint64_t now = nowNanoseconds();
-    for (uint32_t n = 0; n < viewCount(); ++n) command.pool->writeTimestamp(command.query + n, now);
+    for (uint32_t n = 0; n < views; ++n) pool.writeTimestamp(query + n, now);
+}
+
+/// Everything before it is done when a time stamp is taken, and nothing behind it waits; inside a pass, whose draws are
+/// not done one by one, what is recorded is done first.
+void Executor::run(const command::WriteTimestamp& command) {
+    if (pass_ != nullptr) {
+        catchUp();
+        return writeTimestamps(*command.pool, command.query, viewCount());
+    }
+    scheduler_.nextAccesses();
+    command.pool->hold();
+    scheduler_.submit(
+        [this, pool = command.pool, query = command.query] {
+            writeTimestamps(*pool, query, 1);
+            pool->release();
+        },
+        ~Scheduler::Mask{0});
 }
 
 void Executor::run(const command::ResetQueries& command) {
+    scheduler_.waitUntil([&] { return !command.pool->held(); });
     command.pool->reset(command.first, command.count);
 }
 
 void Executor::run(const command::CopyQueryResults& command) {
     const Buffer& buffer = *command.buffer;
     if (command.offset >= buffer.size()) return;
-    catchUp();
-    command.pool->results(command.first, command.count, buffer.data() + command.offset, buffer.size() - command.offset,
-                          command.stride, command.flags);
+    std::byte* to = buffer.data() + command.offset;
+    const VkDeviceSize size = buffer.size() - command.offset;
+    scheduler_.nextAccesses().write(to, size);
+    command.pool->hold();
+    scheduler_.submit(
+        [command, to, size] {
+            command.pool->results(command.first, command.count, to, size, command.stride, command.flags);
+            command.pool->release();
+        },
+        ~Scheduler::Mask{0});
 }
 
 }  // namespace vernier

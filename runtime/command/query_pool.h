@@ -4,6 +4,7 @@
 #include <vulkan/vulkan_core.h>
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <mutex>
 #include <vector>
@@ -24,6 +25,11 @@ class QueryPool {
     void write(uint32_t query, const PassStatistics& difference);
     void writeTimestamp(uint32_t query, uint64_t nanoseconds);
 
+    /// While somebody holds the pool, results are still to be written: a reset has to wait.
+    void hold() { ++holders_; }
+    void release() { --holders_; }
+    bool held() const { return holders_ != 0; }
+
     /// vkGetQueryPoolResults into `data`. VK_NOT_READY when something is missing and no wait was asked for; a wait is
     /// for the caller to do.
     VkResult results(uint32_t first, uint32_t count, std::byte* data, size_t size, VkDeviceSize stride,
@@ -37,6 +43,7 @@ class QueryPool {
     VkQueryType type_;
     VkQueryPipelineStatisticFlags statistics_;
     uint32_t valuesPerQuery_;
+    std::atomic<uint32_t> holders_{0};
     mutable std::mutex mutex_;
     std::vector<Query> queries_;
 };

@@ -6,7 +6,6 @@
 #include <atomic>
 #include <bit>
 #include <deque>
-#include <variant>
 #include <vector>
 
 #include "runtime/raster/attachment_ops.h"
@@ -21,10 +20,18 @@ namespace {
 /// between geometry and tiles, but leaves each tile enough primitives for its own colours and depths to stay there.
 constexpr uint32_t kChunksPerWave = 64;
 
-/// One step of a wave: a chunk's worth of primitives, or a clear.
+/// A draw, or a clear.
+struct Command {
+    uint32_t draw = 0;  // index; does not count for a clear
+    const ClearCommand* clear = nullptr;
+    uint32_t segment = 0;
+};
+
+/// One step of a wave: a chunk's worth of primitives of one segment, or a clear.
 struct Step {
     std::vector<PrimitiveRange> ranges;
     const ClearCommand* clear = nullptr;
+    uint32_t segment = 0;
     uint32_t primitives = 0;
 };
 
@@ -40,11 +47,12 @@ struct Wave {
     std::vector<Chunk> chunks;
 };
 
-/// What a thread counts for one pass.
-struct alignas(64) ThreadCounts {
-    PassStatistics sums;
+/// What a thread counts for one pass, by segment. Cycles, and what is cleared, are the first segment's.
+struct ThreadCounts {
+    std::vector<PassStatistics> segments;
 
-    void add(GeometryStatistics& geometry) {
+    void add(uint32_t segment, GeometryStatistics& geometry) {
+        PassStatistics& sums = segments[segment];
         sums.inputPrimitives += geometry.inputPrimitives;
         sums.vertexInvocations += geometry.vertexInvocations;
         sums.clippingInvocations += geometry.clippingInvocations;
@@ -52,10 +60,6 @@ struct alignas(64) ThreadCounts {
         sums.clippedPrimitives += geometry.clippedPrimitives;
         sums.rasterPrimitives += geometry.rasterPrimitives;
         geometry = {};
-    }
-    void add(PassStatistics& fragments) {
-        sums = combine(sums, fragments, std::plus<>{});
-        fragments = {};
     }
 };
 
@@ -99,7 +103,6 @@ struct RenderPass::Impl {
                 area.offset.y + static_cast<int32_t>(area.extent.height)};
     }
     void resolve();
-    void sumStatistics();
 
     RenderWorkers& workers;
     ThreadPool& pool;
@@ -107,13 +110,13 @@ struct RenderPass::Impl {
     PassTargets targets;
     TileGrid grid;
     std::vector<ThreadCounts> counts;
-    PassStatistics statistics;
-    uint64_t inputVertices = 0;
+    std::vector<uint64_t> inputVertices;  // by segment
+    uint32_t segment = 0;                 // of what is recorded next
 
-    // Recorded and not yet rendered. A command is the index of a draw, or a clear.
+    // Recorded and not yet rendered.
     std::vector<PreparedDraw> draws;
     std::deque<ClearCommand> clears;
-    std::vector<std::variant<uint32_t, const ClearCommand*>> commands;
+    std::vector<Command> commands;
     uint64_t recordedPrimitives = 0;
 
     // Being rendered: tiles of one wave beside the geometry of the other.
@@ -143,30 +146,32 @@ PixelRect RenderPass::Impl::tileRect(uint32_t tile) const {
 /// Cuts recorded commands into at most kChunksPerWave steps, from (nextCommand, nextPrimitive) on.
 void RenderPass::Impl::cutIntoSteps(Wave& wave) {
     wave.stepCount = 0;
-    const auto newStep = [&]() -> Step& {
+    const auto newStep = [&](const Command& command) -> Step& {
         if (wave.stepCount == wave.steps.size()) wave.steps.emplace_back();
         Step& step = wave.steps[wave.stepCount++];
         step.ranges.clear();
-        step.clear = nullptr;
+        step.clear = command.clear;
+        step.segment = command.segment;
         step.primitives = 0;
         return step;
     };
     for (; nextCommand < commands.size(); ++nextCommand) {
-        if (const auto* clear = std::get_if<const ClearCommand*>(&commands[nextCommand])) {
+        const Command& command = commands[nextCommand];
+        if (command.clear != nullptr) {
             if (wave.stepCount == kChunksPerWave) break;
-            newStep().clear = *clear;
+            newStep(command);
             continue;
         }
-        const uint32_t index = std::get<uint32_t>(commands[nextCommand]);
-        const uint64_t total = draws[index].primitives();
+        const uint64_t total = draws[command.draw].primitives();
         while (nextPrimitive < total) {
-            const bool open = wave.stepCount > 0 && wave.steps[wave.stepCount - 1].clear == nullptr &&
-                              wave.steps[wave.stepCount - 1].primitives < kChunkPrimitives;
+            const Step* last = wave.stepCount > 0 ? &wave.steps[wave.stepCount - 1] : nullptr;
+            const bool open = last != nullptr && last->clear == nullptr && last->segment == command.segment &&
+                              last->primitives < kChunkPrimitives;
             if (!open && wave.stepCount == kChunksPerWave) break;
-            Step& step = open ? wave.steps[wave.stepCount - 1] : newStep();
+            Step& step = open ? wave.steps[wave.stepCount - 1] : newStep(command);
             const auto count =
                 static_cast<uint32_t>(std::min<uint64_t>(kChunkPrimitives - step.primitives, total - nextPrimitive));
-            step.ranges.push_back({index, nextPrimitive, count});
+            step.ranges.push_back({command.draw, nextPrimitive, count});
             step.primitives += count;
             nextPrimitive += count;
         }
@@ -177,19 +182,20 @@ void RenderPass::Impl::cutIntoSteps(Wave& wave) {
 }
 
 void RenderPass::Impl::runChunk(Wave& wave, uint32_t index, uint32_t thread) {
-    const CycleCount cycles(counts[thread].sums.vertexCycles);
+    const CycleCount cycles(counts[thread].segments[0].vertexCycles);
     wave.chunks[index].clear();
     if (wave.steps[index].clear != nullptr) return;
     Assembler& assembler = workers.enter(thread, number, targets).assembler;
     if (!assembler.run(draws, token, wave.steps[index].ranges, grid, wave.chunks[index]))
         outOfBudget.store(true, std::memory_order_relaxed);
-    counts[thread].add(assembler.statistics());
+    counts[thread].add(wave.steps[index].segment, assembler.statistics());
 }
 
 void RenderPass::Impl::prepare() {
     prepared = true;
     token = workers.takeNumbers(draws.size());
     nextPrimitive = nextCommand = 0;
+    for (ThreadCounts& thread : counts) thread.segments.resize(segment + 1);
     cutIntoSteps(waves[0]);
     pool.parallelFor(waves[0].stepCount, [&](uint32_t index, uint32_t thread) { runChunk(waves[0], index, thread); });
 }
@@ -215,11 +221,12 @@ void RenderPass::Impl::collectTileWork(const Wave& wave) {
     for (uint32_t n = 0; n < wave.stepCount; ++n) {
         if (const ClearCommand* clear = wave.steps[n].clear; clear != nullptr) {
             for (uint32_t tile = 0; tile < grid.count(); ++tile)
-                if (isDrawn(layerOf(tile)) && clear->clears(layerOf(tile))) add(tile, {nullptr, clear, 0, 0, false});
+                if (isDrawn(layerOf(tile)) && clear->clears(layerOf(tile)))
+                    add(tile, {nullptr, clear, 0, 0, wave.steps[n].segment, false});
             continue;
         }
         for (const TileRange& range : wave.chunks[n].ranges)
-            add(range.tile, {&wave.chunks[n], nullptr, range.first, range.count, range.large});
+            add(range.tile, {&wave.chunks[n], nullptr, range.first, range.count, wave.steps[n].segment, range.large});
     }
     if (loaded) return;
     // The first wave touches every tile: load operations clear where nothing is drawn, too.
@@ -248,7 +255,8 @@ uint64_t RenderPass::Impl::loadTile(const PixelRect& rect, uint32_t layer, bool 
 }
 
 void RenderPass::Impl::runTile(uint32_t index, uint32_t thread, bool mayHide) {
-    const CycleCount cycles(counts[thread].sums.rasterCycles);
+    std::vector<PassStatistics>& segments = counts[thread].segments;
+    const CycleCount cycles(segments[0].rasterCycles);
     const uint32_t tile = activeTiles[index];
     const PixelRect rect = tileRect(tile);
     const uint32_t inLayer = tile % grid.perLayer();
@@ -261,12 +269,11 @@ void RenderPass::Impl::runTile(uint32_t index, uint32_t thread, bool mayHide) {
                           tileWork[tile],
                           cleared};
     const VisibleStart start = mayHide ? visibleStart(targets, input) : VisibleStart{};
-    if (!loaded) counts[thread].sums.clearedPixels += loadTile(rect, layerOf(tile), start.replacesColors);
+    if (!loaded) segments[0].clearedPixels += loadTile(rect, layerOf(tile), start.replacesColors);
     if (tileWork[tile].empty()) return;
     TileRenderer& renderer = workers.enter(thread, number, targets).renderer;
     renderer.render(rect, layerOf(tile), input.tileX, input.tileY, cleared, draws, token, tileWork[tile], start.item,
-                    start.entry);
-    counts[thread].add(renderer.fragments().statistics());
+                    start.entry, segments);
     if (renderer.fragments().outOfBudget()) outOfBudget.store(true, std::memory_order_relaxed);
 }
 
@@ -300,7 +307,6 @@ void RenderPass::Impl::renderRecorded() {
     clears.clear();
     commands.clear();
     recordedPrimitives = 0;
-    sumStatistics();
 }
 
 void RenderPass::Impl::resolve() {
@@ -318,12 +324,6 @@ void RenderPass::Impl::resolve() {
     });
 }
 
-void RenderPass::Impl::sumStatistics() {
-    statistics = {};
-    statistics.inputVertices = inputVertices;
-    for (const ThreadCounts& thread : counts) statistics = combine(statistics, thread.sums, std::plus<>{});
-}
-
 RenderPass::RenderPass(RenderWorkers& workers) : impl_(std::make_unique<Impl>(workers)) {}
 RenderPass::~RenderPass() = default;
 
@@ -336,12 +336,13 @@ void RenderPass::begin(const PassTargets& targets) {
     self.stippled = false;
     self.stipple = 0;
     self.outOfBudget = false;
-    self.inputVertices = 0;
-    self.statistics = {};
+    self.exactCounts = false;
+    self.inputVertices.assign(1, 0);
+    self.segment = 0;
     self.activeTiles.clear();
     self.tileWork.assign(self.grid.count(), {});
     self.number = self.workers.takeNumbers(1);
-    std::fill(self.counts.begin(), self.counts.end(), ThreadCounts{});
+    for (ThreadCounts& thread : self.counts) thread.segments.assign(1, {});
 }
 
 void RenderPass::draw(const DrawCall& call) {
@@ -358,7 +359,7 @@ void RenderPass::draw(const DrawCall& call) {
 void RenderPass::Impl::add(PreparedDraw draw) {
     Impl& self = *this;
     const DrawCall& call = draw.call;
-    for (const VertexRun& run : draw.runs) self.inputVertices += uint64_t{run.vertices} * call.instances;
+    for (const VertexRun& run : draw.runs) self.inputVertices[self.segment] += uint64_t{run.vertices} * call.instances;
     const auto index = static_cast<uint32_t>(self.draws.size());
     // Neighbours that differ in geometry only fill the same fragment batches.
     const bool same = index > 0 && self.draws.back().call.pipeline == call.pipeline &&
@@ -368,11 +369,16 @@ void RenderPass::Impl::add(PreparedDraw draw) {
     self.recordedPrimitives += draw.primitives();
     self.stippled |= draw.state->stippledLine;
     self.draws.push_back(std::move(draw));
-    self.commands.emplace_back(index);
+    self.commands.push_back({index, nullptr, self.segment});
 }
 
-void RenderPass::setExactCounts(bool exact) {
-    impl_->exactCounts = exact;
+void RenderPass::countExactly() {
+    impl_->exactCounts = true;
+}
+
+uint32_t RenderPass::nextSegment() {
+    impl_->inputVertices.push_back(0);
+    return ++impl_->segment;
 }
 
 void RenderPass::clear(VkImageAspectFlags aspect, uint32_t color, const VkClearValue& value, const VkClearRect& rect) {
@@ -386,7 +392,7 @@ void RenderPass::clear(VkImageAspectFlags aspect, uint32_t color, const VkClearV
     const bool allViews = self.targets.viewMask != 0;
     self.clears.push_back({aspect, color, value, pixels, allViews ? 0 : rect.baseArrayLayer,
                            allViews ? self.grid.layers : rect.layerCount});
-    self.commands.emplace_back(&self.clears.back());
+    self.commands.push_back({0, &self.clears.back(), self.segment});
 }
 
 size_t RenderPass::recordedDraws() const {
@@ -412,8 +418,14 @@ bool RenderPass::end() {
     return !self.outOfBudget;
 }
 
-const PassStatistics& RenderPass::statistics() const {
-    return impl_->statistics;
+PassStatistics RenderPass::statistics(uint32_t first, uint32_t end) const {
+    PassStatistics sum;
+    for (size_t s = first; s < std::min<size_t>(end, impl_->inputVertices.size()); ++s) {
+        sum.inputVertices += impl_->inputVertices[s];
+        for (const ThreadCounts& thread : impl_->counts)
+            if (s < thread.segments.size()) sum = combine(sum, thread.segments[s], std::plus<>{});
+    }
+    return sum;
 }
 
 }  // namespace vernier

@@ -26,9 +26,11 @@ class RenderPass {
     void draw(const DrawCall& call);
     /// vkCmdClearAttachments: `aspect` colour (attachment index `color`), depth and/or stencil inside `rect`.
     void clear(VkImageAspectFlags aspect, uint32_t color, const VkClearValue& value, const VkClearRect& rect);
-    /// While set, work that a later primitive hides is done all the same, because someone counts its fragments and
-    /// samples (queries). Call it before draws or after flush().
-    void setExactCounts(bool exact);
+    /// From here to the end, and for what is recorded already, work that a later primitive hides is done all the same,
+    /// because someone counts its fragments and samples (queries).
+    void countExactly();
+    /// What is recorded from here on is counted apart. Returns the number of the segment; that of the first is 0.
+    uint32_t nextSegment();
     /// Since begin() or flush(). Draws take memory until they are rendered; with multiview a draw counts once per view.
     size_t recordedDraws() const;
     uint64_t recordedPrimitives() const;
@@ -40,8 +42,8 @@ class RenderPass {
     /// Runs what is left, resolves, and stores. Returns false when a shader ran out of its loop budget.
     bool end();
 
-    /// Sums since begin(); complete after flush() or end().
-    const PassStatistics& statistics() const;
+    /// Sums since begin(), of all segments or of those from `first` to before `end`; complete after flush() or end().
+    PassStatistics statistics(uint32_t first = 0, uint32_t end = ~0u) const;
 
   private:
     struct Impl;

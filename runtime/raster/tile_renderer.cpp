@@ -322,9 +322,17 @@ void TileRenderer::drawSmall(const PreparedDraw& draw, uint32_t count) {
     finish();
 }
 
+/// Draws all that waits; what has been counted is the segment's.
+void TileRenderer::finishSegment(PassStatistics& counts) {
+    flushSmall();
+    fragments_.flush();
+    counts = combine(counts, fragments_.statistics(), std::plus<>{});
+    fragments_.statistics() = {};
+}
+
 void TileRenderer::render(const PixelRect& rect, uint32_t layer, int32_t tileX, int32_t tileY, bool cleared,
                           std::span<const PreparedDraw> draws, uint64_t token, std::span<const TileWork> work,
-                          size_t firstItem, uint32_t firstEntry) {
+                          size_t firstItem, uint32_t firstEntry, std::span<PassStatistics> counts) {
     if (layer != layer_) selectLayer(layer);
     if (cleared) {
         coarse_.setCleared(depthStorage(targets_->depthStencil.format),
@@ -335,8 +343,13 @@ void TileRenderer::render(const PixelRect& rect, uint32_t layer, int32_t tileX, 
     tileX_ = tileX;
     tileY_ = tileY;
     fragments_.startTile(tileX, tileY);
+    uint32_t segment = work[firstItem].segment;
     for (size_t index = firstItem; index < work.size(); ++index) {
         const TileWork& item = work[index];
+        if (item.segment != segment) {
+            finishSegment(counts[segment]);
+            segment = item.segment;
+        }
         if (item.clear != nullptr) {
             flushSmall();
             fragments_.flush();
@@ -363,8 +376,7 @@ void TileRenderer::render(const PixelRect& rect, uint32_t layer, int32_t tileX, 
             if (waiting_.count == kSmallGroup) flushSmall();
         }
     }
-    flushSmall();
-    fragments_.flush();
+    finishSegment(counts[segment]);
 }
 
 }  // namespace vernier

@@ -27,7 +27,8 @@ struct TileWork {
     const Chunk* chunk = nullptr;
     const ClearCommand* clear = nullptr;
     uint32_t first = 0, count = 0;
-    bool large = false;  // as in TileRange
+    uint32_t segment = 0;  // of the pass: what is counted apart
+    bool large = false;    // as in TileRange
 };
 
 class TileRenderer {
@@ -36,14 +37,15 @@ class TileRenderer {
     void startPass(const PassTargets& targets);
     /// `rect`: the pixels of the tile inside the render area; `layer`: where it lies. `cleared`: all depth in it was
     /// just cleared by the load operation. `token`: see Assembler::run. Work before entry `firstEntry` of
-    /// work[firstItem] is left out.
+    /// work[firstItem] is left out. What is counted is added to `counts`, by segment.
     void render(const PixelRect& rect, uint32_t layer, int32_t tileX, int32_t tileY, bool cleared,
                 std::span<const PreparedDraw> draws, uint64_t token, std::span<const TileWork> work, size_t firstItem,
-                uint32_t firstEntry);
+                uint32_t firstEntry, std::span<PassStatistics> counts);
 
   private:
     void draw(const Primitive& primitive, const Chunk& chunk, const PreparedDraw& draw, bool coversTile);
     void flushSmall();
+    void finishSegment(PassStatistics& counts);
     void drawSmall(const PreparedDraw& draw, uint32_t count);
     uint32_t testEarly(const PreparedDraw& draw, const TrianglePlanes& planes, uint32_t count);
 

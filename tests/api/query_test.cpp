@@ -1,8 +1,10 @@
 // Queries, and what the counters tell of work that was left out.
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <fstream>
+#include <random>
 
 #include "tests/api/fixture.h"
 
@@ -83,6 +85,72 @@ TEST_F(Query, StatisticsCountWhatTheStagesDo) {
         EXPECT_EQ(values.fragmentInvocations, 200u * instances);
         EXPECT_EQ(values.computeInvocations, 80u);
         EXPECT_EQ(values.value, 0u);
+    }
+}
+
+TEST_F(Query, AnyNumberOfThemInOnePassCountApart) {
+    const VnImage target = image(VK_FORMAT_R8G8B8A8_UNORM, 150, 90);
+    const VnProgram white = program(kFullScreenVertex, kWhiteFragment);
+    std::mt19937 random(7);
+    const auto below = [&](uint32_t bound) { return static_cast<uint32_t>(random() % bound); };
+    struct Expected {
+        VnQuery query;
+        bool statistics;
+        uint64_t samples = 0, draws = 0;
+    };
+    std::vector<Expected> all;
+    for (uint32_t n = 0; n < 60; ++n)
+        all.push_back({query(n % 2 == 0 ? VN_QUERY_OCCLUSION : VN_QUERY_STATISTICS), n % 2 != 0});
+    ASSERT_EQ(vnBindProgram(context_, white), VN_SUCCESS);
+    // Some around passes, the others inside; they overlap as they like, of each kind one at a time.
+    size_t next = 0;
+    for (uint32_t round = 0; round < 12; ++round) {
+        std::vector<Expected*> around, open;
+        for (const bool kind : {false, true})
+            if (below(2) != 0 && next < all.size() && all[next].statistics == kind) around.push_back(&all[next++]);
+        for (Expected* of : around) ASSERT_EQ(vnBeginQuery(context_, of->query), VN_SUCCESS) << lastError();
+        begin(target);
+        for (uint32_t step = 0; step < 40; ++step) {
+            const auto isOpen = [&](bool kind) {
+                const auto same = [&](const Expected* of) { return of->statistics == kind; };
+                return std::any_of(open.begin(), open.end(), same) || std::any_of(around.begin(), around.end(), same);
+            };
+            if (below(3) == 0 && next < all.size() && !isOpen(all[next].statistics)) {
+                open.push_back(&all[next++]);
+                ASSERT_EQ(vnBeginQuery(context_, open.back()->query), VN_SUCCESS) << lastError();
+            }
+            const VkRect2D scissor{{static_cast<int32_t>(below(149)), static_cast<int32_t>(below(89))},
+                                   {1 + below(60), 1 + below(60)}};
+            ASSERT_EQ(vnSetScissor(context_, &scissor), VN_SUCCESS);
+            ASSERT_EQ(vnDraw(context_, 3, 1, 0, 0), VN_SUCCESS) << lastError();
+            const uint64_t covered =
+                uint64_t{std::min(scissor.extent.width, 150u - static_cast<uint32_t>(scissor.offset.x))} *
+                std::min(scissor.extent.height, 90u - static_cast<uint32_t>(scissor.offset.y));
+            for (const auto& list : {around, open}) {
+                for (Expected* of : list) {
+                    of->samples += covered;
+                    ++of->draws;
+                }
+            }
+            if (below(3) == 0 && !open.empty()) {
+                ASSERT_EQ(vnEndQuery(context_, open.front()->query), VN_SUCCESS) << lastError();
+                open.erase(open.begin());
+            }
+        }
+        for (Expected* of : open) ASSERT_EQ(vnEndQuery(context_, of->query), VN_SUCCESS) << lastError();
+        ASSERT_EQ(vnEndPass(context_), VN_SUCCESS);
+        for (Expected* of : around) ASSERT_EQ(vnEndQuery(context_, of->query), VN_SUCCESS) << lastError();
+    }
+    ASSERT_GE(next, 40u);
+    for (size_t n = 0; n < next; ++n) {
+        const VnQueryResult values = result(all[n].query);
+        if (!all[n].statistics) {
+            EXPECT_EQ(values.value, all[n].samples) << n;
+            continue;
+        }
+        EXPECT_EQ(values.fragmentInvocations, all[n].samples) << n;
+        EXPECT_EQ(values.inputVertices, 3 * all[n].draws) << n;
+        EXPECT_EQ(values.clippingInvocations, all[n].draws) << n;
     }
 }
 

@@ -40,7 +40,7 @@ class HiddenWorkTest : public testing::TestWithParam<VkFormat> {
         depthTarget.loadOp = load;
         Pass pass(pool_, {color.cleared({})}, depthTarget, kWidth, kHeight);
         pass.begin();
-        pass.pass().setExactCounts(exact);
+        if (exact) pass.pass().countExactly();
         for (const Draw& draw : draws)
             pass.draw(makePipeline(draw.options), dynamicFor(kWidth, kHeight), draw.vertices);
         pass.end();
