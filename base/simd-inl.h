@@ -72,6 +72,18 @@ HWY_INLINE V fusedMulAdd(D d, V a, V b, V c) {
 #endif
 }
 
+/// Towards zero. Values that do not fit, and NaN, become INT32_MIN: without the corrections that ConvertTo makes.
+HWY_INLINE hn::Vec<hn::ScalableTag<int32_t>> truncateInRange(hn::Vec<hn::ScalableTag<float>> x) {
+    using V = hn::Vec<hn::ScalableTag<int32_t>>;
+#if HWY_TARGET == HWY_AVX3
+    return V{_mm512_cvttps_epi32(x.raw)};
+#elif HWY_TARGET == HWY_AVX2
+    return V{_mm256_cvttps_epi32(x.raw)};
+#else
+    return V{_mm_cvttps_epi32(x.raw)};
+#endif
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace vernier
 HWY_AFTER_NAMESPACE();

@@ -68,16 +68,6 @@ HWY_INLINE VF zeroIfNaN(VF x) {
 HWY_INLINE VF toFloatV(VU code) {
     return hn::ConvertTo(F32(), hn::BitCast(I32(), code));
 }
-/// Towards zero, for |x| < 2^31: without the corrections that ConvertTo makes beyond.
-HWY_INLINE VI truncateInRange(VF x) {
-#if HWY_TARGET == HWY_AVX3
-    return VI{_mm512_cvttps_epi32(x.raw)};
-#elif HWY_TARGET == HWY_AVX2
-    return VI{_mm256_cvttps_epi32(x.raw)};
-#else
-    return VI{_mm_cvttps_epi32(x.raw)};
-#endif
-}
 HWY_INLINE VI signExtendV(VU code, int bits) {
     return hn::ShiftRightSame(hn::BitCast(I32(), hn::ShiftLeftSame(code, 32 - bits)), 32 - bits);
 }

@@ -2,6 +2,7 @@
 
 #include "runtime/limits.h"
 #include "runtime/plan/facts.h"
+#include "runtime/plan/program_facts.h"
 
 namespace vernier {
 namespace {
@@ -56,7 +57,7 @@ Result<std::shared_ptr<const ComputePipeline>> ComputePipeline::create(const Com
 std::vector<Fact> ComputePipeline::explain() const {
     std::vector<Fact> facts;
     const auto add = [&](bool runs, const std::string& what, const std::string& why) {
-        facts.push_back({runs, what, why, {}, 0, 0, 0});
+        facts.push_back({.runs = runs, .what = what, .why = why, .rates = {}});
     };
     const BatchStatistics& statistics = program_->statistics();
     const auto& size = ir().localSize;
@@ -66,6 +67,7 @@ std::vector<Fact> ComputePipeline::explain() const {
             tierName(accuracy_.math) + " maths");
     facts.back().instructions = statistics.instructions;
     facts.back().lanes = statistics.lanes;
+    if (std::optional<Fact> rates = rateFact("compute program", *program_)) facts.push_back(*std::move(rates));
     if (statistics.drawRateInstructions > 0)
         add(true, std::to_string(statistics.drawRateInstructions) + " instructions, once per dispatch and thread",
             "their values are the same for all invocations");

@@ -10,16 +10,13 @@ namespace {
 class FactWriter {
   public:
     explicit FactWriter(Plan& plan) : plan_(plan) {}
-    Fact& runs(std::string what, std::string why) { return add(true, std::move(what), std::move(why)); }
+    void runs(std::string what, std::string why) { add(true, std::move(what), std::move(why)); }
     void leftOut(std::string what, std::string why) { add(false, std::move(what), std::move(why)); }
+    void add(Fact fact) { plan_.facts.push_back(std::move(fact)); }
 
   private:
-    Fact& add(bool runs, std::string what, std::string why) {
-        Fact& fact = plan_.facts.emplace_back();
-        fact.runs = runs;
-        fact.what = std::move(what);
-        fact.why = std::move(why);
-        return fact;
+    void add(bool runs, std::string what, std::string why) {
+        add({.runs = runs, .what = std::move(what), .why = std::move(why), .rates = {}});
     }
     Plan& plan_;
 };
@@ -103,20 +100,7 @@ void fragmentFacts(const ir::Program* fragment, const Plan& plan, FactWriter& fa
 /// How often what is computed, in a program of `stage`.
 void rateFacts(const std::string& stage, const std::string& item, const BatchProgram& program, FactWriter& facts) {
     const BatchStatistics& statistics = program.statistics();
-    std::vector<RateShare> rates = rateShares(program);
-    std::string text;
-    for (const RateShare& share : rates)
-        text += (text.empty() ? "" : ", ") + share.rate + " " + std::to_string(share.operations) + " (cost " +
-                std::to_string(share.cost) + ")";
-    if (!rates.empty()) {
-        Fact& fact = facts.runs("operations of the " + stage + " by rate: " + text,
-                                "how often their values can change, and what they cost, in additions; " +
-                                    count(statistics.instructions, "instruction") + " per " +
-                                    std::to_string(statistics.lanes) + " lanes");
-        fact.rates = std::move(rates);
-        fact.instructions = statistics.instructions;
-        fact.lanes = statistics.lanes;
-    }
+    if (std::optional<Fact> rates = rateFact(stage, program)) facts.add(*std::move(rates));
     if (statistics.drawRateInstructions > 0)
         facts.runs(
             count(statistics.drawRateInstructions, "instruction") + " of the " + stage + ", once per draw and thread",

@@ -22,7 +22,9 @@ Result<std::shared_ptr<const GraphicsPipeline>> GraphicsPipeline::create(const G
 
 std::vector<Fact> GraphicsPipeline::explain(const DynamicState& dynamic) const {
     std::vector<Fact> facts = plan_->facts;
-    const auto leftOut = [&](const char* what, const char* why) { facts.push_back({false, what, why, {}, 0, 0, 0}); };
+    const auto leftOut = [&](const char* what, const char* why) {
+        facts.push_back({.runs = false, .what = what, .why = why, .rates = {}});
+    };
     const auto& viewport = dynamic.viewports[0];
     if (viewport.width == 0 || viewport.height == 0) leftOut("rasterisation", "the viewport is empty");
     const auto& scissor = dynamic.scissors[0];

@@ -14,6 +14,23 @@ std::vector<RateShare> rateShares(const BatchProgram& program) {
     return shares;
 }
 
+std::optional<Fact> rateFact(const std::string& stage, const BatchProgram& program) {
+    Fact fact;
+    fact.rates = rateShares(program);
+    if (fact.rates.empty()) return std::nullopt;
+    std::string text;
+    for (const RateShare& share : fact.rates)
+        text += (text.empty() ? "" : ", ") + share.rate + " " + std::to_string(share.operations) + " (cost " +
+                std::to_string(share.cost) + ")";
+    fact.instructions = program.statistics().instructions;
+    fact.lanes = program.statistics().lanes;
+    fact.what = "operations of the " + stage + " by rate: " + text;
+    fact.why = "how often their values can change, and what they cost, in additions; " +
+               std::to_string(fact.instructions) + (fact.instructions == 1 ? " instruction per " : " instructions per ") +
+               std::to_string(fact.lanes) + " lanes";
+    return fact;
+}
+
 std::string irText(const BatchProgram& program) {
     return ir::print(program.source());
 }

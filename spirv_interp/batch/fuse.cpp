@@ -89,14 +89,10 @@ struct Matcher {
     Match sum(const ir::Inst& inst) const {
         const bool adds = inst.op == ir::Op::fadd;
         if (adds) {
+            if (Match fusion = unpackDot(inst)) return fusion;
             if (Match fusion = dot(inst)) return fusion;
         }
         const auto [left, right] = pair(inst);
-        for (const auto& [factors, other] : {std::pair{left, right}, std::pair{right, left}}) {
-            const ir::Inst* product = adds && !scalar[other] ? innerFloat(factors, ir::Op::fmul) : nullptr;
-            if (product == nullptr) continue;
-            if (Match fusion = unpackedTerm(*product, other)) return fusion;
-        }
         if (const ir::Inst* product = innerFloat(left, ir::Op::fmul)) {
             if (Match fusion = converted(*product, adds ? 1 : -1, right)) return fusion;
             const auto [a, b] = pair(*product);
@@ -132,30 +128,19 @@ struct Matcher {
         return std::nullopt;
     }
 
+    /// Of an integer that is masked by a scalar.
     Match unpacked(ValueId from, ValueId scale, int sign, ValueId last) const {
-        ValueId mask = ir::kNoValue, shift = ir::kNoValue;
-        if (const ir::Inst* masked = innerInteger(from, ir::Op::iand)) {
-            const auto [a, b] = pair(*masked);
-            if (!scalar[a] && !scalar[b]) return std::nullopt;
-            from = scalar[a] ? b : a;
-            mask = scalar[a] ? a : b;
-        }
-        if (const ir::Inst* shifted = innerInteger(from, ir::Op::lshr);
-            shifted != nullptr && scalar[pair(*shifted)[1]]) {
-            shift = pair(*shifted)[1];
-            from = pair(*shifted)[0];
-        }
-        if ((mask == ir::kNoValue && shift == ir::kNoValue) || scalar[from]) return std::nullopt;
-        Fusion fusion{sign == 0  ? Op::unpackMultiply
-                      : sign > 0 ? Op::unpackMultiplyAdd
-                                 : Op::unpackMultiplySubtract,
-                      {from, shift, mask, scale}};
-        if (sign != 0) fusion.operands.push_back(last);
-        return fusion;
+        const ir::Inst* masked = innerInteger(from, ir::Op::iand);
+        if (masked == nullptr) return std::nullopt;
+        auto [word, mask] = pair(*masked);
+        if (scalar[word]) std::swap(word, mask);
+        if (scalar[word] || !scalar[mask]) return std::nullopt;
+        if (sign == 0) return Fusion{Op::unpackMultiply, {word, mask, scale}};
+        return Fusion{sign > 0 ? Op::unpackMultiplyAdd : Op::unpackMultiplySubtract, {word, mask, scale, last}};
     }
 
-    /// A product with a factor that is unpackMultiplySubtract; and a sum, if there is one.
-    Match unpackedTerm(const ir::Inst& product, ValueId sum) const {
+    /// What is unpacked and scaled, less a scalar, times a factor: the unpacking, with the factor as its last operand.
+    Match unpackedTerm(const ir::Inst& product) const {
         const auto factors = pair(product);
         for (const size_t k : {0, 1}) {
             const ir::Inst* difference = innerFloat(factors[k], ir::Op::fsub);
@@ -163,13 +148,32 @@ struct Matcher {
             const auto [scaled, last] = pair(*difference);
             const ir::Inst* scaling = innerFloat(scaled, ir::Op::fmul);
             if (scaling == nullptr || !scalar[last]) continue;
-            const Match unpack = converted(*scaling, -1, last);
+            Match unpack = converted(*scaling, -1, last);
             if (!unpack || unpack->op != Op::unpackMultiplySubtract) continue;
-            Fusion fusion{Op::unpackSubtractTimes, {unpack->operands[0], factors[1 - k]}, 2};
-            if (sum != ir::kNoValue) {
-                fusion = {Op::unpackSubtractTimesAdd, {unpack->operands[0], sum, factors[1 - k]}, 3};
+            unpack->operands.push_back(factors[1 - k]);
+            return unpack;
+        }
+        return std::nullopt;
+    }
+
+    /// A sum of three such terms, with fields of one word.
+    Match unpackDot(const ir::Inst& sum) const {
+        const auto outer = pair(sum);
+        for (const size_t k : {0, 1}) {
+            const ir::Inst* first = innerFloat(outer[k], ir::Op::fadd);
+            if (first == nullptr) continue;
+            const auto inner = pair(*first);
+            std::array<Match, 3> terms;
+            const std::array<ValueId, 3> values{inner[0], inner[1], outer[1 - k]};
+            for (size_t t = 0; t < terms.size(); ++t) {
+                const ir::Inst* product = innerFloat(values[t], ir::Op::fmul);
+                if (product != nullptr) terms[t] = unpackedTerm(*product);
             }
-            fusion.operands.insert(fusion.operands.end(), unpack->operands.begin() + 1, unpack->operands.end());
+            const auto fits = [&](const Match& term) { return term && term->operands[0] == terms[0]->operands[0]; };
+            if (!std::all_of(terms.begin(), terms.end(), fits)) continue;
+            Fusion fusion{Op::unpackDot3, {terms[0]->operands[0]}, terms.size()};
+            for (const size_t part : {4, 1, 2, 3})
+                for (const Match& term : terms) fusion.operands.push_back(term->operands[part]);
             return fusion;
         }
         return std::nullopt;
@@ -256,7 +260,6 @@ struct Matcher {
         if (inst.type == ir::Type::f32) {
             if (inst.op == ir::Op::fadd || inst.op == ir::Op::fsub) return sum(inst);
             if (inst.op != ir::Op::fmul) return std::nullopt;
-            if (Match fusion = unpackedTerm(inst, ir::kNoValue)) return fusion;
             return converted(inst, 0, ir::kNoValue);
         }
         if (inst.type != ir::Type::i32) return std::nullopt;

@@ -11,9 +11,8 @@ namespace vernier::batch {
 
 struct Fusion {
     Op op = Op::multiplyAdd;
-    /// Without the destination. ir::kNoValue: a shift by nothing, or a mask of all bits.
-    std::vector<ir::ValueId> operands;
-    size_t shift = 1;  // which operand is the shift
+    std::vector<ir::ValueId> operands;  // without the destination
+    size_t rows = 0;                    // so many operands behind the first are taken from rows, scalars too
 };
 
 /// The superinstructions of a program.

@@ -38,61 +38,51 @@ VERNIER_ELEMENT(convertMultiply, float, float, (V a, V b), return hn::Mul(conver
 VERNIER_ELEMENT(convertMultiplyAdd, float, float, (V a, V b, V c), return hn::Add(hn::Mul(converted(a), b), c);)
 VERNIER_ELEMENT(convertMultiplySubtract, float, float, (V a, V b, V c), return hn::Sub(hn::Mul(converted(a), b), c);)
 
-/// What unpacking operations have in common, and then what they do with their last operand. Their scalars stand from
-/// operand kScalars on.
-template <int kSign, size_t kScalars = 2>
+HWY_INLINE VU scalarAt(const uint32_t* scalars, const Inst* inst, size_t k) {
+    return hn::Set(kU32, scalars[(*inst)[k]]);
+}
+
+/// float(word & mask) * scale, then + or - a last operand. These scalars are operands kFirst, kFirst + kStep, ...
+template <int kSign, size_t kFirst, size_t kStep>
+HWY_INLINE VF unpacked(const uint32_t* scalars, const Inst* inst, VU word) {
+    const VI bits = hn::BitCast(kI32, hn::And(word, scalarAt(scalars, inst, kFirst)));
+    const VF product =
+        hn::Mul(hn::ConvertTo(kF32, bits), hn::BitCast(kF32, scalarAt(scalars, inst, kFirst + kStep)));
+    if constexpr (kSign == 0) {
+        return product;
+    } else {
+        const VF last = hn::BitCast(kF32, scalarAt(scalars, inst, kFirst + 2 * kStep));
+        return kSign > 0 ? hn::Add(product, last) : hn::Sub(product, last);
+    }
+}
+
+template <int kSign>
 struct Unpack {
-    static constexpr size_t kInsts = instsFor(kScalars + (kSign == 0 ? 3 : 4));
+    static constexpr size_t kInsts = instsFor(kSign == 0 ? 4 : 5);
 
     template <size_t K, Source kSource>
     static HWY_INLINE VF at(const std::byte* rows, const uint32_t* scalars, const Inst* inst, VU accumulator) {
-        const VU from = StripOperand<uint32_t, kSource>::template at<K>(rows, scalars, (*inst)[1], accumulator);
-        const VU bits =
-            hn::And(shiftedRight(from, scalarAt(scalars, inst, kScalars)), scalarAt(scalars, inst, kScalars + 1));
-        const VF product = hn::Mul(hn::ConvertTo(kF32, hn::BitCast(kI32, bits)),
-                                   hn::BitCast(kF32, scalarAt(scalars, inst, kScalars + 2)));
-        if constexpr (kSign == 0) {
-            return product;
-        } else {
-            const VF last = hn::BitCast(kF32, scalarAt(scalars, inst, kScalars + 3));
-            return kSign > 0 ? hn::Add(product, last) : hn::Sub(product, last);
-        }
-    }
-
-  private:
-    static HWY_INLINE VU scalarAt(const uint32_t* scalars, const Inst* inst, size_t k) {
-        return hn::Set(kU32, scalars[(*inst)[k]]);
+        return unpacked<kSign, 2, 1>(
+            scalars, inst, StripOperand<uint32_t, kSource>::template at<K>(rows, scalars, (*inst)[1], accumulator));
     }
 };
 
-/// What is unpacked times a factor; with kAdds, in front of the factor stands what is added.
-template <bool kAdds>
-struct UnpackTerm {
-    static constexpr size_t kFactor = kAdds ? 3 : 2;
-    using Value = Unpack<-1, kFactor + 1>;
-    static constexpr size_t kInsts = Value::kInsts;
+struct UnpackDot3 {
+    static constexpr size_t kTerms = 3, kInsts = instsFor(2 + 4 * kTerms);
 
-    static constexpr bool has(Form form) {
-        const Source factor = form.sources[kFactor - 1];
-        // What is unpacked is taken apart more than once, so that it lies in a row.
-        if (form.sources[0] != Source::row || factor == Source::accumulator) return false;
-        if (!kAdds) return form.sources[2] == Source::row;
-        return form.sources[1] != Source::scalar;
+    template <size_t K, Source kSource>
+    static HWY_INLINE VF at(const std::byte* rows, const uint32_t* scalars, const Inst* inst, VU accumulator) {
+        const VU word = StripOperand<uint32_t, kSource>::template at<K>(rows, scalars, (*inst)[1], accumulator);
+        const VF sum = hn::Add(term<K, 0>(rows, scalars, inst, word), term<K, 1>(rows, scalars, inst, word));
+        return hn::Add(sum, term<K, 2>(rows, scalars, inst, word));
     }
 
-    template <size_t K, uint8_t kForm>
-    static HWY_INLINE VF at(const std::byte* rows, const uint32_t* scalars, const Inst* inst, VU accumulator) {
-        constexpr Form form = Form::at(kForm);
-        const VF value = Value::template at<K, form.sources[0]>(rows, scalars, inst, accumulator);
-        const VF factor = StripOperand<float, form.sources[kFactor - 1]>::template at<K>(rows, scalars,
-                                                                                         (*inst)[kFactor], accumulator);
-        const VF product = hn::Mul(value, factor);
-        if constexpr (kAdds) {
-            return hn::Add(
-                product, StripOperand<float, form.sources[1]>::template at<K>(rows, scalars, (*inst)[2], accumulator));
-        } else {
-            return product;
-        }
+  private:
+    template <size_t K, size_t kTerm>
+    static HWY_INLINE VF term(const std::byte* rows, const uint32_t* scalars, const Inst* inst, VU word) {
+        const VF factor =
+            StripOperand<float, Source::row>::template at<K>(rows, scalars, (*inst)[2 + kTerm], hn::Zero(kU32));
+        return hn::Mul(unpacked<-1, 2 + kTerms + kTerm, kTerms>(scalars, inst, word), factor);
     }
 };
 
@@ -105,8 +95,7 @@ void addFusedOps(HandlerTables& tables) {
     addCompound<element::Unpack<0>>(tables, Op::unpackMultiply);
     addCompound<element::Unpack<1>>(tables, Op::unpackMultiplyAdd);
     addCompound<element::Unpack<-1>>(tables, Op::unpackMultiplySubtract);
-    addFormed<element::UnpackTerm<false>>(tables, Op::unpackSubtractTimes);
-    addFormed<element::UnpackTerm<true>>(tables, Op::unpackSubtractTimesAdd);
+    addCompound<element::UnpackDot3>(tables, Op::unpackDot3);
 }
 
 }  // namespace vernier::batch::HWY_NAMESPACE

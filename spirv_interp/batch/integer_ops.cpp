@@ -57,21 +57,16 @@ VERNIER_ELEMENT(ult, uint32_t, uint32_t, (V a, V b), return boolRow(hn::Lt(a, b)
 VERNIER_ELEMENT(ule, uint32_t, uint32_t, (V a, V b), return hn::Not(boolRow(hn::Gt(a, b)));)
 VERNIER_ELEMENT(select, uint32_t, uint32_t, (V condition, V yes, V no), return hn::IfVecThenElse(condition, yes, no);)
 
-/// Truncates values in [-2^31, 2^31). The hardware's answer for any other is INT_MIN, which is also right
-/// below.
-HWY_INLINE VI truncated(VF a) {
-    return hn::BitCast(kI32, hn::ConvertTo(kI32, a));
-}
+using ::vernier::HWY_NAMESPACE::truncateInRange;
 
-VERNIER_ELEMENT(ftos, float, int32_t, (V a), const V known = hn::IfThenZeroElse(hn::IsNaN(a), a);
-                const V inside = hn::Max(hn::Min(known, number(0x1.fffffep30f)), number(-0x1p31f));
-                const auto tooLarge = hn::RebindMask(kI32, hn::Ge(known, number(0x1p31f)));
-                return hn::IfThenElse(tooLarge, number(INT32_MAX), truncated(inside));)
+VERNIER_ELEMENT(ftos, float, int32_t, (V a), const VI whole = truncateInRange(hn::IfThenZeroElse(hn::IsNaN(a), a));
+                const auto tooLarge = hn::RebindMask(kI32, hn::Ge(a, number(0x1p31f)));
+                return hn::IfThenElse(tooLarge, number(INT32_MAX), whole);)
 // Above 2^31 the value less 2^31 is exact and fits a signed integer; the top bit is put back afterwards.
 VERNIER_ELEMENT(ftou, float, uint32_t, (V a), const V positive = hn::IfThenElseZero(hn::Gt(a, number(0.0f)), a);
                 const V inside = hn::Min(positive, number(0x1.fffffep31f));
                 const auto upper = hn::Ge(inside, number(0x1p31f));
-                const VI low = truncated(hn::Sub(inside, hn::IfThenElseZero(upper, number(0x1p31f))));
+                const VI low = truncateInRange(hn::Sub(inside, hn::IfThenElseZero(upper, number(0x1p31f))));
                 const VU value = hn::Xor(hn::BitCast(kU32, low), hn::And(boolRow(upper), hn::Set(kU32, 0x80000000u)));
                 return hn::Or(value, boolRow(hn::Ge(positive, number(0x1p32f))));)
 VERNIER_ELEMENT(stof, int32_t, float, (V a), return hn::ConvertTo(kF32, a);)

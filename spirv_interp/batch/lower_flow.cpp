@@ -189,6 +189,7 @@ void Lowerer::lowerTerminator(ir::BlockId b) {
 void Lowerer::lowerBatch() {
     const auto count = static_cast<ir::BlockId>(program_.blocks.size());
     fusions_ = Fusions(program_, facts_.definition, facts_.uses, facts_.scalar);
+    stores_ = JoinedStores(program_, facts_.definition, facts_.uses, facts_.scalar);
     planBlocks();
     planOutputs();
     // Phis first: edges name them before their block comes. A loop's own phis live through all of its rounds.

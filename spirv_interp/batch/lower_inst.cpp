@@ -87,15 +87,37 @@ void Lowerer::lowerWords(const ir::Inst& inst) {
     }
 }
 
+void Lowerer::lowerStore(const ir::Inst& inst) {
+    const auto operands = program_.operandsOf(inst);
+    if (const JoinedStores::Group* group = stores_.of(inst)) {
+        if (&inst != group->last) return;
+        const auto& stores = group->stores;
+        std::vector<Operand> all{operandOf(operands[0]), rowOf(program_.operandsOf(*stores[0])[1])};
+        for (size_t k = 0; k < JoinedStores::kMost; ++k) {
+            all.push_back(rowOf(program_.operandsOf(*stores[std::min(k, stores.size() - 1)])[2]));
+        }
+        all.push_back(Operand::number(ir::resourceOf(inst)));
+        all.push_back(Operand::number(static_cast<uint32_t>(stores.size())));
+        emit(Op::storeWords, std::move(all));
+        return;
+    }
+    const Operand descriptor = operandOf(operands[0]), offset = operandOf(operands[1]);
+    const Operand value = rowOf(operands[2]);
+    const uint32_t bytes = ir::immHigh(inst);
+    emit(bytes == 1   ? Op::storeByte
+         : bytes == 2 ? Op::storeHalfword
+                      : Op::storeBuffer,
+         {descriptor, offset, value, Operand::number(ir::resourceOf(inst))})
+        .form = static_cast<uint8_t>(descriptor.isScalar() | offset.isScalar() << 1);
+}
+
 bool Lowerer::lowerFused(const ir::Inst& inst) {
     const Fusion* fusion = inst.result == ir::kNoValue ? nullptr : fusions_.of(inst.result);
     if (fusion == nullptr) return false;
     std::vector<Operand> operands;
     for (size_t k = 0; k < fusion->operands.size(); ++k) {
         const ir::ValueId value = fusion->operands[k];
-        const uint32_t neutral = k == fusion->shift ? 0 : ~0u;
-        operands.push_back(value == ir::kNoValue ? Operand::scalar(scalars_.constant(neutral, false))
-                                                 : operandOf(value));
+        operands.push_back(k > 0 && k <= fusion->rows ? rowOf(value) : operandOf(value));
     }
     if (isVectorOp(fusion->op)) {
         emitVector(fusion->op, target(inst), std::move(operands));
@@ -112,7 +134,7 @@ void Lowerer::lowerInst(const ir::Inst& inst) {
     if (inst.result != ir::kNoValue) {
         if (isGiven(inst.result)) return;
         if (isScalar(inst.result) && takesScalars(program_, inst)) return lowerScalar(inst);
-        if (fusions_.isInner(inst.result)) return;
+        if (fusions_.isInner(inst.result) || stores_.isInner(inst.result)) return;
     }
     if (lowerFused(inst)) return;
     switch (inst.op) {
@@ -147,17 +169,8 @@ void Lowerer::lowerInst(const ir::Inst& inst) {
                 .form = static_cast<uint8_t>(descriptor.isScalar() | offset.isScalar() << 1);
             return;
         }
-        case ir::Op::storeBuffer: {
-            const Operand descriptor = operandOf(operands[0]), offset = operandOf(operands[1]);
-            const Operand value = rowOf(operands[2]);
-            const uint32_t bytes = ir::immHigh(inst);
-            emit(bytes == 1   ? Op::storeByte
-                 : bytes == 2 ? Op::storeHalfword
-                              : Op::storeBuffer,
-                 {descriptor, offset, value, Operand::number(ir::resourceOf(inst))})
-                .form = static_cast<uint8_t>(descriptor.isScalar() | offset.isScalar() << 1);
-            return;
-        }
+        case ir::Op::storeBuffer:
+            return lowerStore(inst);
         case ir::Op::loadAddress:
             emit(Op::loadAddress, {target(inst), rowOf(operands[0]), Operand::number(ir::immLow(inst))}).inPlace =
                 false;

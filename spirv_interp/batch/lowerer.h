@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "spirv_interp/batch/fuse.h"
+#include "spirv_interp/batch/join_stores.h"
 #include "spirv_interp/batch/lower.h"
 #include "spirv_interp/batch/machine.h"
 #include "spirv_interp/batch/uniform.h"
@@ -108,6 +109,7 @@ class Lowerer {
     void lowerScalar(const ir::Inst& inst);
     void emitVector(Op op, const Operand& to, std::vector<Operand> from);
     void lowerWords(const ir::Inst& inst);
+    void lowerStore(const ir::Inst& inst);
     void lowerImage(const ir::Inst& inst);
     void lowerAtomic(const ir::Inst& inst);
     void lowerLocal(const ir::Inst& inst);
@@ -152,6 +154,7 @@ class Lowerer {
     uint32_t loop_ = kNone;                             // header of the loop being lowered
     uint32_t line_ = 0;
     Fusions fusions_;
+    JoinedStores stores_;
     std::vector<bool> fallsIn_;   // blocks that run on from the block before, with its mask
     std::vector<bool> full_;      // blocks that every lane runs first
     std::vector<bool> endsLoop_;  // last blocks of loops

@@ -7,6 +7,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <array>
 #include <atomic>
 #include <cstring>
 
@@ -92,11 +93,12 @@ void storeLanes(const BufferBinding& buffer, const LaneSource<kScalar>& offsets,
     });
 }
 
-/// Whether the T of every lane lies in the buffer.
-template <class T, bool kScalar>
-HWY_INLINE bool allInside(const BufferBinding& buffer, const LaneSource<kScalar>& offsets, uint32_t lanes) {
-    if (kScalar || buffer.size < sizeof(T)) return false;
-    const VU last = hn::Set(kU32, buffer.size - static_cast<uint32_t>(sizeof(T)));
+/// Whether `bytes` bytes of every lane lie in the buffer.
+template <bool kScalar>
+HWY_INLINE bool allInside(const BufferBinding& buffer, const LaneSource<kScalar>& offsets, uint32_t lanes,
+                          uint32_t bytes) {
+    if (kScalar || buffer.size < bytes) return false;
+    const VU last = hn::Set(kU32, buffer.size - bytes);
     for (uint32_t lane = 0; lane < lanes; lane += kVectorLanes) {
         if (!hn::AllFalse(kU32, hn::Gt(hn::Load(kU32, offsets.words() + lane), last))) return false;
     }
@@ -120,7 +122,7 @@ const Inst* storeBuffer(Frame& frame, const Inst* inst) {
     const BufferBinding buffer = bufferOf(frame, resource, descriptors.at(0));
     uint32_t* words = sizeof(T) == 4 ? wordsInARow(buffer, offsets, frame.lanes) : nullptr;
     if (words == nullptr) {
-        if (lanes.contains(LaneMask::first(frame.lanes)) && allInside<T>(buffer, offsets, frame.lanes)) {
+        if (lanes.contains(LaneMask::first(frame.lanes)) && allInside(buffer, offsets, frame.lanes, sizeof(T))) {
             for (uint32_t lane = 0; lane < frame.lanes; ++lane) {
                 auto* element = reinterpret_cast<T*>(buffer.data + (offsets.at(lane) & ~uint32_t{sizeof(T) - 1}));
                 std::atomic_ref(*element).store(static_cast<T>(values[lane]), std::memory_order_relaxed);
@@ -139,6 +141,51 @@ const Inst* storeBuffer(Frame& frame, const Inst* inst) {
         }
     }
     return inst + 1;
+}
+
+/// Word k of a lane from rows[k], four lanes and four words at a time; offsets are inside the buffer.
+HWY_INLINE void storeFours(const BufferBinding& buffer, const LaneSource<false>& offsets,
+                           const std::array<const uint32_t*, 4>& rows, uint32_t lanes) {
+    const hn::FixedTag<uint32_t, 4> four;
+    const hn::RepartitionToWide<decltype(four)> pairs;
+    for (uint32_t lane = 0; lane < lanes; lane += 4) {
+        const auto a = hn::Load(four, rows[0] + lane), b = hn::Load(four, rows[1] + lane);
+        const auto c = hn::Load(four, rows[2] + lane), d = hn::Load(four, rows[3] + lane);
+        const auto lowAB = hn::BitCast(pairs, hn::InterleaveLower(four, a, b));
+        const auto lowCD = hn::BitCast(pairs, hn::InterleaveLower(four, c, d));
+        const auto highAB = hn::BitCast(pairs, hn::InterleaveUpper(four, a, b));
+        const auto highCD = hn::BitCast(pairs, hn::InterleaveUpper(four, c, d));
+        const auto store = [&](uint32_t k, auto words) HWY_ATTR {
+            auto* to = reinterpret_cast<uint32_t*>(buffer.data + (offsets.at(lane + k) & ~3u));
+            hn::StoreU(hn::BitCast(four, words), four, to);
+        };
+        store(0, hn::InterleaveLower(pairs, lowAB, lowCD));
+        store(1, hn::InterleaveUpper(pairs, lowAB, lowCD));
+        store(2, hn::InterleaveLower(pairs, highAB, highCD));
+        store(3, hn::InterleaveUpper(pairs, highAB, highCD));
+    }
+}
+
+const Inst* storeWords(Frame& frame, const Inst* inst) {
+    const Inst& in = *inst;
+    const BufferBinding buffer = bufferOf(frame, in[6], frame.scalars[in[0]]);
+    const LaneSource<false> offsets(frame, in[1]);
+    const std::array<const uint32_t*, 4> rows{frame.row<uint32_t>(in[2]), frame.row<uint32_t>(in[3]),
+                                              frame.row<uint32_t>(in[4]), frame.row<uint32_t>(in[5])};
+    const uint32_t words = in[7];
+    const LaneMask lanes = effectLanes(frame);
+    if (words == rows.size() && lanes.contains(LaneMask::first(frame.lanes)) &&
+        allInside(buffer, offsets, frame.lanes, sizeof(uint32_t) * words)) {
+        storeFours(buffer, offsets, rows, frame.lanes);
+        return inst + instsFor(8);
+    }
+    lanes.forEach([&](uint32_t lane) {
+        for (uint32_t k = 0; k < words; ++k) {
+            auto* element = elementAt<uint32_t>(buffer, offsets.at(lane) + k * static_cast<uint32_t>(sizeof(uint32_t)));
+            if (element != nullptr) std::atomic_ref(*element).store(rows[k][lane], std::memory_order_relaxed);
+        }
+    });
+    return inst + instsFor(8);
 }
 
 /// One word for all lanes.
@@ -230,6 +277,7 @@ void addForms(HandlerTables& tables, std::index_sequence<kForm...>) {
 
 void addMemory(HandlerTables& tables) {
     addForms(tables, std::make_index_sequence<4>());
+    addPlain<storeWords>(tables, Op::storeWords);
     addForward<loadBufferScalar>(tables, Op::loadBuffer, 4);
     addPlain<bufferSize<false>>(tables, Op::bufferSize, 0);
     addPlain<bufferSize<true>>(tables, Op::bufferSize, 1);

@@ -82,8 +82,7 @@ bool isMovableOp(Op op) {
         case Op::unpackMultiply:
         case Op::unpackMultiplyAdd:
         case Op::unpackMultiplySubtract:
-        case Op::unpackSubtractTimes:
-        case Op::unpackSubtractTimesAdd:
+        case Op::unpackDot3:
             return true;
         default:
             return false;
@@ -103,6 +102,7 @@ std::optional<StripShape> stripShape(const MachineInst& inst) {
         case Op::unpackMultiply:
         case Op::unpackMultiplyAdd:
         case Op::unpackMultiplySubtract:
+        case Op::unpackDot3:
         case Op::ddxFine:
         case Op::ddyFine:
         case Op::ddxCoarse:
@@ -110,10 +110,6 @@ std::optional<StripShape> stripShape(const MachineInst& inst) {
         case Op::copy:
         case Op::broadcast:
             return StripShape{1, 1, true};
-        case Op::unpackSubtractTimes:
-            return StripShape{1, 2, true};
-        case Op::unpackSubtractTimesAdd:
-            return StripShape{1, 3, true};
         case Op::copyMasked:
         case Op::broadcastMasked:
             return StripShape{1, 1, false};

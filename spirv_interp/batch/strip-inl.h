@@ -150,13 +150,6 @@ struct Strip<std::index_sequence<K...>> {
                                hn::BitCast(kU32, E::template at<K, kSource>(rows, scalars, inst, acc))...);
     }
 
-    /// The same in forms as of elementwise operations: E::at<K, form>(rows, scalars, inst, accumulator).
-    template <class E, uint8_t kForm>
-    static const Inst* formed(Frame& frame, const Inst* inst, std::byte* rows, uint32_t* scalars, Vector<K>... acc) {
-        return finish<Form::at(kForm).stored>(frame, inst, inst + E::kInsts, rows, scalars,
-                                              hn::BitCast(kU32, E::template at<K, kForm>(rows, scalars, inst, acc))...);
-    }
-
     /// A plain handler that only ever goes on further down, and leaves the accumulator as it is.
     template <PlainHandler kHandler>
     static const Inst* forward(Frame& frame, const Inst* inst, std::byte* rows, uint32_t* scalars, Vector<K>... acc) {
@@ -225,16 +218,6 @@ void addCompound(HandlerTables& tables, Op op) {
     };
     add(FullStrip(), tables.full);
     add(NarrowStrip(), tables.narrow);
-}
-
-/// Enters an operation that satisfies Strip::formed, in every form that E::has.
-template <class E, uint8_t kForm = 0>
-void addFormed(HandlerTables& tables, Op op) {
-    if constexpr (E::has(Form::at(kForm))) {
-        tables.full[static_cast<size_t>(op)][kForm] = FullStrip::erase(FullStrip::formed<E, kForm>);
-        tables.narrow[static_cast<size_t>(op)][kForm] = NarrowStrip::erase(NarrowStrip::formed<E, kForm>);
-    }
-    if constexpr (kForm + 1 < kForms) addFormed<E, kForm + 1>(tables, op);
 }
 
 /// Enters the handlers of every form of an elementwise operation.

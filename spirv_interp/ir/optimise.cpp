@@ -21,8 +21,10 @@ void optimise(Program& program, const OptimiseOptions& options) {
     // Which resources are only read, for the passes that move loads.
     analyse(program);
     // A branch that goes away exposes constants and equal values, and the other way round; two rounds find nearly all.
-    // The first puts loops into the shape that unrolling knows.
-    for (int round = 0; round < 2; ++round) {
+    // The first puts loops into the shape that unrolling knows; how much of them is known shows when they are small.
+    int rounds = 2;
+    bool unrolls = true;
+    for (int round = 0; round < rounds; ++round) {
         bool changed = run("simplifyPhis", simplifyPhis);
         changed |= run("foldConstants", foldConstants);
         changed |= run("eliminateCommon", eliminateCommon);
@@ -30,11 +32,19 @@ void optimise(Program& program, const OptimiseOptions& options) {
         changed |= run("foldBranches", foldBranches);
         changed |= run("convertIfs", convertIfs);
         if (round == 0) changed |= run("unrollLoops", unrollLoops);
+        if (unrolls && (round > 0 || !changed)) {
+            unrolls = false;
+            if (run("unrollConstantLoops", unrollConstantLoops)) {
+                changed = true;
+                rounds = round + 2;
+            }
+        }
         if (!changed) break;
     }
     run("foldBranches", foldBranches);
     run("simplifyPhis", simplifyPhis);
     run("foldConstants", foldConstants);
+    run("reduceStrength", reduceStrength);
     if (options.contract) run("contract", contract);
     run("hoistInvariants", hoistInvariants);
     run("removeDead", removeDead);

@@ -13,6 +13,9 @@ namespace {
 constexpr uint32_t kMaxCounted = 256;  // trips
 constexpr uint32_t kMaxTrips = 32;     // of a loop that goes away
 constexpr size_t kMaxInsts = 1024;     // of all copies together
+// Of all copies of a loop of which at least one value in kConstantPart is known in every trip.
+constexpr size_t kMaxConstantInsts = 2048;
+constexpr size_t kConstantPart = 16;
 // Of a loop that stays, of which one round does the work of several: so small that keeping it up costs something.
 constexpr size_t kMaxSmallInsts = 64;
 constexpr uint32_t kRounds = 4;
@@ -48,6 +51,25 @@ class Unroller {
             if (loop->trips <= kMaxTrips && insts * std::max(loop->trips, 1u) <= kMaxInsts) return loop;
             loop->rounds = kRounds;
             if (loop->trips % kRounds == 0 && insts <= kMaxSmallInsts && loop->latch != loop->header) return loop;
+        }
+        return std::nullopt;
+    }
+
+    /// The last loop of which enough is known.
+    std::optional<Loop> findConstant() {
+        for (auto b = static_cast<BlockId>(program_.blocks.size()); b-- > 0;) {
+            if (!program_.blocks[b].loopHeader) continue;
+            std::optional<Loop> loop = shapeOf(b);
+            if (!loop || !countTrips(*loop) || loop->trips > kMaxTrips) continue;
+            size_t insts = 0, known = 0;
+            for (BlockId i = loop->header; i < loop->end; ++i) {
+                for (const Inst& inst : program_.blocks[i].insts) {
+                    ++insts;
+                    // Of the trip that does not take place any more: what is known there was known in all before.
+                    known += opInfo(inst.op).results == 1 && evaluate(inst.result, kMaxDepth) ? 1 : 0;
+                }
+            }
+            if (insts * loop->trips <= kMaxConstantInsts && known * kConstantPart >= insts) return loop;
         }
         return std::nullopt;
     }
@@ -276,6 +298,16 @@ bool unrollLoops(Program& program) {
             unroller.unroll(*loop);
         else
             unroller.repeat(*loop);
+    }
+    return true;
+}
+
+bool unrollConstantLoops(Program& program) {
+    for (uint32_t unrolled = 0; unrolled < kMaxLoops; ++unrolled) {
+        Unroller unroller(program);
+        const std::optional<Loop> loop = unroller.findConstant();
+        if (!loop) return unrolled > 0;
+        unroller.unroll(*loop);
     }
     return true;
 }

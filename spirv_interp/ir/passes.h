@@ -30,6 +30,13 @@ bool convertIfs(Program& program);
 /// one. Only innermost loops that their header alone leaves.
 bool unrollLoops(Program& program);
 
+/// Loops that unrollLoops finds too large, if much of them becomes constant: to be called when everything else is done.
+bool unrollConstantLoops(Program& program);
+
+/// Operations on constants become cheaper ones that give the same bits: of fields of words that are converted and
+/// scaled, the shift goes into the scale; remainders of divisions by powers of two do without the division.
+bool reduceStrength(Program& program);
+
 /// Operations that give the same in every round of a loop, and that every round runs, are done before the loop.
 bool hoistInvariants(Program& program);
 

@@ -17,6 +17,12 @@ struct FuseCase {
     const char* body;
 };
 
+#define DOT_TERMS                                                                                                  \
+    "%40 i32 = iand A %12\n%41 f32 = stof.i32 %40\n%42 f32 = fmul %13 %41\n%43 f32 = fsub %42 %14\n"               \
+    "%44 i32 = iand %11 A\n%45 f32 = stof.i32 %44\n%46 f32 = fmul %45 %14\n%47 f32 = fsub %46 %13\n"               \
+    "%56 i32 = iand A %16\n%57 f32 = stof.i32 %56\n%48 f32 = fmul %57 %13\n%49 f32 = fsub %48 %14\n"               \
+    "%53 f32 = fabs %2\n%50 f32 = fmul %43 %2\n%51 f32 = fmul %13 %47\n%52 f32 = fmul %49 %53\n"
+
 constexpr FuseCase kCases[] = {
     {"shiftRightAnd", "i32", "%20 i32 = lshr A %10\n%21 i32 = iand %20 %12\n"},
     {"shiftRightXor", "i32", "%20 i32 = lshr A %10\n%21 i32 = ixor %1 %20\n"},
@@ -35,24 +41,16 @@ constexpr FuseCase kCases[] = {
     {"convertMultiply", "f32", "%20 f32 = stof.i32 A\n%21 f32 = fmul %13 %20\n"},
     {"convertMultiplyAdd", "f32", "%20 f32 = stof.i32 A\n%22 f32 = fmul %13 %20\n%21 f32 = fadd %2 %22\n"},
     {"convertMultiplySubtract", "f32", "%20 f32 = stof.i32 A\n%22 f32 = fmul %20 %13\n%21 f32 = fsub %22 %14\n"},
-    {"unpackMultiply", "f32", "%20 i32 = lshr A %10\n%22 f32 = stof.i32 %20\n%21 f32 = fmul %22 %13\n"},
+    {"convertMultiply", "f32", "%20 i32 = lshr A %10\n%22 f32 = stof.i32 %20\n%21 f32 = fmul %22 %13\n"},
+    {"unpackMultiply", "f32", "%20 i32 = iand A %12\n%22 f32 = stof.i32 %20\n%21 f32 = fmul %22 %13\n"},
     {"unpackMultiplyAdd", "f32",
      "%20 i32 = lshr A %10\n%22 i32 = iand %12 %20\n%23 f32 = stof.i32 %22\n%24 f32 = fmul %13 %23\n"
      "%21 f32 = fadd %14 %24\n"},
     {"unpackMultiplySubtract", "f32",
      "%20 i32 = iand A %12\n%23 f32 = stof.i32 %20\n%24 f32 = fmul %13 %23\n%21 f32 = fsub %24 %14\n"},
-    {"unpackSubtractTimes", "f32",
-     "%20 i32 = lshr A %10\n%22 i32 = iand %12 %20\n%23 f32 = stof.i32 %22\n%24 f32 = fmul %13 %23\n"
-     "%25 f32 = fsub %24 %14\n%21 f32 = fmul %25 %2\n"},
-    {"unpackSubtractTimes", "f32",
-     "%20 i32 = lshr A %10\n%23 f32 = stof.i32 %20\n%24 f32 = fmul %13 %23\n%25 f32 = fsub %24 %14\n"
-     "%21 f32 = fmul %13 %25\n"},
-    {"unpackSubtractTimesAdd", "f32",
-     "%20 i32 = lshr A %10\n%22 i32 = iand %12 %20\n%23 f32 = stof.i32 %22\n%24 f32 = fmul %13 %23\n"
-     "%25 f32 = fsub %24 %14\n%26 f32 = fmul %25 %2\n%21 f32 = fadd %26 %2\n"},
-    {"unpackSubtractTimesAdd", "f32",
-     "%20 i32 = iand A %12\n%23 f32 = stof.i32 %20\n%24 f32 = fmul %13 %23\n%25 f32 = fsub %24 %14\n"
-     "%26 f32 = fmul %13 %25\n%27 f32 = fabs %2\n%21 f32 = fadd %27 %26\n"},
+    // Three fields, the second of another mask and scale, times two rows and a constant, in the orders that there are.
+    {"unpackDot3", "f32", DOT_TERMS "%55 f32 = fadd %50 %51\n%21 f32 = fadd %55 %52\n"},
+    {"unpackDot3", "f32", DOT_TERMS "%55 f32 = fadd %52 %51\n%21 f32 = fadd %50 %55\n"},
 };
 
 /// `chained`: A is what the operation before leaves in the accumulator. `kept`: the result has another reader.
@@ -67,7 +65,7 @@ std::string programOf(const FuseCase& c, bool chained, bool kept) {
            "output 0 " + c.type + " user 0.0\noutput 1 " + c.type + " user 0.1\n" +
            "b0:\n%0 i32 = input #0\n%1 i32 = input #1\n%2 f32 = input #2\n%10 i32 = constant 11\n"
            "%11 i32 = constant 21\n%12 i32 = constant 0x2d51\n%13 f32 = constant 0x3dcccccd\n"
-           "%14 f32 = constant 0x3fe00000\n%15 i32 = imul %0 %1\n" +
+           "%14 f32 = constant 0x3fe00000\n%16 i32 = constant 0x80000ff0\n%15 i32 = imul %0 %1\n" +
            body + "%30 " + c.type + " = " + last + " %21\nstoreOutput #0 %30\n" + (kept ? "storeOutput #1 %21\n" : "") +
            "ret\n";
 }
@@ -110,6 +108,8 @@ TEST_P(Superinstruction, GivesTheBitsOfItsParts) {
         }
     }
 }
+
+#undef DOT_TERMS
 
 INSTANTIATE_TEST_SUITE_P(All, Superinstruction, testing::ValuesIn(kCases), [](const auto& instance) {
     return std::string(instance.param.op) + "_" + std::to_string(instance.index);

@@ -237,6 +237,52 @@ batch:
 )");
 }
 
+TEST(BatchListing, StoresOfWordsOneBehindTheOtherAreOneInstruction) {
+    // Four words in any order; but not what a load stands between, nor those that leave a word out.
+    EXPECT_EQ(listing(R"(program fragment "main"
+input 0 i32 user 0.0 flat center
+input 1 f32 user 0.1 smooth center
+resource 0 storageBuffer 0.0 x1
+b0:
+  %0 i32 = input #0
+  %1 f32 = input #1
+  %2 i32 = constant 0
+  %3 i32 = constant 4
+  %4 i32 = constant 8
+  %5 i32 = constant 12
+  %6 i32 = constant 16
+  %7 i32 = iadd %0 %5
+  storeBuffer #0 %2 %7 %1
+  storeBuffer #0 %2 %0 %0
+  %8 i32 = iadd %3 %0
+  %9 f32 = fneg %1
+  storeBuffer #0 %2 %8 %9
+  %10 i32 = iadd %0 %4
+  storeBuffer #0 %2 %10 %6
+  storeBuffer #0 %2 %0 %1
+  %11 i32 = loadBuffer #0 %2 %0
+  storeBuffer #0 %2 %8 %11
+  %12 i32 = iadd %0 %6
+  storeBuffer #0 %2 %12 %1
+  ret
+)"),
+              R"(registers 5
+input 0 r0
+input 1 r1
+batch:
+    0  iadd r2, r0, 0x00000004
+    1  fneg r3, r1
+    2  broadcast r4, 0x00000010
+    3  storeWords 0x00000000, r0, r0, r3, r4, r1, 0, 4
+    5  storeBuffer 0x00000000, r0, r1, 0
+    6  loadBuffer r3, 0x00000000, r0, 0
+    7  storeBuffer 0x00000000, r2, r3, 0
+    8  iadd r0, r0, 0x00000010
+    9  storeBuffer 0x00000000, r0, r1, 0
+   10  end
+)");
+}
+
 TEST(BatchListing, IndependentChainsAreComputedOneAfterTheOther) {
     EXPECT_EQ(listing(R"(program fragment "main"
 input 0 f32 user 0.0 smooth center

@@ -221,6 +221,41 @@ b8 <- b6:
 )");
 }
 
+TEST(Pass, UnrollLoopsOfWhichMuchIsConstant) {
+    // A body of `filling` additions to what a buffer has, and `known` of constants.
+    const auto loop = [](size_t filling, size_t known) {
+        std::string text = R"(b0:
+  %0 i32 = constant 0x0
+  %1 i32 = constant 0x1
+  %2 i32 = constant 0x10
+  %3 i32 = loadBuffer #1 %0 %0
+  jump b1
+b1 loop b3 <- b0 b2:
+  %4 i32 = phi %0 %6
+  %5 b1 = slt.i32 %4 %2
+  branch %5 b2 b3
+b2 <- b1:
+  %6 i32 = iadd %4 %1
+)";
+        size_t next = 7, sum = 3;
+        for (size_t k = 0; k < filling + known; ++k, ++next) {
+            text += "  %" + std::to_string(next) + " i32 = iadd %4 %" + std::to_string(k < filling ? sum : 1) + "\n";
+            if (k < filling) sum = next;
+        }
+        return text + "  storeBuffer #0 %0 %0 %" + std::to_string(sum) + "\n  jump b1\nb3 <- b1:\n  ret\n";
+    };
+    const auto unrolls = [](const std::string& text) {
+        Program p = program(text);
+        EXPECT_FALSE(unrollLoops(p)) << text;
+        const bool changed = unrollConstantLoops(p);
+        EXPECT_TRUE(verify(p).ok()) << verify(p).error().message;
+        return changed;
+    };
+    EXPECT_TRUE(unrolls(loop(60, 2)));
+    EXPECT_FALSE(unrolls(loop(80, 0)));  // less than a sixteenth is known
+    EXPECT_FALSE(unrolls(loop(120, 10)));  // too large
+}
+
 TEST(Pass, LoopsThatAreNotUnrolled) {
     const auto stays = [](const std::string& body) {
         Program p = program(body);

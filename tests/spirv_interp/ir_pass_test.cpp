@@ -109,6 +109,59 @@ TEST(Pass, FoldIdentities) {
     }
 }
 
+/// What reduceStrength makes of a program that stores %9, computed from %1 (f32) and its bits %0 (i32).
+std::string reduced(const std::string& code) {
+    Program p = program("b0:\n  %1 f32 = input #1\n  %0 i32 = bitcast.f32 %1\n" + code + "  storeOutput #0 %9\n  ret\n");
+    if (!reduceStrength(p)) return "nothing";
+    removeDead(p);
+    EXPECT_TRUE(verify(p).ok()) << verify(p).error().message;
+    const std::string text = blocksOf(p);
+    return text.substr(4, text.size() - 4 - 6);
+}
+
+TEST(Pass, ReduceStrengthOfFields) {
+    const auto field = [](const char* shift, const char* mask, const char* scale) {
+        return std::string("  %2 i32 = constant ") + shift + "\n  %3 i32 = constant " + mask +
+               "\n  %4 f32 = constant " + scale +
+               "\n  %5 i32 = lshr %0 %2\n  %6 i32 = iand %5 %3\n  %7 f32 = stof.i32 %6\n  %9 f32 = fmul %4 %7\n";
+    };
+    EXPECT_EQ(reduced(field("0xa", "0x3ff", "0x3b002008")), R"(  %0 i32 = constant 0xffc00
+  %1 f32 = constant 0x36002008
+  %2 f32 = input #1
+  %3 i32 = bitcast.f32 %2
+  %4 i32 = iand %3 %0
+  %5 f32 = stof.i32 %4
+  %6 f32 = fmul %1 %5
+  storeOutput #0 %6
+)");
+    EXPECT_NE(reduced(field("0x15", "0x3ff", "0x3b002008")), "nothing");
+    EXPECT_EQ(reduced(field("0x16", "0x3ff", "0x3b002008")), "nothing");  // with the sign
+    EXPECT_EQ(reduced(field("0xa", "0x3ff", "0x02000000")), "nothing");   // the scale would be denormal
+    EXPECT_EQ(reduced(field("0xa", "0x3ff", "0x7f800000")), "nothing");
+    // What is masked or converted is wanted elsewhere.
+    const std::string more = "  storeBuffer #0 %2 %2 ";
+    EXPECT_EQ(reduced(field("0xa", "0x3ff", "0x3b002008") + more + "%6\n"), "nothing");
+    EXPECT_EQ(reduced(field("0xa", "0x3ff", "0x3b002008") + more + "%7\n"), "nothing");
+}
+
+TEST(Pass, ReduceStrengthOfRemainders) {
+    const auto remainder = [](const char* op, const char* divisor) {
+        return std::string("  %2 f32 = constant ") + divisor + "\n  %9 f32 = " + op + " %1 %2\n";
+    };
+    EXPECT_EQ(reduced(remainder("fmod", "0xc0800000")), R"(  %0 f32 = constant 0xbe800000
+  %1 f32 = input #1
+  %2 f32 = constant 0xc0800000
+  %3 f32 = fmul %1 %0
+  %4 f32 = ffloor %3
+  %5 f32 = fmul %2 %4
+  %6 f32 = fsub %1 %5
+  storeOutput #0 %6
+)");
+    EXPECT_NE(reduced(remainder("frem", "0x40000000")).find("ftrunc"), std::string::npos);
+    for (const char* divisor : {"0x40400000", "0x7f000000", "0x00400000", "0x0"})
+        EXPECT_EQ(reduced(remainder("fmod", divisor)), "nothing") << divisor;
+}
+
 TEST(Pass, FoldConstants) {
     const auto f32 = [](const char* expression) {
         return folded(
