@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "runtime/command/query_pool.h"
+#include "runtime/resource/texture_unit.h"
 
 namespace vernier {
 namespace {
@@ -231,6 +232,8 @@ void Executor::refreshDrawBindings() {
     fragmentResources_ = {};
     if (pipeline_->fragmentIr() == nullptr) return;
     fragmentResources_ = resolveBindings(*pipeline_->fragmentIr(), bound, arena);
+    needsLevels_ =
+        pipeline_->planWithoutQuads() == nullptr || needsLevels(*pipeline_->fragmentIr(), fragmentResources_);
     addAccesses(*pipeline_->fragmentIr(), bound, pass_->rest);
 }
 
@@ -255,6 +258,7 @@ void Executor::draw(const command::Draw& command) {
     if (command.indexed) call.indices = indices_;
     call.vertexResources = vertexResources_;
     call.fragmentResources = fragmentResources_;
+    call.needsLevels = needsLevels_;
     call.count = command.count;
     call.instances = command.instances;
     call.first = command.first;

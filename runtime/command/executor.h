@@ -104,6 +104,7 @@ class Executor {
     DynamicState dynamic_;
     const DynamicState* dynamicSnapshot_ = nullptr;  // in the pass's arena; nullptr after a change
     ResourceBindings vertexResources_, fragmentResources_;
+    bool needsLevels_ = true;
     std::array<VertexStream, kMaxVertexBindings> vertexStreams_{};
     IndexStream indices_;
     bool streamsChanged_ = true;  // since they were last added to the accesses of the pass

@@ -31,7 +31,8 @@ struct DrawCall {
     std::array<VertexStream, kMaxVertexBindings> vertexStreams{};
     IndexStream indices;
     ResourceBindings vertexResources, fragmentResources;
-    uint32_t count = 0;  // vertices or indices
+    bool needsLevels = true;  // what fragments sample depends on levels of detail (resource/texture_unit.h)
+    uint32_t count = 0;       // vertices or indices
     uint32_t instances = 1;
     uint32_t first = 0;        // first vertex or index
     int32_t vertexOffset = 0;  // added to each index

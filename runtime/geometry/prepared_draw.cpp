@@ -86,7 +86,8 @@ ViewportSetup setUpViewport(const PreparedDraw& draw, uint32_t index, const VkRe
 PreparedDraw prepareDraw(const DrawCall& call, const VkRect2D& renderArea) {
     PreparedDraw draw;
     draw.call = call;
-    draw.plan = &call.pipeline->plan();
+    const Plan* withoutQuads = call.needsLevels ? nullptr : call.pipeline->planWithoutQuads();
+    draw.plan = withoutQuads != nullptr ? withoutQuads : &call.pipeline->plan();
     draw.state = &call.pipeline->state();
     draw.subPixelBits = call.pipeline->accuracy().subPixelBits;
     draw.positions =

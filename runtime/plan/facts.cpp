@@ -82,7 +82,9 @@ void fragmentFacts(const ir::Program* fragment, const Plan& plan, FactWriter& fa
                    "it is the same for all samples");
     if (plan.usesQuads) {
         facts.runs("helper invocations, to whole 2x2 quads",
-                   plan.skips.has(Skip::helperInvocations) ? "the program takes derivatives" : kSwitchedOff);
+                   plan.quadsForLevels                       ? "for levels of detail; not for images of one level"
+                   : plan.skips.has(Skip::helperInvocations) ? "the program takes derivatives"
+                                                             : kSwitchedOff);
     } else {
         facts.leftOut("helper invocations", "the program takes no derivatives");
     }

@@ -35,6 +35,8 @@ class GraphicsPipeline {
     const std::shared_ptr<const BatchProgram>& vertexProgram() const { return program_->vertex(); }
     const std::shared_ptr<const BatchProgram>& fragmentProgram() const { return program_->fragment(); }
     const Plan& plan() const { return *plan_; }
+    /// For draws whose images need no level of detail; nullptr if that makes no difference.
+    const Plan* planWithoutQuads() const { return planWithoutQuads_.get(); }
 
     /// What a draw with this pipeline will run, at what rate and accuracy, what it leaves out and why.
     std::vector<Fact> explain(const DynamicState& dynamic) const;
@@ -43,7 +45,7 @@ class GraphicsPipeline {
     GraphicsPipeline();
     GraphicsState state_;
     std::shared_ptr<const ShaderProgram> program_;
-    std::unique_ptr<const Plan> plan_;
+    std::unique_ptr<const Plan> plan_, planWithoutQuads_;
 };
 
 }  // namespace vernier

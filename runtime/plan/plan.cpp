@@ -255,6 +255,33 @@ void planColor(const GraphicsState& state, const ir::Program& fragment, uint32_t
     plan.colors.push_back(color);
 }
 
+bool coverageIsFull(const Plan& plan) {
+    const auto readsCoverage = [](const BuiltinSlot& slot) { return slot.builtin == ir::Builtin::sampleMaskIn; };
+    return plan.samples == 1 && plan.keepsCoverage && !plan.usesQuads &&
+           std::none_of(plan.fragmentBuiltins.begin(), plan.fragmentBuiltins.end(), readsCoverage);
+}
+
+/// Whether the neighbours of a pixel matter for nothing but the level of detail of an image.
+bool quadsForLevels(const ir::Program& fragment) {
+    const auto looksAround = [&](const ir::Inst& inst) {
+        switch (inst.op) {
+            case ir::Op::ddxFine:
+            case ir::Op::ddyFine:
+            case ir::Op::ddxCoarse:
+            case ir::Op::ddyCoarse:
+                return true;
+            case ir::Op::image:
+                return fragment.imageOps[inst.imm].kind == ir::ImageKind::queryLod;
+            default:
+                return false;
+        }
+    };
+    return fragment.usesQuads && !fragment.usesSubgroups &&
+           std::none_of(fragment.blocks.begin(), fragment.blocks.end(), [&](const ir::Block& block) {
+               return std::any_of(block.insts.begin(), block.insts.end(), looksAround);
+           });
+}
+
 void planFragments(const GraphicsState& state, const ir::Program& fragment, Isa isa, Plan& plan) {
     for (uint32_t n = 0; n < state.colorCount; ++n) planColor(state, fragment, n, isa, plan);
     for (uint32_t slot = 0; slot < fragment.outputs.size(); ++slot) {
@@ -270,15 +297,14 @@ void planFragments(const GraphicsState& state, const ir::Program& fragment, Isa 
     plan.runsFragments = !plan.colors.empty() || fragment.hasSideEffects || decidesTests || fragment.canDiscard ||
                          !plan.skips.has(Skip::unkeptFragments);
     plan.usesQuads = fragment.usesQuads || !plan.skips.has(Skip::helperInvocations);
+    plan.quadsForLevels =
+        plan.runsFragments && plan.skips.has(Skip::helperInvocations) && !plan.perSample && quadsForLevels(fragment);
     plan.keepsCoverage =
         !fragment.canDiscard && plan.sampleMaskSlot == kNoSlot && !plan.alphaToCoverage && !decidesTests;
     plan.countsEarly = fragment.earlyFragmentTests;
-    bool readsCoverage = false;
-    for (const BuiltinSlot& builtin : plan.fragmentBuiltins) {
+    for (const BuiltinSlot& builtin : plan.fragmentBuiltins)
         plan.usesFragCoord |= builtin.builtin == ir::Builtin::fragCoord;
-        readsCoverage |= builtin.builtin == ir::Builtin::sampleMaskIn;
-    }
-    plan.coverageIsFull = plan.samples == 1 && plan.keepsCoverage && !plan.usesQuads && !readsCoverage;
+    plan.coverageIsFull = coverageIsFull(plan);
     plan.ordered = std::any_of(plan.colors.begin(), plan.colors.end(),
                                [](const ColorPlan& color) { return color.readsDestination; });
 }
@@ -350,6 +376,13 @@ Plan makePlan(const GraphicsState& state, const ShaderProgram& program) {
     }
     plan.packsSmall = packsSmall(plan, fragment);
     collectFacts(state, program, plan);
+    return plan;
+}
+
+Plan planWithoutQuads(Plan plan, const ShaderProgram& program) {
+    plan.usesQuads = plan.quadsForLevels = false;
+    plan.coverageIsFull = coverageIsFull(plan);
+    plan.packsSmall = packsSmall(plan, program.fragmentIr());
     return plan;
 }
 

@@ -108,11 +108,12 @@ struct Plan {
     uint32_t smoothCount = 0, linearCount = 0;
 
     // Fragments.
-    bool runsFragments = false;  // the fragment program has an effect
-    bool usesQuads = false;      // derivatives: whole 2x2 quads run, helper lanes included
-    bool perSample = false;      // one run per sample
-    bool allAtSample = false;    // all inputs are taken at the sample, whatever they say of themselves
-    bool splitSamples = false;   // perSample: a part of the program runs once per pixel
+    bool runsFragments = false;   // the fragment program has an effect
+    bool usesQuads = false;       // derivatives: whole 2x2 quads run, helper lanes included
+    bool quadsForLevels = false;  // usesQuads, for nothing but levels of detail of images
+    bool perSample = false;       // one run per sample
+    bool allAtSample = false;     // all inputs are taken at the sample, whatever they say of themselves
+    bool splitSamples = false;    // perSample: a part of the program runs once per pixel
     std::vector<CarriedValue> carried;
     bool needsBarycentrics = false;
     bool needsCentroid = false;         // some input is evaluated inside the covered part of the pixel
@@ -139,5 +140,7 @@ struct Plan {
 
 /// The state and the program have passed check_state.h.
 Plan makePlan(const GraphicsState& state, const ShaderProgram& program);
+/// Of a plan with quadsForLevels, what draws follow whose images need no level of detail.
+Plan planWithoutQuads(Plan plan, const ShaderProgram& program);
 
 }  // namespace vernier

@@ -251,6 +251,29 @@ ImageBinding bindingOf(const TextureUnit& unit) {
     return {&unit, unit.sampler, callUnit};
 }
 
+bool needsLevels(const ir::Program& program, const ResourceBindings& bindings) {
+    const auto needs = [](const TextureUnit* unit, const SamplerState* sampler) {
+        return unit != nullptr && unit->view != nullptr && sampler != nullptr &&
+               (unit->view->levelCount > 1 || sampler->magFilter != sampler->minFilter || sampler->maxAnisotropy > 1);
+    };
+    return std::any_of(program.imageOps.begin(), program.imageOps.end(), [&](const ir::ImageOp& op) {
+        if (op.kind != ir::ImageKind::sampleImplicit) return false;
+        if (bindings.images == nullptr) return false;
+        const bool apart = op.samplerResource != ir::kNoIndex && op.samplerResource != op.imageResource;
+        if (apart && bindings.samplers == nullptr) return false;
+        for (uint32_t i = 0; i < bindings.count[op.imageResource]; ++i) {
+            const auto* unit =
+                static_cast<const TextureUnit*>(bindings.images[bindings.base[op.imageResource] + i].image);
+            if (!apart && needs(unit, unit == nullptr ? nullptr : unit->sampler)) return true;
+            for (uint32_t s = 0; apart && s < bindings.count[op.samplerResource]; ++s) {
+                const void* sampler = bindings.samplers[bindings.base[op.samplerResource] + s];
+                if (needs(unit, static_cast<const SamplerState*>(sampler))) return true;
+            }
+        }
+        return false;
+    });
+}
+
 ImageBinding combineBinding(const ImageBinding& image, const void* sampler) {
     if (!image.image) return {};
     return {image.image, sampler, callCombined};

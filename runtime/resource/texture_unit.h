@@ -26,6 +26,10 @@ TextureUnit makeTexelBufferUnit(const TextureView* view, Isa isa);
 /// The binding through which a program reaches `unit`, which must outlive it.
 ImageBinding bindingOf(const TextureUnit& unit);
 
+/// Whether something that is sampled with an implicit level of detail depends on it: all has one level and one filter
+/// otherwise. `program`: whose resources `bindings` are.
+bool needsLevels(const ir::Program& program, const ResourceBindings& bindings);
+
 /// ResourceBindings::combine: an image and a sampler from two descriptors.
 ImageBinding combineBinding(const ImageBinding& image, const void* sampler);
 

@@ -46,8 +46,7 @@ HWY_INLINE VU scalarAt(const uint32_t* scalars, const Inst* inst, size_t k) {
 template <int kSign, size_t kFirst, size_t kStep>
 HWY_INLINE VF unpacked(const uint32_t* scalars, const Inst* inst, VU word) {
     const VI bits = hn::BitCast(kI32, hn::And(word, scalarAt(scalars, inst, kFirst)));
-    const VF product =
-        hn::Mul(hn::ConvertTo(kF32, bits), hn::BitCast(kF32, scalarAt(scalars, inst, kFirst + kStep)));
+    const VF product = hn::Mul(hn::ConvertTo(kF32, bits), hn::BitCast(kF32, scalarAt(scalars, inst, kFirst + kStep)));
     if constexpr (kSign == 0) {
         return product;
     } else {

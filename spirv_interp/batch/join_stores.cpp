@@ -63,7 +63,8 @@ class Finder {
         const Offset at = offsetOf(store);
         return std::all_of(open_.begin(), open_.end(), [&](const ir::Inst* other) {
             const Offset there = offsetOf(*other);
-            const uint32_t distance = std::min(at.displacement - there.displacement, there.displacement - at.displacement);
+            const uint32_t distance =
+                std::min(at.displacement - there.displacement, there.displacement - at.displacement);
             return there.base == at.base && distance != 0 && distance % kWordBytes == 0 &&
                    distance < JoinedStores::kMost * kWordBytes;
         });
@@ -97,7 +98,8 @@ JoinedStores::JoinedStores(const ir::Program& program, const std::vector<const i
     for (const Group& group : groups_) {
         for (size_t k = 1; k < group.stores.size(); ++k) {
             const ir::ValueId offset = program.operandsOf(*group.stores[k])[1];
-            inner_[offset] = uses[offset] == 1 && definition[offset] != nullptr && definition[offset]->op == ir::Op::iadd;
+            inner_[offset] =
+                uses[offset] == 1 && definition[offset] != nullptr && definition[offset]->op == ir::Op::iadd;
         }
     }
 }

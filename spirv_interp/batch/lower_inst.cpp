@@ -331,7 +331,12 @@ void Lowerer::lowerImage(const ir::Inst& inst) {
             to.push_back(place != ir::kNoIndex && k < count ? rowOf(operands[place + k]) : Operand{});
         }
     };
-    std::vector<Operand> hidden{row(places.image), row(places.sampler)};
+    // The first descriptor needs no row.
+    const auto index = [&](uint32_t place) {
+        const ir::Inst* constant = place == ir::kNoIndex ? nullptr : facts_.definition[operands[place]];
+        return constant != nullptr && constant->op == ir::Op::constant && constant->imm == 0 ? Operand{} : row(place);
+    };
+    std::vector<Operand> hidden{index(places.image), index(places.sampler)};
     rows(places.coords, op.coords, 4, hidden);
     hidden.push_back(row(places.dref));
     hidden.push_back(row(places.lodOrBias));

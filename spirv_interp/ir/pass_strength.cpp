@@ -36,7 +36,8 @@ class Reducer {
             bool divides = false;
             for (Inst& inst : program_.blocks[b].insts) {
                 if (inst.type == Type::f32 && inst.op == Op::fmul) scaleField(inst);
-                if (inst.type == Type::f32 && (inst.op == Op::fmod || inst.op == Op::frem)) divides |= divideByPower(inst);
+                if (inst.type == Type::f32 && (inst.op == Op::fmod || inst.op == Op::frem))
+                    divides |= divideByPower(inst);
                 made_.push_back(inst);
             }
             // Instructions are looked at through definition_: blocks change when all is done.
@@ -91,8 +92,8 @@ class Reducer {
     }
     ValueId constant(float value) { return constant(Type::f32, std::bit_cast<uint32_t>(value)); }
 
-    /// float((x >> s) & m) * c is float(x & (m << s)) * (c / 2^s): both factors are the others times a power of two, and
-    /// rounding a product of the same value gives the same bits. The masked word must be positive.
+    /// float((x >> s) & m) * c is float(x & (m << s)) * (c / 2^s): both factors are the others times a power of two,
+    /// and rounding a product of the same value gives the same bits. The masked word must be positive.
     void scaleField(Inst& product) {
         const std::optional<size_t> factor = constantOperand(product);
         if (!factor) return;
@@ -107,9 +108,8 @@ class Reducer {
         const uint64_t* shift = constantBits(operand(*shifted, 1));
         if (shift == nullptr || *shift > 31) return;
         const uint64_t wide = *constantBits(operand(*masked, *mask)) << *shift;
-        const auto scale =
-            scaled(std::bit_cast<float>(static_cast<uint32_t>(*constantBits(operand(product, *factor)))),
-                   -static_cast<int>(*shift));
+        const auto scale = scaled(std::bit_cast<float>(static_cast<uint32_t>(*constantBits(operand(product, *factor)))),
+                                  -static_cast<int>(*shift));
         if (wide > INT32_MAX || !scale) return;
         operand(*masked, 1 - *mask) = operand(*shifted, 0);
         operand(*masked, *mask) = constant(Type::i32, wide);

@@ -92,6 +92,42 @@ void main() { color = vec4(fwidth(uv), 0, 1); })");
     EXPECT_THAT(without, HasSubstr("left out  helper invocations"));
 }
 
+TEST_F(Explain, ImagesOfOneLevelNeedNoHelperLanes) {
+    const auto helpers = [&](uint32_t levels, VkFilter minFilter, const char* body, std::vector<uint32_t>& pixels) {
+        VnImageDesc desc{};
+        desc.width = desc.height = 4;
+        desc.mipLevels = levels;
+        VnImage checkers{};
+        EXPECT_EQ(vnCreateImage(device_, &desc, &checkers), VN_SUCCESS) << lastError();
+        std::vector<uint32_t> texels(16);
+        for (uint32_t k = 0; k < 16; ++k) texels[k] = k * 0x0F050301u;
+        EXPECT_EQ(vnUpdateImage(context_, checkers, nullptr, texels.data(), 64), VN_SUCCESS) << lastError();
+        VnSamplerDesc samplerDesc{};
+        samplerDesc.magFilter = VK_FILTER_LINEAR;
+        samplerDesc.minFilter = minFilter;
+        VnSampler sampler{};
+        EXPECT_EQ(vnCreateSampler(device_, &samplerDesc, &sampler), VN_SUCCESS) << lastError();
+        EXPECT_EQ(vnBindTexture(context_, 0, 0, 0, view(checkers), sampler), VN_SUCCESS) << lastError();
+        const VnProgram shading = program(kOddVertex, std::string(R"(#version 450
+layout(set = 0, binding = 0) uniform sampler2D tex;
+layout(location = 0) in vec2 uv;
+layout(location = 0) out vec4 color;
+void main() { color = texture(tex, uv * 0.1)") + body + "; }");
+        const uint64_t count = run(shading).helperInvocations;
+        pixels = drawFullScreen(image(VK_FORMAT_R8G8B8A8_UNORM, kSize, kSize), kSize, kSize, shading);
+        return count;
+    };
+    // Magnified all over: the picture is the same.
+    std::vector<uint32_t> without, with;
+    EXPECT_EQ(helpers(1, VK_FILTER_LINEAR, "", without), 0u);
+    EXPECT_GT(helpers(2, VK_FILTER_LINEAR, "", with), 0u);
+    EXPECT_EQ(without, with);
+    EXPECT_GT(helpers(1, VK_FILTER_NEAREST, "", with), 0u);
+    EXPECT_EQ(without, with);
+    EXPECT_GT(helpers(1, VK_FILTER_LINEAR, " + fwidth(uv.x) * 0.0", with), 0u);
+    EXPECT_EQ(without, with);
+}
+
 TEST_F(Explain, EqualWNeedsNoPerspectiveDivide) {
     const auto withW = [](const char* w) {
         return std::string(R"(#version 450

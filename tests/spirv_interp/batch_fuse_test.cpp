@@ -17,10 +17,10 @@ struct FuseCase {
     const char* body;
 };
 
-#define DOT_TERMS                                                                                                  \
-    "%40 i32 = iand A %12\n%41 f32 = stof.i32 %40\n%42 f32 = fmul %13 %41\n%43 f32 = fsub %42 %14\n"               \
-    "%44 i32 = iand %11 A\n%45 f32 = stof.i32 %44\n%46 f32 = fmul %45 %14\n%47 f32 = fsub %46 %13\n"               \
-    "%56 i32 = iand A %16\n%57 f32 = stof.i32 %56\n%48 f32 = fmul %57 %13\n%49 f32 = fsub %48 %14\n"               \
+#define DOT_TERMS                                                                                    \
+    "%40 i32 = iand A %12\n%41 f32 = stof.i32 %40\n%42 f32 = fmul %13 %41\n%43 f32 = fsub %42 %14\n" \
+    "%44 i32 = iand %11 A\n%45 f32 = stof.i32 %44\n%46 f32 = fmul %45 %14\n%47 f32 = fsub %46 %13\n" \
+    "%56 i32 = iand A %16\n%57 f32 = stof.i32 %56\n%48 f32 = fmul %57 %13\n%49 f32 = fsub %48 %14\n" \
     "%53 f32 = fabs %2\n%50 f32 = fmul %43 %2\n%51 f32 = fmul %13 %47\n%52 f32 = fmul %49 %53\n"
 
 constexpr FuseCase kCases[] = {

@@ -153,9 +153,9 @@ b0:
 )";
         for (uint32_t k = 1; k < count; ++k) {
             const auto name = [&](uint32_t n) { return "%" + std::to_string(10 * k + n); };
-            text += name(0) + " i32 = constant " + std::to_string(4 * k) + "\n" + name(1) + " i32 = iadd %0 " + name(0) +
-                    "\n" + name(2) + " i32 = iadd %1 " + name(0) + "\nstoreBuffer #0 %2 " + name(1) + " " + name(2) +
-                    "\n";
+            text += name(0) + " i32 = constant " + std::to_string(4 * k) + "\n" + name(1) + " i32 = iadd %0 " +
+                    name(0) + "\n" + name(2) + " i32 = iadd %1 " + name(0) + "\nstoreBuffer #0 %2 " + name(1) + " " +
+                    name(2) + "\n";
         }
         const ir::Program program = test::parseProgram(text + "ret\n");
         std::mt19937 random(count);

@@ -252,7 +252,7 @@ b2 <- b1:
         return changed;
     };
     EXPECT_TRUE(unrolls(loop(60, 2)));
-    EXPECT_FALSE(unrolls(loop(80, 0)));  // less than a sixteenth is known
+    EXPECT_FALSE(unrolls(loop(80, 0)));    // less than a sixteenth is known
     EXPECT_FALSE(unrolls(loop(120, 10)));  // too large
 }
 

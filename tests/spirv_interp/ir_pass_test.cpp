@@ -111,7 +111,8 @@ TEST(Pass, FoldIdentities) {
 
 /// What reduceStrength makes of a program that stores %9, computed from %1 (f32) and its bits %0 (i32).
 std::string reduced(const std::string& code) {
-    Program p = program("b0:\n  %1 f32 = input #1\n  %0 i32 = bitcast.f32 %1\n" + code + "  storeOutput #0 %9\n  ret\n");
+    Program p =
+        program("b0:\n  %1 f32 = input #1\n  %0 i32 = bitcast.f32 %1\n" + code + "  storeOutput #0 %9\n  ret\n");
     if (!reduceStrength(p)) return "nothing";
     removeDead(p);
     EXPECT_TRUE(verify(p).ok()) << verify(p).error().message;
