@@ -1,28 +1,18 @@
 #include "samples/common/app.h"
 
-#include <SDL.h>
 #include <stb/stb_image_write.h>
 #include <vernier/vernier_glsl.h>
 
 #include <chrono>
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
-#define GLM_FORCE_DEPTH_ZERO_TO_ONE
-#include <glm/gtc/matrix_transform.hpp>
+
+#include "samples/common/window.h"
 
 namespace samples {
 namespace {
 
-[[noreturn]] void stop(const std::string& text) {
-    std::fprintf(stderr, "%s\n", text.c_str());
-    std::exit(1);
-}
-
-/// Vernier has already told what was wrong through the message callback.
-void must(VnResult result) {
-    if (result != VN_SUCCESS) std::exit(1);
-}
+using Clock = std::chrono::steady_clock;
 
 void printMessage(void*, VnSeverity, const char* text) {
     std::fprintf(stderr, "%s\n", text);
@@ -33,7 +23,10 @@ VnShader compile(VnDevice device, VkShaderStageFlagBits stage, const std::string
     glsl.stage = stage;
     glsl.source = source.c_str();
     VnGlslOutput* output = nullptr;
-    if (vnCompileGlsl(&glsl, &output) != VN_GLSL_SUCCESS) stop(output ? output->log : "GLSL: out of memory");
+    if (vnCompileGlsl(&glsl, &output) != VN_GLSL_SUCCESS) {
+        std::fprintf(stderr, "%s\n", output ? output->log : "GLSL: out of memory");
+        std::exit(1);
+    }
     VnShaderDesc desc{};
     desc.stage = stage;
     desc.words = output->words;
@@ -44,41 +37,14 @@ VnShader compile(VnDevice device, VkShaderStageFlagBits stage, const std::string
     return shader;
 }
 
-VnImage makeImage(VnDevice device, VkFormat format, uint32_t width, uint32_t height, uint32_t mips) {
-    VnImageDesc desc{};
-    desc.format = format;
-    desc.width = width;
-    desc.height = height;
-    desc.mipLevels = mips;
-    VnImage image{};
-    must(vnCreateImage(device, &desc, &image));
-    return image;
-}
-
-VnView wholeView(VnDevice device, VnImage image) {
-    VnView view{};
-    must(vnGetImageView(device, image, &view));
-    return view;
+double secondsBetween(Clock::time_point from, Clock::time_point to) {
+    return std::chrono::duration<double>(to - from).count();
 }
 
 }  // namespace
 
-AppOptions parseOptions(int argc, char** argv, const std::string& title) {
-    AppOptions options;
-    options.title = title;
-    CLI::App cli{title};
-    std::string size;
-    cli.add_option("--headless", options.headless, "write one picture to this PNG file instead of opening a window");
-    cli.add_option("--size", size, "WIDTHxHEIGHT in pixels (800x600)");
-    cli.add_option("--time", options.time, "seconds at which the picture is taken (0)");
-    try {
-        cli.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        std::exit(cli.exit(error));
-    }
-    if (!size.empty() && std::sscanf(size.c_str(), "%ux%u", &options.width, &options.height) != 2)
-        stop("--size is \"" + size + "\", but must be WIDTHxHEIGHT");
-    return options;
+void must(VnResult result) {
+    if (result != VN_SUCCESS) std::exit(1);
 }
 
 App::App(const AppOptions& options) : options_(options) {
@@ -86,8 +52,8 @@ App::App(const AppOptions& options) : options_(options) {
     desc.message = printMessage;
     must(vnCreateDevice(&desc, &device_));
     must(vnCreateContext(device_, nullptr, &context_));
-    color_ = makeImage(device_, VK_FORMAT_R8G8B8A8_SRGB, options.width, options.height, 1);
-    depth_ = makeImage(device_, VK_FORMAT_D32_SFLOAT, options.width, options.height, 1);
+    color_ = target(VK_FORMAT_R8G8B8A8_SRGB);
+    depth_ = target(VK_FORMAT_D32_SFLOAT);
     pixels_.resize(size_t{options.width} * options.height);
 }
 
@@ -95,60 +61,108 @@ App::~App() {
     vnDestroyDevice(device_);
 }
 
-void App::drawFrame(const glm::vec4& background, const std::function<void(double)>& frame, double seconds) {
-    VnPassDesc pass{};
-    pass.colors[0].view = wholeView(device_, color_);
-    pass.colors[0].loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-    for (int i = 0; i < 4; ++i) pass.colors[0].clear.color.float32[i] = background[i];
-    pass.depthStencil.view = wholeView(device_, depth_);
-    pass.depthStencil.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-    pass.depthStencil.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
-    pass.depthStencil.clear.depthStencil.depth = 1;
-    must(vnBeginPass(context_, &pass));
-    frame(seconds);
-    must(vnEndPass(context_));
-    must(vnReadImage(context_, color_, nullptr, pixels_.data(), pixels_.size() * 4));
+int App::run(const std::function<void(const Frame&)>& frame) {
+    if (options_.window()) return runWindow(frame);
+    return options_.frames ? runFrames(frame) : runHeadless(frame);
 }
 
-int App::run(const glm::vec4& background, const std::function<void(double)>& frame) {
-    return options_.headless.empty() ? runWindow(background, frame) : runHeadless(background, frame);
+int App::run(const glm::vec4& background, const std::function<void(const Frame&)>& frame) {
+    return run([&](const Frame& now) {
+        beginPass(background);
+        frame(now);
+        endPass();
+    });
 }
 
-int App::runHeadless(const glm::vec4& background, const std::function<void(double)>& frame) {
-    drawFrame(background, frame, options_.time);
+void App::readPixels() {
+    must(vnReadImage(context_, color_.image, nullptr, pixels_.data(), pixels_.size() * 4));
+}
+
+bool App::writePixels(const std::string& path) {
     const auto width = static_cast<int>(options_.width), height = static_cast<int>(options_.height);
-    if (stbi_write_png(options_.headless.c_str(), width, height, 4, pixels_.data(), 0)) return 0;
-    std::fprintf(stderr, "%s could not be written\n", options_.headless.c_str());
-    return 1;
+    if (stbi_write_png(path.c_str(), width, height, 4, pixels_.data(), 0)) return true;
+    std::fprintf(stderr, "%s could not be written\n", path.c_str());
+    return false;
 }
 
-int App::runWindow(const glm::vec4& background, const std::function<void(double)>& frame) {
-    if (SDL_Init(SDL_INIT_VIDEO) != 0) stop(std::string("no window: ") + SDL_GetError() + " (try --headless OUT.png)");
-    const auto width = static_cast<int>(options_.width), height = static_cast<int>(options_.height);
-    SDL_Window* window =
-        SDL_CreateWindow(options_.title.c_str(), SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED, width, height, 0);
-    SDL_Surface* image =
-        SDL_CreateRGBSurfaceWithFormatFrom(pixels_.data(), width, height, 32, width * 4, SDL_PIXELFORMAT_RGBA32);
-    if (!window || !image) stop(std::string("no window: ") + SDL_GetError());
-    const auto start = std::chrono::steady_clock::now();
-    for (bool open = true; open;) {
-        drawFrame(background, frame, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-        SDL_BlitSurface(image, nullptr, SDL_GetWindowSurface(window), nullptr);
-        SDL_UpdateWindowSurface(window);
-        for (SDL_Event event; SDL_PollEvent(&event);)
-            open =
-                open && event.type != SDL_QUIT && !(event.type == SDL_KEYDOWN && event.key.keysym.sym == SDLK_ESCAPE);
+int App::runHeadless(const std::function<void(const Frame&)>& frame) {
+    frame({options_.time, 0, {}});
+    readPixels();
+    return writePixels(options_.headless) ? 0 : 1;
+}
+
+int App::runFrames(const std::function<void(const Frame&)>& frame) {
+    const Clock::time_point start = Clock::now();
+    for (uint32_t i = 0; i < options_.frames; ++i) {
+        frame({options_.time + i / 25.0, i ? 1 / 25.0 : 0.0, {}});
+        readPixels();
+        char name[16];
+        std::snprintf(name, sizeof name, "/%04u.png", i);
+        if (!options_.out.empty() && !writePixels(options_.out + name)) return 1;
     }
-    SDL_FreeSurface(image);
-    SDL_DestroyWindow(window);
-    SDL_Quit();
+    if (options_.out.empty())
+        std::printf("%.2f ms per frame, %ux%u\n", secondsBetween(start, Clock::now()) * 1000 / options_.frames,
+                    options_.width, options_.height);
     return 0;
+}
+
+int App::runWindow(const std::function<void(const Frame&)>& frame) {
+    Window window(options_.title, options_.width, options_.height);
+    std::fputs(keyHelp(options_.options).c_str(), stdout);
+    const Clock::time_point start = Clock::now();
+    Frame now{0, 0, {}};
+    while (window.poll(now.input)) {
+        for (const int key : now.input.pressed) {
+            if (key == kKeyF1) std::fputs(keyHelp(options_.options).c_str(), stdout);
+            if (const std::string text = pressKey(options_.options, key); !text.empty())
+                window.setTitle(options_.title + " - " + text);
+        }
+        const double seconds = options_.time + secondsBetween(start, Clock::now());
+        now.elapsed = now.seconds > 0 ? seconds - now.seconds : 0;
+        now.seconds = seconds;
+        frame(now);
+        readPixels();
+        window.show(pixels_);
+    }
+    return 0;
+}
+
+void App::beginPass(const glm::vec4& background) {
+    beginPass({color_}, depth_, background);
+}
+
+void App::beginPass(const std::vector<Target>& colors, const Target& depth, const glm::vec4& background) {
+    VnPassDesc pass{};
+    for (size_t slot = 0; slot < colors.size(); ++slot) {
+        VnAttachment& attachment = pass.colors[slot];
+        attachment.view = colors[slot].view;
+        attachment.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+        for (int i = 0; i < 4; ++i) attachment.clear.color.float32[i] = background[i];
+    }
+    if (depth.view.id) {
+        pass.depthStencil.view = depth.view;
+        pass.depthStencil.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+        pass.depthStencil.clear.depthStencil.depth = 1;
+    }
+    must(vnBeginPass(context_, &pass));
+}
+
+void App::endPass() {
+    must(vnEndPass(context_));
 }
 
 VnProgram App::program(const std::string& vertexGlsl, const std::string& fragmentGlsl) {
     VnProgramDesc desc{};
     desc.vertex = compile(device_, VK_SHADER_STAGE_VERTEX_BIT, vertexGlsl);
-    desc.fragment = compile(device_, VK_SHADER_STAGE_FRAGMENT_BIT, fragmentGlsl);
+    if (!fragmentGlsl.empty()) desc.fragment = compile(device_, VK_SHADER_STAGE_FRAGMENT_BIT, fragmentGlsl);
+    VnProgram program{};
+    must(vnCreateProgram(device_, &desc, &program));
+    return program;
+}
+
+VnProgram App::computeProgram(const std::string& glsl) {
+    VnProgramDesc desc{};
+    desc.compute = compile(device_, VK_SHADER_STAGE_COMPUTE_BIT, glsl);
     VnProgram program{};
     must(vnCreateProgram(device_, &desc, &program));
     return program;
@@ -164,10 +178,98 @@ VnBuffer App::buffer(const void* data, size_t bytes) {
 }
 
 VnView App::texture(uint32_t width, uint32_t height, const std::vector<uint32_t>& texels) {
-    const VnImage image = makeImage(device_, VK_FORMAT_R8G8B8A8_SRGB, width, height, VN_ALL_MIPS);
+    VnImageDesc desc{};
+    desc.format = VK_FORMAT_R8G8B8A8_SRGB;
+    desc.width = width;
+    desc.height = height;
+    desc.mipLevels = VN_ALL_MIPS;
+    VnImage image{};
+    VnView view{};
+    must(vnCreateImage(device_, &desc, &image));
     must(vnUpdateImage(context_, image, nullptr, texels.data(), texels.size() * 4));
     must(vnGenerateMips(context_, image));
-    return wholeView(device_, image);
+    must(vnGetImageView(device_, image, &view));
+    return view;
+}
+
+Target App::target(VkFormat format, uint32_t width, uint32_t height) {
+    Target target;
+    VnImageDesc desc{};
+    desc.format = format;
+    target.width = desc.width = width ? width : options_.width;
+    target.height = desc.height = height ? height : options_.height;
+    must(vnCreateImage(device_, &desc, &target.image));
+    must(vnGetImageView(device_, target.image, &target.view));
+    return target;
+}
+
+VnSampler App::sampler(VkFilter filter, VkSamplerAddressMode address) {
+    VnSamplerDesc desc{};
+    desc.magFilter = desc.minFilter = filter;
+    desc.mipmapMode = filter == VK_FILTER_LINEAR ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
+    desc.addressU = desc.addressV = desc.addressW = address;
+    VnSampler sampler{};
+    must(vnCreateSampler(device_, &desc, &sampler));
+    return sampler;
+}
+
+VnVertexLayout App::layout(const std::vector<VnVertexAttribute>& attributes,
+                           const std::vector<VnVertexBinding>& bindings) {
+    VnVertexLayoutDesc desc{};
+    desc.attributes = attributes.data();
+    desc.attributeCount = static_cast<uint32_t>(attributes.size());
+    desc.bindings = bindings.data();
+    desc.bindingCount = static_cast<uint32_t>(bindings.size());
+    VnVertexLayout layout{};
+    must(vnCreateVertexLayout(device_, &desc, &layout));
+    return layout;
+}
+
+VnDepthStencilState App::depthState(bool write, VkCompareOp compare) {
+    VnDepthStencilStateDesc desc{};
+    desc.depthTest = 1;
+    desc.depthWrite = write;
+    desc.depthCompare = compare;
+    VnDepthStencilState state{};
+    must(vnCreateDepthStencilState(device_, &desc, &state));
+    return state;
+}
+
+VnRasterState App::rasterState(VkCullModeFlags cull, VkPolygonMode mode) {
+    VnRasterStateDesc desc{};
+    desc.cullMode = cull;
+    desc.polygonMode = mode;
+    VnRasterState state{};
+    must(vnCreateRasterState(device_, &desc, &state));
+    return state;
+}
+
+VnBlendState App::blendState(VkBlendFactor source, VkBlendFactor destination) {
+    VnBlendStateDesc desc{};
+    VnBlendAttachment& blend = desc.attachments[0];
+    blend.enable = 1;
+    blend.srcColor = blend.srcAlpha = source;
+    blend.dstColor = blend.dstAlpha = destination;
+    VnBlendState state{};
+    must(vnCreateBlendState(device_, &desc, &state));
+    return state;
+}
+
+Mesh App::mesh(const MeshData& data) {
+    return {buffer(data.vertices), buffer(data.indices), static_cast<uint32_t>(data.indices.size())};
+}
+
+VnVertexLayout App::meshLayout() {
+    return layout({{0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(MeshVertex, position)},
+                   {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(MeshVertex, normal)},
+                   {2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(MeshVertex, uv)}},
+                  {{sizeof(MeshVertex), 0}});
+}
+
+void App::draw(const Mesh& mesh, uint32_t instances) {
+    must(vnBindVertexBuffer(context_, 0, mesh.vertices, 0));
+    must(vnBindIndexBuffer(context_, mesh.indices, 0, VK_INDEX_TYPE_UINT32));
+    must(vnDrawIndexed(context_, mesh.indexCount, instances, 0, 0, 0));
 }
 
 std::vector<uint32_t> checkerTexels(uint32_t size, uint32_t cells, uint32_t first, uint32_t second) {
@@ -178,10 +280,11 @@ std::vector<uint32_t> checkerTexels(uint32_t size, uint32_t cells, uint32_t firs
     return texels;
 }
 
-glm::mat4 perspective(float fieldOfView, float aspect, float nearPlane, float farPlane) {
-    glm::mat4 matrix = glm::perspectiveRH_ZO(fieldOfView, aspect, nearPlane, farPlane);
-    matrix[1][1] = -matrix[1][1];
-    return matrix;
-}
+const char* const kFullScreenVertex = R"(#version 450
+layout(location = 0) out vec2 uv;
+void main() {
+    uv = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 2;
+    gl_Position = vec4(uv * 2 - 1, 0, 1);
+})";
 
 }  // namespace samples

@@ -1,7 +1,6 @@
 // A textured cube with its edges drawn over it: depth test, culling, two programs, index buffers, lines with depth
 // bias.
 #include <array>
-#include <glm/gtc/matrix_transform.hpp>
 
 #include "samples/common/app.h"
 
@@ -60,7 +59,7 @@ std::vector<uint16_t> faceIndices(const std::array<uint16_t, Count>& pattern) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    samples::App app(samples::parseOptions(argc, argv, "Textured cube"));
+    samples::App app(argc, argv, "Textured cube");
     VnDevice device = app.device();
     const VnProgram textured = app.program(kVertex, kTextured), edges = app.program(kVertex, kEdges);
     const VnView texture = app.texture(128, 128, samples::checkerTexels(128, 8, 0xFF2060C0, 0xFFF0F0F0));
@@ -92,10 +91,9 @@ int main(int argc, char** argv) {
     VnDepthStencilState depth{};
     vnCreateDepthStencilState(device, &depthDesc, &depth);
 
-    return app.run({0.02f, 0.02f, 0.03f, 1}, [&](double seconds) {
-        const auto angle = static_cast<float>(seconds * 0.8 + 0.6);
+    return app.run({0.02f, 0.02f, 0.03f, 1}, [&](const samples::Frame& frame) {
         const glm::mat4 view = glm::lookAt(glm::vec3(0, 2.2f, 4.2f), glm::vec3(0), glm::vec3(0, 1, 0));
-        const glm::mat4 model = glm::rotate(glm::mat4(1), angle, glm::vec3(0, 1, 0));
+        const glm::mat4 model = samples::rotation(frame.seconds * 0.8 + 0.6, {0, 1, 0});
         const glm::mat4 transform = samples::perspective(0.9f, app.aspect(), 0.1f, 100) * view * model;
         // The edges lie in the faces: a slightly larger cube lifts them off.
         const glm::mat4 lifted = transform * glm::scale(glm::mat4(1), glm::vec3(1.003f));

@@ -1,7 +1,6 @@
 // A textured floor that runs to the horizon: perspective-correct interpolation, mip levels, trilinear filtering.
-#include <glm/gtc/matrix_transform.hpp>
-
 #include "samples/common/app.h"
+#include "samples/common/trigonometry.h"
 
 namespace {
 
@@ -23,7 +22,7 @@ void main() { color = texture(image, uv); })";
 }  // namespace
 
 int main(int argc, char** argv) {
-    samples::App app(samples::parseOptions(argc, argv, "Textured quad"));
+    samples::App app(argc, argv, "Textured quad");
     const VnProgram program = app.program(kVertex, kFragment);
     const VnView texture = app.texture(64, 64, samples::checkerTexels(64, 2, 0xFF3355AA, 0xFFE8E0D0));
     VnSamplerDesc samplerDesc{};
@@ -32,9 +31,9 @@ int main(int argc, char** argv) {
     VnSampler sampler{};
     vnCreateSampler(app.device(), &samplerDesc, &sampler);
 
-    return app.run({0.35f, 0.55f, 0.8f, 1}, [&](double seconds) {
-        const auto angle = static_cast<float>(seconds * 0.3);
-        const glm::mat4 view = glm::lookAt(glm::vec3(std::sin(angle) * 6, 1.2f, std::cos(angle) * 6),
+    return app.run({0.35f, 0.55f, 0.8f, 1}, [&](const samples::Frame& frame) {
+        const double angle = frame.seconds * 0.3;
+        const glm::mat4 view = glm::lookAt(glm::vec3(samples::sineF(angle) * 6, 1.2f, samples::cosineF(angle) * 6),
                                            glm::vec3(0, 0.6f, 0), glm::vec3(0, 1, 0));
         const glm::mat4 transform = samples::perspective(1.0f, app.aspect(), 0.1f, 100) * view;
         VnContext context = app.context();
