@@ -118,7 +118,8 @@ Result<FragmentShader> FragmentShader::create(const Scene& scene, const ScenePip
 }
 
 void FragmentShader::setVariable(const InterfaceVariable& variable, const FragmentSource& source,
-                                 const std::array<double, 3>& weights, Values& values) const {
+                                 const HomogeneousTriangle<double>& shape, const std::array<double, 3>& weights,
+                                 Values& values) const {
     for (uint32_t k = 0; k < variable.locations; ++k) {
         const reference::Location location(variable.location + k);
         std::array<reference::Texel<double>, 3> at{};
@@ -134,20 +135,19 @@ void FragmentShader::setVariable(const InterfaceVariable& variable, const Fragme
                 continue;
             }
             const std::array<double, 3> f{at[0][c].number, at[1][c].number, at[2][c].number};
-            const auto& shape = source.triangle->homogeneous();
             texel[c].number = variable.noPerspective ? shape.linear(weights, f) : shape.perspective(weights, f);
         }
     }
 }
 
-std::array<FragmentShader::Values, 4> FragmentShader::inputsAt(const FragmentSource& source, uint32_t x, uint32_t y,
-                                                               const ShadingPlace& place, double shiftX, double shiftY,
-                                                               size_t centroid, bool centred) const {
+std::array<FragmentShader::Values, 4> FragmentShader::inputsAt(const FragmentSource& source,
+                                                               const HomogeneousTriangle<double>& shape, uint32_t x,
+                                                               uint32_t y, const ShadingPlace& place, double shiftX,
+                                                               double shiftY, size_t centroid, bool centred) const {
     std::array<Values, 4> result;
     for (uint32_t lane = 0; lane < 4; ++lane) {
         Values& values = result[lane];
         const double px = x + lane % 2 + place.offset[0], py = y + lane / 2 + place.offset[1];
-        const auto& shape = source.triangle->homogeneous();
         const auto weights = shape.weights(px + shiftX, py + shiftY);
         const auto centreWeights = shape.weights(x + lane % 2 + 0.5 + shiftX, y + lane / 2 + 0.5 + shiftY);
         auto centroidWeights = weights;
@@ -157,7 +157,7 @@ std::array<FragmentShader::Values, 4> FragmentShader::inputsAt(const FragmentSou
         }
         for (const InterfaceVariable& v : inputs_) {
             if (!v.isBuiltin) {
-                setVariable(v, source,
+                setVariable(v, source, shape,
                             v.centroid             ? centroidWeights
                             : centred && !v.sample ? centreWeights
                                                    : weights,
@@ -203,6 +203,45 @@ std::array<FragmentShader::Values, 4> FragmentShader::inputsAt(const FragmentSou
     return result;
 }
 
+Result<FragmentShader::Outcomes> FragmentShader::runQuad(const Interpreter& shader, const std::array<Values, 4>& inputs,
+                                                         const std::array<bool, 4>& helper,
+                                                         ShaderResources& resources) {
+    resources.runs.emplace_back();
+    return shader.runQuad(inputs, helper, resources);
+}
+
+Status FragmentShader::addMoved(const FragmentSource& source, uint32_t x, uint32_t y, const ShadingPlace& place,
+                                const std::array<bool, 4>& helper, ShaderResources& resources, ShaderRuns& runs) const {
+    const HomogeneousTriangle<double>& shape = source.triangle->homogeneous();
+    const double d = source.triangle->freedomAt(x + 1.0, y + 1.0);
+    const auto add = [&](auto& list, const std::array<Values, 4>& inputs) -> Status {
+        auto outcome = runQuad(nominal_, inputs, helper, resources);
+        if (!outcome) return outcome.error();
+        list.push_back(std::move(*outcome));
+        return {};
+    };
+    constexpr double kFine = 0x1p-7;  // a 256th of a pixel and what rounding adds to it
+    const bool isTriangle = source.vertices[2] != source.vertices[0];
+    if (d < kFine || !isTriangle) {
+        for (const double dx : {-d, d}) {
+            for (const double dy : {-d, d}) {
+                if (Status s = add(runs.shifted, inputsAt(source, shape, x, y, place, dx, dy)); !s) return s;
+            }
+        }
+        return {};
+    }
+    for (size_t coordinate = 0; coordinate < runs.moved.size(); ++coordinate) {
+        for (const double by : {-d, d}) {
+            std::array<WindowVertex<double>, 3> vertices = shape.vertex;
+            WindowVertex<double>& vertex = vertices[coordinate / 2];
+            (coordinate % 2 == 0 ? vertex.x : vertex.y) += by * vertex.w;
+            const HomogeneousTriangle<double> moved(vertices);
+            if (Status s = add(runs.moved[coordinate], inputsAt(source, moved, x, y, place, 0, 0)); !s) return s;
+        }
+    }
+    return {};
+}
+
 Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSource& source, uint32_t x, uint32_t y,
                                                                const std::array<bool, 4>& covered,
                                                                const OutputState& output, ShaderResources& resources,
@@ -211,12 +250,14 @@ Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSou
     std::array<bool, 4> helper;
     for (size_t i = 0; i < 4; ++i) helper[i] = !covered[i];
     const auto run = [&](const Interpreter& shader, const std::array<Values, 4>& inputs) {
-        return shader.runQuad(inputs, helper, resources);
+        return runQuad(shader, inputs, helper, resources);
     };
     resources.end = RangeEnd::nominal;
+    resources.runs.clear();
     resources.sawRange = false;
     resources.flags = 0;
-    const auto inputs = inputsAt(source, x, y, place, 0, 0);
+    const HomogeneousTriangle<double>& shape = source.triangle->homogeneous();
+    const auto inputs = inputsAt(source, shape, x, y, place, 0, 0);
     auto nominal = run(nominal_, inputs);
     if (!nominal) return nominal.error();
     runs.nominal = std::move(*nominal);
@@ -228,20 +269,16 @@ Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSou
         return {};
     };
     if (variesWithPosition_) {
-        const double d = source.triangle->freedom();
-        for (const double dx : {-d, d}) {
-            for (const double dy : {-d, d}) {
-                if (Status s = add(runs.shifted, nominal_, inputsAt(source, x, y, place, dx, dy)); !s) return s.error();
-            }
-        }
+        if (Status s = addMoved(source, x, y, place, helper, resources, runs); !s) return s.error();
     }
     size_t centroids = 0;
     for (const auto& places : place.centroids) centroids = std::max(centroids, places.size());
     for (size_t i = 1; i < centroids; ++i) {
-        if (Status s = add(runs.shifted, nominal_, inputsAt(source, x, y, place, 0, 0, i)); !s) return s.error();
+        if (Status s = add(runs.shifted, nominal_, inputsAt(source, shape, x, y, place, 0, 0, i)); !s) return s.error();
     }
     if (place.perSample) {
-        if (Status s = add(runs.shifted, nominal_, inputsAt(source, x, y, place, 0, 0, 0, true)); !s) return s.error();
+        if (Status s = add(runs.shifted, nominal_, inputsAt(source, shape, x, y, place, 0, 0, 0, true)); !s)
+            return s.error();
     }
     if (filtered) {
         for (const RangeEnd end : {RangeEnd::low, RangeEnd::high}) {
@@ -254,12 +291,14 @@ Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSou
         if (Status s = add(runs.coarse, *coarse_, inputs); !s) return s.error();
     }
     if (Status s = add(runs.rounded, rounded_, inputs); !s) return s.error();
-    if (resources.wrote) return unsupported("oracle: the fragment shader uses storage buffers or images");
+    if (resources.wrote) return unsupported("oracle: the fragment shader uses storage buffers");
 
     std::array<FragmentResult, 4> results;
     for (size_t lane = 0; lane < 4; ++lane) {
         results[lane] = combineRuns(runs, lane, outputs_, imprecision_, output.colorCount);
         for (OracleFlags& flags : results[lane].colorFlags) flags |= resources.flags;
+        results[lane].writes = combineWrites(resources.runs, static_cast<uint32_t>(lane), resources.sceneMemory(),
+                                             imprecision_, resources.flags);
     }
     return results;
 }

@@ -2,8 +2,8 @@
 //
 // Method: the nominal run has exact inputs at the sample's place. Further runs see
 //   - the quad moved by the snapping freedom in the four diagonal directions (inputs, FragCoord.z and w move;
-//   FragCoord.xy
-//     does not);
+//     FragCoord.xy does not). Freedom coarser than a 256th of a pixel also turns and stretches triangles: then every
+//     coordinate of every vertex moves by itself, and the six deviations add up;
 //   - centroid inputs at each of the places they may choose;
 //   - every texture read at the lower, then at the upper end of its range;
 //   - derivatives per quad instead of per row and column (where the module takes derivatives);
@@ -52,6 +52,8 @@ struct ShadingPlace {
     std::array<std::vector<std::array<double, 2>>, 4> centroids;
 };
 
+struct ShaderRuns;
+
 class FragmentShader {
   public:
     /// For pipelines without a fragment shader, use no FragmentShader at all.
@@ -74,11 +76,21 @@ class FragmentShader {
     FragmentShader(reference::Module module, Interpreter nominal, Interpreter rounded)
         : module_(std::move(module)), nominal_(std::move(nominal)), rounded_(std::move(rounded)) {}
 
-    /// `centroid`: which of each lane's places centroid inputs take; `centred`: inputs without Sample at the centre.
-    std::array<Values, 4> inputsAt(const FragmentSource& source, uint32_t x, uint32_t y, const ShadingPlace& place,
-                                   double shiftX, double shiftY, size_t centroid = 0, bool centred = false) const;
+    /// One run of a quad; its stores are kept apart.
+    static Result<Outcomes> runQuad(const Interpreter& shader, const std::array<Values, 4>& inputs,
+                                    const std::array<bool, 4>& helper, ShaderResources& resources);
+    /// Runs with the vertices where else snapping may have put them.
+    Status addMoved(const FragmentSource& source, uint32_t x, uint32_t y, const ShadingPlace& place,
+                    const std::array<bool, 4>& helper, ShaderResources& resources, ShaderRuns& runs) const;
+
+    /// `shape`: of the triangle, or with vertices moved. `centroid`: which of each lane's places centroid inputs take;
+    /// `centred`: inputs without Sample at the centre.
+    std::array<Values, 4> inputsAt(const FragmentSource& source, const HomogeneousTriangle<double>& shape, uint32_t x,
+                                   uint32_t y, const ShadingPlace& place, double shiftX, double shiftY,
+                                   size_t centroid = 0, bool centred = false) const;
     void setVariable(const reference::InterfaceVariable& variable, const FragmentSource& source,
-                     const std::array<double, 3>& weights, Values& values) const;
+                     const HomogeneousTriangle<double>& shape, const std::array<double, 3>& weights,
+                     Values& values) const;
 
     reference::Module module_;
     Interpreter nominal_, rounded_;

@@ -22,6 +22,7 @@ enum OracleFlag : uint16_t {
     kOracleWeights = 64,     // weights of a linear filter, of at least the declared bits
     kOracleLevel = 128,      // level of detail
     kOracleUndefined = 256,  // the specification defines no value
+    kOracleSequence = 512,   // of what is open: the edges of one polygon come in whatever order
 };
 using OracleFlags = uint16_t;
 /// Those of a pixel whose value cannot be held against anyone to the last digit.
@@ -47,6 +48,9 @@ struct OracleRules {
     // Attributes of Bresenham lines by the major axis alone. Not what the specification says: for explaining what an
     // implementation does.
     bool majorAxisLines = false;
+    // The same of depths of samples at x mirrored within the pixel; of depths and inputs extrapolated from snapped
+    // vertices behind the eye; of linear blits whose coordinates are truncated instead of floored.
+    bool mirroredDepths = false, planesBehindEye = false, truncatedBlits = false;
 };
 
 /// One image per Scene::outputs, in that order. An error with code `unsupported` when the scene uses

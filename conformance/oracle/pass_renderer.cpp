@@ -21,9 +21,15 @@ namespace {
 class PassRenderer {
   public:
     /// `layer`: of the attachments' layers the one to render; `view`: whether it is a view, which gets every draw.
-    PassRenderer(const Scene& scene, const ScenePass& pass, const OracleRules& rules, std::vector<ImageStore>& images,
-                 uint32_t layer, bool view)
-        : scene_(scene), pass_(pass), rules_(rules), images_(images), layer_(layer), view_(view) {}
+    PassRenderer(const Scene& scene, const ScenePass& pass, const OracleRules& rules, Memory& memory, uint32_t layer,
+                 bool view)
+        : scene_(scene),
+          pass_(pass),
+          rules_(rules),
+          memory_(memory),
+          images_(memory.images),
+          layer_(layer),
+          view_(view) {}
 
     Status run() {
         if (Status s = load(); !s) return s;
@@ -63,10 +69,26 @@ class PassRenderer {
         state_.resize(static_cast<size_t>(width_) * height_ * samples_);
         for (uint32_t y = 0; y < height_; ++y) {
             for (uint32_t x = 0; x < width_; ++x) {
-                for (uint32_t s = 0; s < samples_; ++s) at(x, y, s) = {loadSample(x, y, s)};
+                for (uint32_t s = 0; s < samples_; ++s) at(x, y, s) = loadStates(x, y, s);
             }
         }
         return {};
+    }
+
+    /// A loaded stencil that may hold several codes is each of them in turn; the operations on it are on codes.
+    Sample loadStates(uint32_t x, uint32_t y, uint32_t s) {
+        Sample states{loadSample(x, y, s)};
+        const SceneAttachment& a = pass_.depthStencil;
+        if (!output_.depthFormat || !output_.depthFormat->stencil || a.loadOp != VK_ATTACHMENT_LOAD_OP_LOAD)
+            return states;
+        const StoredTexel& texel = attachment(a)->at(x, y, s);
+        constexpr OracleFlags kReasons = kOracleTie | kOracleSnap | kOracleOrder | kOraclePattern | kOracleSequence;
+        for (double code = texel.channels[1].low; code <= texel.channels[1].high; ++code) {
+            SampleState other = states[0];
+            other.stencil = static_cast<uint8_t>(code);
+            addAlternatives(states, {other}, texel.flags & kReasons);
+        }
+        return states;
     }
 
     SampleState loadSample(uint32_t x, uint32_t y, uint32_t s) {
@@ -116,7 +138,7 @@ class PassRenderer {
         if (Status s = checkModelled(pipeline); !s) return s;
         OutputState output = output_;
         output.pipeline = &pipeline;
-        ShaderResources vertexResources(scene_, images_, draw, rules_);
+        ShaderResources vertexResources(scene_, memory_, draw, rules_);
         const uint32_t viewIndex = view_ ? layer_ : 0;
         auto geometry = assembleDraw(scene_, draw, vertexResources, viewIndex);
         if (!geometry) return geometry.error();
@@ -133,7 +155,8 @@ class PassRenderer {
                                      rules_.subPixelBits,
                                      output_.depthFormat,
                                      view_ ? std::nullopt : std::optional(layer_),
-                                     rules_.majorAxisLines};
+                                     rules_.majorAxisLines,
+                                     rules_.planesBehindEye};
         const Result<std::vector<PreparedPrimitive>> primitives = preparePrimitives(context, *geometry);
         if (!primitives) return primitives.error();
         positions_ = locations(pipeline);
@@ -142,21 +165,37 @@ class PassRenderer {
         // threads.
         const uint32_t threads = std::clamp(std::thread::hardware_concurrency(), 1u, 16u);
         std::vector<Status> status(threads);
+        std::vector<std::vector<TexelWrite>> writes(threads);
         std::vector<std::thread> workers;
         for (uint32_t t = 0; t < threads; ++t) {
             workers.emplace_back([&, t] {
-                ShaderResources resources(scene_, images_, draw, rules_);
-                for (uint32_t row = t * 2; row < height_ && status[t].ok(); row += threads * 2) {
-                    for (const PreparedPrimitive& primitive : *primitives) {
-                        status[t] = shadeRow(primitive, row, shader ? &*shader : nullptr, output, resources);
-                        if (!status[t]) break;
-                    }
-                }
+                ShaderResources resources(scene_, memory_, draw, rules_);
+                for (uint32_t row = t * 2; row < height_ && status[t].ok(); row += threads * 2)
+                    status[t] = shadeRows(*primitives, row, shader ? &*shader : nullptr, output, resources);
+                writes[t] = std::move(resources.writes);
+                if (status[t].ok() && !writes[t].empty()) status[t] = checkStores(pipeline, resources);
             });
         }
         for (std::thread& worker : workers) worker.join();
         for (const Status& s : status) {
             if (!s) return s;
+        }
+        for (const std::vector<TexelWrite>& each : writes) {
+            if (Status s = applyWrites(scene_, each, memory_); !s) return s;
+        }
+        return {};
+    }
+
+    /// Stores are modelled where every fragment makes them, and where nothing in the draw depends on their order.
+    static Status checkStores(const ScenePipeline& pipeline, const ShaderResources& resources) {
+        if (pipeline.depthTest || pipeline.stencilTest || pipeline.depthBoundsTest)
+            return unsupported("oracle: stores of fragments that tests may have dropped");
+        for (const TexelWrite& write : resources.writes) {
+            for (const SceneBinding* read : resources.loads) {
+                if (read->type == write.binding->type && read->image == write.binding->image &&
+                    read->buffer == write.binding->buffer)
+                    return unsupported("oracle: a draw that loads from what it stores to");
+            }
         }
         return {};
     }
@@ -186,6 +225,56 @@ class PassRenderer {
         const int64_t unit = (int64_t{1} << rules_.subPixelBits) / 16;
         return {(int64_t{x} << rules_.subPixelBits) + positions_[s].x * unit,
                 (int64_t{y} << rules_.subPixelBits) + positions_[s].y * unit};
+    }
+
+    /// All primitives in their order, in the two pixel rows of quads that begin at `row`.
+    Status shadeRows(std::span<const PreparedPrimitive> primitives, uint32_t row, const FragmentShader* shader,
+                     const OutputState& output, ShaderResources& resources) {
+        for (size_t first = 0; first < primitives.size();) {
+            size_t end = first + 1;
+            const uint64_t outline = primitives[first].outline;
+            while (end < primitives.size() && outline != 0 && primitives[end].outline == outline) ++end;
+            const auto edges = primitives.subspan(first, end - first);
+            if (Status s = shadeOutline(edges, row, shader, output, resources); !s) return s;
+            first = end;
+        }
+        return {};
+    }
+
+    /// The edges or corners of one polygon. Vulkan, Rasterization Order, orders primitives, and they are one: what they
+    /// leave in any of their orders is permitted.
+    Status shadeOutline(std::span<const PreparedPrimitive> edges, uint32_t row, const FragmentShader* shader,
+                        const OutputState& output, ShaderResources& resources) {
+        std::vector<size_t> order;
+        for (size_t i = 0; i < edges.size(); ++i) {
+            const PixelBounds& bounds = edges[i].bounds;
+            if (bounds.y0 < static_cast<int32_t>(row) + 2 && bounds.y1 > static_cast<int32_t>(row)) order.push_back(i);
+        }
+        const auto shadeAll = [&]() -> Status {
+            for (const size_t i : order) {
+                if (Status s = shadeRow(edges[i], row, shader, output, resources); !s) return s;
+            }
+            return {};
+        };
+        if (order.size() < 2) return shadeAll();
+        const size_t begin = static_cast<size_t>(row) * width_ * samples_;
+        const size_t count = std::min(size_t{2}, static_cast<size_t>(height_ - row)) * width_ * samples_;
+        const std::vector<Sample> before(state_.begin() + static_cast<ptrdiff_t>(begin),
+                                         state_.begin() + static_cast<ptrdiff_t>(begin + count));
+        std::vector<Sample> declared;
+        do {
+            std::copy(before.begin(), before.end(), state_.begin() + static_cast<ptrdiff_t>(begin));
+            if (Status s = shadeAll(); !s) return s;
+            for (size_t i = 0; i < count; ++i) {
+                if (declared.size() < count) {
+                    declared.push_back(state_[begin + i]);
+                } else {
+                    addAlternatives(declared[i], state_[begin + i], kOracleSequence);
+                }
+            }
+        } while (std::ranges::next_permutation(order).found);
+        std::ranges::move(declared, state_.begin() + static_cast<ptrdiff_t>(begin));
+        return {};
     }
 
     // The two pixel rows of quads that begin at `row`.
@@ -241,6 +330,8 @@ class PassRenderer {
                                                output, resources, place);
                 if (!shaded) return shaded.error();
                 fragments = std::move(*shaded);
+                for (size_t lane = 0; lane < 4; ++lane)
+                    keepWrites(fragments[lane], std::span(verdicts).subspan(lane * samples_, samples_), resources);
             } else {
                 for (FragmentResult& fragment : fragments) fragment.colorFlags.fill(kOracleUnknown);
             }
@@ -253,6 +344,14 @@ class PassRenderer {
             }
         }
         return {};
+    }
+
+    static void keepWrites(const FragmentResult& fragment, std::span<const SampleVerdict> verdicts,
+                           ShaderResources& resources) {
+        for (TexelWrite write : fragment.writes) {
+            write.open = std::ranges::none_of(verdicts, [](const SampleVerdict& v) { return v.isCertain(); });
+            resources.writes.push_back(write);
+        }
     }
 
     /// Where centroid inputs may be taken: at the centre when all samples are covered, else at any place of the pixel
@@ -296,7 +395,12 @@ class PassRenderer {
             for (Color& color : fragment.colors) color[3] = 1.0;
         }
         input.fragment = &fragment;
-        input.depth = t.carrier.depth(point) + t.bias;
+        GridPoint depthPoint = point;
+        if (rules_.mirroredDepths) {
+            const int64_t unit = int64_t{1} << rules_.subPixelBits;
+            depthPoint.x = (2 * int64_t{x} + 1) * unit - point.x;
+        }
+        input.depth = t.carrier.depth(depthPoint) + t.bias;
         // Without depth clamping fragments beyond the viewport's range have been clipped; rounding leaves no
         // more than a trace.
         const auto [low, high] = std::minmax(t.viewport.minDepth, t.viewport.maxDepth);
@@ -369,6 +473,7 @@ class PassRenderer {
     const Scene& scene_;
     const ScenePass& pass_;
     const OracleRules& rules_;
+    Memory& memory_;
     std::vector<ImageStore>& images_;
     const uint32_t layer_;
     const bool view_;
@@ -380,15 +485,14 @@ class PassRenderer {
 
 }  // namespace
 
-Status renderPass(const Scene& scene, const ScenePass& pass, const OracleRules& rules,
-                  std::vector<ImageStore>& images) {
+Status renderPass(const Scene& scene, const ScenePass& pass, const OracleRules& rules, Memory& memory) {
     uint32_t layers = pass.depthStencil.image != kNone ? pass.depthStencil.layerCount : ~0u;
     for (const SceneAttachment& color : pass.colors) layers = std::min(layers, color.layerCount);
     if (layers == ~0u) layers = 1;
     for (uint32_t layer = 0; layer < layers; ++layer) {
         const bool view = pass.viewMask != 0;
         if (view && (pass.viewMask >> layer & 1) == 0) continue;
-        if (Status s = PassRenderer(scene, pass, rules, images, layer, view).run(); !s) return s;
+        if (Status s = PassRenderer(scene, pass, rules, memory, layer, view).run(); !s) return s;
     }
     return {};
 }

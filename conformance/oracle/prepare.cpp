@@ -74,8 +74,13 @@ class Preparer {
     }
 
     Triangle::Setup setupOf(const std::array<const ShadedVertex*, 3>& vertices) const {
-        Triangle::Setup setup{{}, viewport_, context_.pipeline.depthClip.value_or(!context_.pipeline.depthClamp),
-                              {}, viewHash_, context_.subPixelBits};
+        Triangle::Setup setup{{},
+                              viewport_,
+                              context_.pipeline.depthClip.value_or(!context_.pipeline.depthClamp),
+                              {},
+                              viewHash_,
+                              context_.subPixelBits,
+                              context_.planesBehindEye};
         size_t distances = ~size_t{0};
         for (size_t k = 0; k < 3; ++k) {
             setup.position[k] = vertices[k]->position;
@@ -104,7 +109,7 @@ class Preparer {
         if (culled && (!triangle->orientationOpen() || pipeline.cullMode == VK_CULL_MODE_FRONT_AND_BACK)) return {};
         const PixelBounds bounds = triangle->bounds(limits_);
         if (bounds.empty()) return {};
-        PreparedPrimitive prepared{std::move(*triangle), source, bounds, viewport_, 0.0, 0, culled, {}, {}};
+        PreparedPrimitive prepared{std::move(*triangle), source, bounds, viewport_, 0.0, 0, 0, culled, {}, {}};
         prepared.depthOrigin = prepared.carrier.identity();
         if (pipeline.depthBias && context_.depthFormat) {
             prepared.bias = biasOf(prepared.carrier, pipeline, context_.depthFormat->format);
@@ -123,12 +128,15 @@ class Preparer {
             const bool inside = std::abs(p[0]) <= p[3] && std::abs(p[1]) <= p[3] && p[2] >= 0 && p[2] <= p[3];
             if (!inside) return unsupported("oracle: outlines of clipped polygons");
         }
+        const size_t first = result_.size();
         for (size_t i = 0; i < 3; ++i) {
             const Status status = context_.pipeline.polygonMode == VK_POLYGON_MODE_POINT
                                       ? addPoint(*vertices[i], source, 1)
                                       : addLine(*vertices[i], *vertices[(i + 1) % 3], source, true);
             if (!status) return status;
         }
+        ++outlines_;
+        for (size_t i = first; i < result_.size(); ++i) result_[i].outline = outlines_;
         return {};
     }
 
@@ -179,7 +187,7 @@ class Preparer {
         if (!carrier || bounds.empty()) return {};
         const uint64_t origin = carrier->identity();
         result_.push_back(
-            {std::move(*carrier), source, bounds, viewport_, 0.0, origin, false, std::move(line), std::move(point)});
+            {std::move(*carrier), source, bounds, viewport_, 0.0, origin, 0, false, std::move(line), std::move(point)});
         return {};
     }
 
@@ -189,6 +197,7 @@ class Preparer {
     PixelBounds limits_;
     uint64_t viewHash_ = 0;  // vertices with equal clip coordinates snap alike in one view
     int64_t stippleStart_ = 0, stippleFreedom_ = 0;
+    uint64_t outlines_ = 0;
     std::vector<PreparedPrimitive> result_;
 };
 

@@ -18,7 +18,8 @@ struct PreparedPrimitive {
     VkViewport viewport{};
     Interval bias;  // of depth
     uint64_t depthOrigin = 0;
-    bool culled = false;  // nominally; only kept if another orientation is legal
+    uint64_t outline = 0;  // which polygon it is an edge or a corner of; 0: none
+    bool culled = false;   // nominally; only kept if another orientation is legal
     std::optional<LineShape> line;
     std::optional<PointShape> point;
 
@@ -36,7 +37,8 @@ struct PrepareContext {
     int subPixelBits = 8;
     const PixelFormat* depthFormat = nullptr;
     std::optional<uint32_t> layer;  // only primitives of this layer
-    bool majorAxisLines = false;    // OracleRules::majorAxisLines
+    // Of OracleRules.
+    bool majorAxisLines = false, planesBehindEye = false;
 };
 
 /// In the order of the draw. The geometry must outlive the result.

@@ -89,14 +89,31 @@ Color clampForFormat(const PixelFormat& format, Color color) {
     return color;
 }
 
-// Blending needs the precision of the destination only: the source, products and sums may each be rounded to its codes,
-// one code altogether. A source that is a code already, with factors of 0 and 1, leaves nothing to round.
-constexpr double kBlendBudget = 1;
+/// One operand of a blend equation with its factor.
+struct BlendTerm {
+    const Interval& operand;
+    const Interval& factor;
+    bool operandIsCode, factorIsCode;  // as stored already: nothing to round
+};
 
-bool isTrivial(VkBlendFactor factor, size_t channel, const Color& source, const Color& destination,
-               const Color& constants, const Color& source1) {
-    const Interval f = blendFactor(factor, channel, source, destination, constants, source1);
-    return f == Interval(0.0) || f == Interval(1.0);
+double magnitude(const Interval& v) {
+    return std::max(std::abs(v.low), std::abs(v.high));
+}
+
+/// Vulkan, Blending: "basic blend operations are performed with a precision and dynamic range no lower than that used
+/// to represent destination components": an operand, its factor and their product may each be rounded to a code. By how
+/// many codes all three may move the term.
+double roundingOf(const BlendTerm& term) {
+    if (term.factor == Interval(0.0) || term.operand == Interval(0.0)) return 0;
+    const bool whole = term.factor == Interval(1.0);
+    return (term.operandIsCode ? 0 : magnitude(term.factor) / 2) +
+           (whole || term.factorIsCode ? 0 : magnitude(term.operand) / 2) + (whole ? 0 : 0.5);
+}
+
+/// Whether a blend factor is a component of the destination, or 1 less it: those are codes.
+bool isOfDestination(VkBlendFactor factor) {
+    return factor == VK_BLEND_FACTOR_DST_COLOR || factor == VK_BLEND_FACTOR_DST_ALPHA ||
+           factor == VK_BLEND_FACTOR_ONE_MINUS_DST_COLOR || factor == VK_BLEND_FACTOR_ONE_MINUS_DST_ALPHA;
 }
 
 /// A logic operation on codes (Vulkan, Logical Operations).
@@ -202,14 +219,20 @@ void writeColors(const OutputState& output, const FragmentResult& fragment, Samp
             const Color source1 = clampForFormat(*format, fragment.source1.value_or(Color{}));
             for (size_t c = 0; c < 4; ++c) {
                 result[c] = blendComponent(state, c, source, s.colors[i], constants, source1);
-                const auto trivial = [&](VkBlendFactor color, VkBlendFactor alpha) {
-                    return isTrivial(c == 3 ? alpha : color, c, source, s.colors[i], constants, source1);
-                };
-                const bool exactly = trivial(state.srcColorBlendFactor, state.srcAlphaBlendFactor) &&
-                                     trivial(state.dstColorBlendFactor, state.dstAlphaBlendFactor);
                 const Component* component = format->channel(static_cast<uint8_t>(c));
-                const bool stored = component && quantise(*component, source[c]).isExact();
-                budget[c] = exactly && stored ? 0 : kBlendBudget;
+                const bool sourceIsCode = component && quantise(*component, source[c]).isExact();
+                const VkBlendOp op = c == 3 ? state.alphaBlendOp : state.colorBlendOp;
+                if (op == VK_BLEND_OP_MIN || op == VK_BLEND_OP_MAX) {
+                    budget[c] = sourceIsCode ? 0 : 0.5;
+                    continue;
+                }
+                const auto term = [&](VkBlendFactor color, VkBlendFactor alpha, const Interval& operand, bool isCode) {
+                    const VkBlendFactor factor = c == 3 ? alpha : color;
+                    const Interval value = blendFactor(factor, c, source, s.colors[i], constants, source1);
+                    return roundingOf({operand, value, isCode, isOfDestination(factor)});
+                };
+                budget[c] = term(state.srcColorBlendFactor, state.srcAlphaBlendFactor, source[c], sourceIsCode) +
+                            term(state.dstColorBlendFactor, state.dstAlphaBlendFactor, s.colors[i][c], true);
             }
         }
         OracleFlags& flags = s.flags[i];
@@ -230,10 +253,14 @@ void writeColors(const OutputState& output, const FragmentResult& fragment, Samp
     }
 }
 
-class Splitter {
-  public:
-    Splitter(const OutputState& output, const SampleInput& input) : output_(output), input_(input) {}
+/// Notes reasons why what is drawn is open.
+void mark(SampleState& state, OracleFlags reasons) {
+    for (OracleFlags& flags : state.flags) flags |= reasons;
+}
 
+/// States that differ, the declared one first.
+class StateSet {
+  public:
     void add(SampleState state, bool nominal) {
         for (size_t i = 0; i < states_.size(); ++i) {
             if (!states_[i].sameContents(state)) continue;
@@ -248,6 +275,34 @@ class Splitter {
         if (nominal) makeFirst(states_.size() - 1);
         if (states_.size() > kMaxStates) uniteLastTwo();
     }
+
+    Sample take() { return std::move(states_); }
+
+  private:
+    void makeFirst(size_t index) {
+        if (index != 0) std::swap(states_[0], states_[index]);
+    }
+
+    void uniteLastTwo() {
+        SampleState last = std::move(states_.back());
+        states_.pop_back();
+        SampleState& into = states_.back();
+        for (size_t i = 0; i < kMaxColorAttachments; ++i) {
+            for (size_t c = 0; c < 4; ++c) into.colors[i][c] = into.colors[i][c].united(last.colors[i][c]);
+        }
+        into.depth = into.depth.united(last.depth);
+        if (into.depthOrigin != last.depthOrigin) into.depthOrigin = 0;
+        const OracleFlags lost = into.stencil == last.stencil ? kOracleEdge : kOracleEdge | kOracleUnknown;
+        for (size_t i = 0; i < into.flags.size(); ++i) into.flags[i] |= last.flags[i] | lost;
+        into.decisions.clear();
+    }
+
+    Sample states_;
+};
+
+class Splitter {
+  public:
+    Splitter(const OutputState& output, const SampleInput& input) : output_(output), input_(input) {}
 
     // One state meets the triangle.
     void process(const SampleState& before, bool nominal) {
@@ -279,18 +334,9 @@ class Splitter {
         testAndWrite(std::move(state), nominal);
     }
 
-    Sample take() { return std::move(states_); }
+    Sample take() { return states_.take(); }
 
   private:
-    void makeFirst(size_t index) {
-        if (index != 0) std::swap(states_[0], states_[index]);
-    }
-
-    /// Notes a reason why what is drawn is open.
-    static void mark(SampleState& state, OracleFlag reason) {
-        for (OracleFlags& flags : state.flags) flags |= reason;
-    }
-
     // The uncovered alternative of an open question goes its own way.
     void splitOff(SampleState& state, bool& nominal, bool open, bool covered, OracleFlag reason) {
         if (!open) return;
@@ -355,23 +401,11 @@ class Splitter {
         }
     }
 
-    void uniteLastTwo() {
-        SampleState last = std::move(states_.back());
-        states_.pop_back();
-        SampleState& into = states_.back();
-        for (size_t i = 0; i < kMaxColorAttachments; ++i) {
-            for (size_t c = 0; c < 4; ++c) into.colors[i][c] = into.colors[i][c].united(last.colors[i][c]);
-        }
-        into.depth = into.depth.united(last.depth);
-        if (into.depthOrigin != last.depthOrigin) into.depthOrigin = 0;
-        const OracleFlags lost = into.stencil == last.stencil ? kOracleEdge : kOracleEdge | kOracleUnknown;
-        for (size_t i = 0; i < into.flags.size(); ++i) into.flags[i] |= last.flags[i] | lost;
-        into.decisions.clear();
-    }
+    void add(SampleState state, bool nominal) { states_.add(std::move(state), nominal); }
 
     const OutputState& output_;
     const SampleInput& input_;
-    Sample states_;
+    StateSet states_;
 };
 
 }  // namespace
@@ -379,6 +413,22 @@ class Splitter {
 bool SampleState::sameContents(const SampleState& other) const {
     return stencil == other.stencil && depth == other.depth && depthOrigin == other.depthOrigin &&
            flags == other.flags && colors == other.colors;
+}
+
+void addAlternatives(Sample& sample, const Sample& others, OracleFlags reasons) {
+    const auto isIn = [&sample](const SampleState& other) {
+        return std::ranges::any_of(sample, [&](const SampleState& each) { return each.sameContents(other); });
+    };
+    if (std::ranges::all_of(others, isIn)) return;
+    StateSet states;
+    bool nominal = true;
+    for (const Sample* each : {static_cast<const Sample*>(&sample), &others}) {
+        for (SampleState state : *each) {
+            mark(state, reasons);
+            states.add(std::move(state), std::exchange(nominal, false));
+        }
+    }
+    sample = states.take();
 }
 
 void applyTriangle(const OutputState& output, const SampleInput& input, Sample& sample) {

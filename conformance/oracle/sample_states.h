@@ -6,6 +6,7 @@
 #pragma once
 
 #include "conformance/oracle/image_store.h"
+#include "conformance/oracle/memory.h"
 #include "conformance/oracle/triangle.h"
 #include "conformance/scene/scene.h"
 
@@ -45,6 +46,7 @@ struct FragmentResult {
     std::array<OracleFlags, kMaxColorAttachments> colorFlags{};  // of OracleFlag
     std::optional<Color> source1;                                // dual-source blending
     std::optional<Interval> depth;                               // FragDepth
+    std::vector<TexelWrite> writes;                              // in the order of the shader
     bool discarded = false, discardOpen = false;
 };
 
@@ -66,6 +68,9 @@ struct SampleInput {
     bool frontFacing = false;
     bool coverageOpen = false;  // alpha to coverage with alpha between 0 and 1
 };
+
+/// Adds what a sample may hold instead, for `reasons`; the declared state stays the first.
+void addAlternatives(Sample& sample, const Sample& others, OracleFlags reasons);
 
 /// Applies a triangle to a sample: coverage, stencil, depth, blending, in API order.
 void applyTriangle(const OutputState& output, const SampleInput& input, Sample& sample);

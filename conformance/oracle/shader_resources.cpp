@@ -21,12 +21,16 @@ bool fits(spv::Dim dim, ImageKind kind) {
 
 }  // namespace
 
-ShaderResources::ShaderResources(const Scene& scene, const std::vector<ImageStore>& images, const SceneDraw& draw,
+ShaderResources::ShaderResources(const Scene& scene, const Memory& memory, const SceneDraw& draw,
                                  const OracleRules& rules)
-    : scene_(scene), images_(images), draw_(draw), rules_(rules), pushConstants_(draw.pushConstants) {
+    : scene_(scene), memory_(memory), draw_(draw), rules_(rules), pushConstants_(draw.pushConstants) {
     for (const SceneBinding& binding : draw.bindings) {
         Bytes bytes;
-        if (binding.buffer < scene.buffers.size()) {
+        const bool texels = binding.type == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER ||
+                            binding.type == VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
+        if (texels && binding.buffer < scene.buffers.size())
+            texelBuffers_.emplace(&binding, TexelBuffer::of(binding, scene.buffers[binding.buffer].data));
+        if (!texels && binding.buffer < scene.buffers.size()) {
             const Bytes& data = scene.buffers[binding.buffer].data;
             const size_t begin = std::min<size_t>(binding.offset, data.size());
             const size_t length = std::min<size_t>(binding.range, data.size() - begin);
@@ -67,7 +71,7 @@ const SceneBinding* ShaderResources::find(const reference::Descriptor& descripto
 
 const ImageStore* ShaderResources::imageOf(const reference::Descriptor& descriptor) const {
     const SceneBinding* binding = find(descriptor);
-    return binding && binding->image < images_.size() ? &images_[binding->image] : nullptr;
+    return binding && binding->image < memory_.images.size() ? &memory_.images[binding->image] : nullptr;
 }
 
 const SceneSampler* ShaderResources::samplerOf(const reference::Descriptor& descriptor) const {
@@ -117,8 +121,42 @@ reference::Texel<double> ShaderResources::gather(const reference::ImageRequest<d
     return deliver(gatherImage(*image, *sampler, queryOf(request), request.component), request.shape);
 }
 
+SampleResult ShaderResources::fetchTexelBuffer(const SceneBinding& binding, int64_t at) const {
+    const auto written = memory_.texelBuffers.find(binding.buffer);
+    const bool isWritten = written != memory_.texelBuffers.end();
+    const TexelBuffer& buffer = isWritten ? written->second : texelBuffers_.at(&binding);
+    SampleResult unknown;
+    unknown.flags = kOracleUnknown;
+    if (buffer.format == nullptr || !buffer.isSeenBy(binding)) return unknown;
+    if (at < 0 || at >= static_cast<int64_t>(buffer.texels.size())) return {};
+    const StoredTexel& texel = buffer.texels[static_cast<size_t>(at)];
+    return {texel.channels, texel.flags};
+}
+
+void ShaderResources::write(const reference::ImageRequest<double>& request, const reference::Texel<double>& value) {
+    const SceneBinding* binding = find(request.image);
+    if (runs.empty() || binding == nullptr) {
+        wrote = true;
+        return;
+    }
+    // One coordinate of buffers, two or three of images; a 1D array's layer is its second.
+    std::array<int32_t, 3> at{request.texel[0], request.texel[1], request.texel[2]};
+    if (request.shape.dim == spv::Dim1D) at = {at[0], 0, request.shape.arrayed ? at[1] : 0};
+    if (request.shape.dim == spv::Dim2D && !request.shape.arrayed) at[2] = 0;
+    runs.back().push_back({binding, request.invocation, at, value});
+}
+
 reference::Texel<double> ShaderResources::fetch(const reference::ImageRequest<double>& request) {
+    const SceneBinding* binding = find(request.image);
+    if (binding != nullptr && request.shape.storage && std::ranges::find(loads, binding) == loads.end())
+        loads.push_back(binding);
+    if (binding != nullptr && request.shape.dim == spv::DimBuffer)
+        return deliver(fetchTexelBuffer(*binding, request.texel[0]), request.shape);
     const ImageStore* image = imageOf(request.image);
+    if (image && request.shape.storage && request.shape.dim == spv::DimCube && image->kind() == ImageKind::cube) {
+        // Vulkan, Texel Coordinate Systems: faces and layers are one coordinate.
+        return deliver(fetchImage(*image, request.texel[0], request.texel[1], request.texel[2], 0, 0), request.shape);
+    }
     if (!image || request.shape.dim == spv::DimCube || !fits(request.shape.dim, image->kind())) {
         flags |= kOracleUnknown;
         return {};
@@ -139,6 +177,9 @@ reference::Texel<double> ShaderResources::fetch(const reference::ImageRequest<do
 
 std::array<int32_t, 4> ShaderResources::querySize(const reference::Descriptor& descriptor,
                                                   const reference::ImageShape& shape, int32_t lod) {
+    const SceneBinding* binding = find(descriptor);
+    if (binding != nullptr && shape.dim == spv::DimBuffer)
+        return {static_cast<int32_t>(texelBuffers_.at(binding).texels.size())};
     const ImageStore* image = imageOf(descriptor);
     if (!image || lod < 0 || static_cast<uint32_t>(lod) >= image->mipLevels()) return {};
     const VkExtent2D extent = image->level(static_cast<uint32_t>(lod), 0).extent;
@@ -158,15 +199,16 @@ int32_t ShaderResources::queryLevels(const reference::Descriptor& descriptor, co
 std::array<double, 2> ShaderResources::queryLod(const reference::ImageRequest<double>& request) {
     const ImageStore* image = imageOf(request.image);
     const SceneSampler* sampler = samplerOf(request.sampler);
-    if (!image || !sampler || image->kind() != ImageKind::flat) {
+    if (!image || !sampler || !fits(request.shape.dim, image->kind())) {
         flags |= kOracleUnknown;
         return {};
     }
-    SceneSampler unclamped = *sampler;
-    unclamped.minLod = -VK_LOD_CLAMP_NONE;
-    SampleQuery query = queryOf(request);
-    query.minLod = -VK_LOD_CLAMP_NONE;
-    const Interval lambda = levelOfDetail(query, unclamped, image->level(0, 0).extent);
+    const std::optional<Interval> queried = queriedLevel(*image, *sampler, queryOf(request));
+    if (!queried) {
+        flags |= kOracleUndefined;
+        return {};
+    }
+    const Interval& lambda = *queried;
     sawRange = sawRange || !lambda.isExact();
     const double at = end == RangeEnd::nominal ? lambda.value : end == RangeEnd::low ? lambda.low : lambda.high;
     const double last = image->mipLevels() - 1;

@@ -4,32 +4,46 @@
 // nominal values, all lower ends or all upper ends, and the caller compares the outcomes.
 #pragma once
 
-#include "conformance/oracle/image_store.h"
+#include "conformance/oracle/memory.h"
 #include "conformance/oracle/texture_unit.h"
 #include "conformance/scene/scene.h"
 #include "spirv_interp/reference/interpreter.h"
 
+#include <array>
+#include <map>
 #include <vector>
 
 namespace vernier::conformance::exact {
 
 enum class RangeEnd : uint8_t { nominal, low, high };
 
+/// A texel that one run of a shader stores.
+struct RunWrite {
+    const SceneBinding* binding = nullptr;
+    uint32_t invocation = 0;
+    std::array<int32_t, 3> at{};
+    reference::Texel<double> value{};
+};
+
 class ShaderResources : public reference::Resources<double> {
   public:
-    ShaderResources(const Scene& scene, const std::vector<ImageStore>& images, const SceneDraw& draw,
-                    const OracleRules& rules = {});
+    ShaderResources(const Scene& scene, const Memory& memory, const SceneDraw& draw, const OracleRules& rules = {});
 
     RangeEnd end = RangeEnd::nominal;
     bool sawRange = false;  // a texture read had more than one permitted value; sticky until reset by the caller
     OracleFlags flags = 0;  // of OracleFlag, from the texels read; sticky
-    bool wrote = false;     // a storage buffer or image was asked for; sticky
+    bool wrote = false;     // a storage buffer was asked for, or a texel stored outside of runs; sticky
+    std::vector<std::vector<RunWrite>> runs;  // what each run since the caller's last reset stored
+    std::vector<TexelWrite> writes;           // what fragments have left, for the caller to keep
+    std::vector<const SceneBinding*> loads;   // storage images and texel buffers loaded from; sticky
+
+    const Memory& sceneMemory() const { return memory_; }
 
     std::span<std::byte> buffer(reference::BufferKind kind, const reference::Descriptor& descriptor) override;
     reference::Texel<double> sample(const reference::ImageRequest<double>& request) override;
     reference::Texel<double> gather(const reference::ImageRequest<double>& request) override;
     reference::Texel<double> fetch(const reference::ImageRequest<double>& request) override;
-    void write(const reference::ImageRequest<double>&, const reference::Texel<double>&) override { wrote = true; }
+    void write(const reference::ImageRequest<double>& request, const reference::Texel<double>& value) override;
     std::array<int32_t, 4> querySize(const reference::Descriptor& descriptor, const reference::ImageShape& shape,
                                      int32_t lod) override;
     int32_t queryLevels(const reference::Descriptor& descriptor, const reference::ImageShape&) override;
@@ -40,13 +54,15 @@ class ShaderResources : public reference::Resources<double> {
     const SceneBinding* find(const reference::Descriptor& descriptor) const;
     const ImageStore* imageOf(const reference::Descriptor& descriptor) const;
     const SceneSampler* samplerOf(const reference::Descriptor& descriptor) const;
+    SampleResult fetchTexelBuffer(const SceneBinding& binding, int64_t at) const;
     reference::Texel<double> deliver(const SampleResult& result, const reference::ImageShape& shape);
 
     const Scene& scene_;
-    const std::vector<ImageStore>& images_;
+    const Memory& memory_;
     const SceneDraw& draw_;
     const OracleRules rules_;
-    std::vector<Bytes> buffers_;  // private copies of what the draw binds, by binding
+    std::vector<Bytes> buffers_;                               // private copies of what the draw binds, by binding
+    std::map<const SceneBinding*, TexelBuffer> texelBuffers_;  // as the scene gives their bytes
     Bytes pushConstants_;
 };
 

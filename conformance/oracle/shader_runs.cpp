@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -61,6 +62,7 @@ std::optional<Spread> spreadOf(const ShaderRuns& runs, size_t lane, Read read) {
         spread.endKind(factor, symmetric);
     };
     kind(runs.shifted, 1, false);
+    for (const auto& list : runs.moved) kind(list, 1, false);
     kind(runs.filtered, 1, false);
     kind(runs.coarse, 1, true);
     spread.closeVariation();
@@ -78,9 +80,11 @@ double numberOf(const reference::Scalar<double>& scalar, const InterfaceVariable
 // The perturbed quads, of whatever kind.
 template <class Visit>
 void forEachPerturbed(const ShaderRuns& runs, Visit visit) {
-    for (const auto* list : {&runs.shifted, &runs.filtered, &runs.coarse, &runs.rounded}) {
-        for (const ShaderRuns::Quad& quad : *list) visit(quad);
-    }
+    const auto all = [&visit](const std::vector<ShaderRuns::Quad>& list) {
+        for (const ShaderRuns::Quad& quad : list) visit(quad);
+    };
+    for (const auto* list : {&runs.shifted, &runs.filtered, &runs.coarse, &runs.rounded}) all(*list);
+    for (const auto& list : runs.moved) all(list);
 }
 
 // What to report for a fragment that is discarded nominally but kept by others: the outputs of one that kept
@@ -91,6 +95,24 @@ ShaderRuns withKeptOutputs(const ShaderRuns& runs, size_t lane) {
         if (!quad[lane].discarded) result.nominal[lane].outputs = quad[lane].outputs;
     });
     return result;
+}
+
+const PixelFormat* formatOf(const SceneBinding& binding, const Memory& memory) {
+    return binding.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE ? &memory.images[binding.image].format()
+                                                            : findPixelFormat(binding.texelFormat);
+}
+
+/// A texel as a shader hands it over, in numbers.
+Color numbersOf(const reference::Texel<double>& texel, const PixelFormat* format) {
+    Color color{};
+    if (format == nullptr) return color;  // refused when it is applied
+    for (size_t c = 0; c < 4; ++c) {
+        const auto bits = static_cast<uint32_t>(texel[c].bits);
+        color[c] = !format->isInteger()                               ? texel[c].number
+                   : format->components[0].encoding == Encoding::sint ? static_cast<double>(static_cast<int32_t>(bits))
+                                                                      : static_cast<double>(bits);
+    }
+    return color;
 }
 
 template <class Read>
@@ -108,6 +130,53 @@ std::optional<Interval> rangeOf(const ShaderRuns& runs, size_t lane, const Inter
 
 bool isIntegerVariable(const InterfaceVariable& variable) {
     return !isFloating(variable.kind);
+}
+
+std::vector<TexelWrite> combineWrites(std::span<const std::vector<RunWrite>> runs, uint32_t lane, const Memory& memory,
+                                      double imprecision, OracleFlags flags) {
+    const auto ofLane = [lane](const std::vector<RunWrite>& run) {
+        std::vector<RunWrite> result;
+        std::ranges::copy_if(run, std::back_inserter(result),
+                             [lane](const RunWrite& w) { return w.invocation == lane; });
+        return result;
+    };
+    std::vector<TexelWrite> result;
+    for (const RunWrite& write : ofLane(runs[0])) {
+        const Color color = numbersOf(write.value, formatOf(*write.binding, memory));
+        result.push_back({write.binding, write.at, color, flags, false});
+    }
+    std::vector<bool> varies(result.size());
+    for (size_t run = 1; run < runs.size(); ++run) {
+        const std::vector<RunWrite> others = ofLane(runs[run]);
+        for (size_t i = 0; i < result.size(); ++i) {
+            const bool same = others.size() == result.size() && others[i].binding == result[i].binding &&
+                              others[i].at == result[i].at;
+            if (!same) {
+                result[i].flags |= kOracleUnknown;
+                continue;
+            }
+            const Color there = numbersOf(others[i].value, formatOf(*result[i].binding, memory));
+            const bool rounded = run + 1 == runs.size();
+            varies[i] = varies[i] || (!rounded && there != numbersOf(ofLane(runs[0])[i].value,
+                                                                     formatOf(*result[i].binding, memory)));
+            for (size_t c = 0; c < 4; ++c) result[i].color[c] = result[i].color[c].united(there[c]);
+        }
+    }
+    for (size_t i = 0; i < result.size(); ++i) {
+        TexelWrite& write = result[i];
+        const PixelFormat* format = formatOf(*write.binding, memory);
+        if (format == nullptr || format->isInteger()) continue;
+        for (Interval& c : write.color) {
+            const double magnitude = std::isfinite(c.value) ? std::max(1.0, std::abs(c.value)) : 1.0;
+            c = c.widened((imprecision + (varies[i] ? kInterpolationError : kFloatError)) * magnitude);
+        }
+    }
+    std::vector<TexelWrite> last;
+    for (const TexelWrite& write : result) {
+        std::erase_if(last, [&](const TexelWrite& w) { return w.binding == write.binding && w.at == write.at; });
+        last.push_back(write);
+    }
+    return last;
 }
 
 FragmentResult combineRuns(const ShaderRuns& runs, size_t lane, std::span<const InterfaceVariable> outputs,

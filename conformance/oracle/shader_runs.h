@@ -3,6 +3,7 @@
 #pragma once
 
 #include "conformance/oracle/sample_states.h"
+#include "conformance/oracle/shader_resources.h"
 #include "spirv_interp/reference/interpreter.h"
 
 #include <array>
@@ -17,9 +18,16 @@ struct ShaderRuns {
 
     Quad nominal;
     std::vector<Quad> shifted, filtered, coarse, rounded;
+    std::array<std::vector<Quad>, 6> moved;  // by vertex and coordinate
 };
 
 bool isIntegerVariable(const reference::InterfaceVariable& variable);
+
+/// What one fragment stores, in the order of the shader, with the ranges that the runs span; of several stores to a
+/// texel the last. The first run is the nominal one, the last run the one that rounds. Where runs store to other
+/// places, the result is unknown.
+std::vector<TexelWrite> combineWrites(std::span<const std::vector<RunWrite>> runs, uint32_t lane, const Memory& memory,
+                                      double imprecision, OracleFlags flags);
 
 /// One fragment's result: nominal outputs with their ranges. Components that the shader has not written are
 /// NaN. `imprecision` is the relative error of the built-in functions that the module uses.

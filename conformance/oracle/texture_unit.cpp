@@ -29,6 +29,7 @@ struct Sampler {
     std::array<int32_t, 3> offset{};
     std::optional<Interval> dref;
     double weightSlack = 0;
+    bool truncated = false;  // coordinates of linear filters go to the texel towards zero
 };
 
 Color borderColor(const SceneSampler& sampler) {
@@ -165,7 +166,8 @@ struct Place {
 };
 
 SampleResult linearAt(const Sampler& s, uint32_t mip, const Place& place) {
-    const double x = std::floor(place.u - 0.5), y = std::floor(place.v - 0.5), z = std::floor(place.w - 0.5);
+    const auto first = [&s](double c) { return s.truncated ? std::trunc(c - 0.5) : std::floor(c - 0.5); };
+    const double x = first(place.u), y = first(place.v), z = first(place.w);
     const double a = place.u - 0.5 - x, b = place.v - 0.5 - y, c = place.w - 0.5 - z;
     const auto i = static_cast<int64_t>(x), j = static_cast<int64_t>(y), k = static_cast<int64_t>(z);
     // A tap without weight is not read: what lies beyond it must not leak in.
@@ -337,7 +339,7 @@ uint32_t selectLayer(const ImageStore& image, double layer) {
 }
 
 Sampler prepare(const ImageStore& image, const SceneSampler& state, const SampleQuery& query) {
-    Sampler s{image, state, selectLayer(image, query.layer), query.offset, std::nullopt, query.weightSlack};
+    Sampler s{image, state, selectLayer(image, query.layer), query.offset, std::nullopt, query.weightSlack, false};
     if (query.dref && state.compareEnable) {
         const double slack = kReferenceSlack * std::max(1.0, std::abs(*query.dref));
         Interval dref = Interval(*query.dref).widened(slack);
@@ -400,7 +402,37 @@ SampleResult sampleFlat(const Sampler& s, const SampleQuery& query) {
     return result;
 }
 
+/// The query as it is on one face of a cube.
+SampleQuery onFace(const SampleQuery& query, const CubePlace& place) {
+    SampleQuery result = query;
+    result.s = place.s;
+    result.t = place.t;
+    result.r = 0;
+    result.ddx = {place.ddx[0], place.ddx[1], 0};
+    result.ddy = {place.ddy[0], place.ddy[1], 0};
+    return result;
+}
+
+std::vector<CubePlace> placesOf(const SampleQuery& query) {
+    return cubePlaces({query.s, query.t, query.r}, query.ddx, query.ddy, kCoordinateSlack);
+}
+
 }  // namespace
+
+std::optional<Interval> queriedLevel(const ImageStore& image, const SceneSampler& sampler, const SampleQuery& asked) {
+    SceneSampler unclamped = sampler;
+    unclamped.minLod = -VK_LOD_CLAMP_NONE;
+    SampleQuery query = asked;
+    query.minLod = -VK_LOD_CLAMP_NONE;
+    const VkExtent2D extent = image.level(0, 0).extent;
+    if (image.kind() != ImageKind::cube) return levelOfDetail(query, unclamped, extent, image.depth(0));
+    std::optional<Interval> level;
+    for (const CubePlace& place : placesOf(query)) {
+        const Interval there = levelOfDetail(onFace(query, place), unclamped, extent);
+        level = level ? level->united(there) : there;
+    }
+    return level;
+}
 
 SampleResult sampleImage(const ImageStore& image, const SceneSampler& sampler, const SampleQuery& asked) {
     SampleQuery query = asked;
@@ -416,18 +448,11 @@ SampleResult sampleImage(const ImageStore& image, const SceneSampler& sampler, c
         const auto cube = static_cast<uint32_t>(
             std::isnan(query.layer) ? 0 : std::clamp(std::nearbyint(query.layer), 0.0, cubes - 1.0));
         Box box;
-        const std::vector<CubePlace> places =
-            cubePlaces({query.s, query.t, query.r}, query.ddx, query.ddy, kCoordinateSlack);
+        const std::vector<CubePlace> places = placesOf(query);
         if (places.empty()) return unknownTexel();
         for (const CubePlace& place : places) {
             s.layer = cube * 6 + place.face;
-            SampleQuery onFace = query;
-            onFace.s = place.s;
-            onFace.t = place.t;
-            onFace.r = 0;
-            onFace.ddx = {place.ddx[0], place.ddx[1], 0};
-            onFace.ddy = {place.ddy[0], place.ddy[1], 0};
-            box.add(sampleFlat(s, onFace));
+            box.add(sampleFlat(s, onFace(query, place)));
         }
         result = box.result();
     } else {
@@ -471,13 +496,15 @@ SampleResult fetchImage(const ImageStore& image, int64_t x, int64_t y, int64_t l
     return {texel.channels, texel.flags};
 }
 
-SampleResult blitTexel(const ImageStore& image, uint32_t mip, uint32_t layer, double u, double v, VkFilter filter) {
+SampleResult blitTexel(const ImageStore& image, uint32_t mip, uint32_t layer, const std::array<double, 3>& at,
+                       VkFilter filter, bool truncated) {
     SceneSampler state;
-    state.addressModeU = state.addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    state.addressModeU = state.addressModeV = state.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     // Texel centres map to dyadic positions in nearly all blits: a nearest blit has coordinate error only.
-    const Sampler s{image, state, layer, {}, std::nullopt, filter == VK_FILTER_NEAREST ? 0 : kWeightSlack};
-    const VkExtent2D extent = image.level(mip, layer).extent;
-    return filterLevel(s, mip, filter, {u / extent.width, v / extent.height});
+    const uint32_t of = image.kind() == ImageKind::volume ? 0 : layer;
+    const Sampler s{image, state, of, {}, std::nullopt, filter == VK_FILTER_NEAREST ? 0 : kWeightSlack, truncated};
+    const VkExtent2D extent = image.level(mip, of).extent;
+    return filterLevel(s, mip, filter, {at[0] / extent.width, at[1] / extent.height, at[2] / image.depth(mip)});
 }
 
 }  // namespace vernier::conformance::exact

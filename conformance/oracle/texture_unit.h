@@ -44,10 +44,16 @@ SampleResult gatherImage(const ImageStore& image, const SceneSampler& sampler, c
 /// One texel without a sampler; outside the level it reads as 0.
 SampleResult fetchImage(const ImageStore& image, int64_t x, int64_t y, int64_t layer, int64_t mip, uint32_t sample);
 
-/// A texel of an axis-aligned blit: linear or nearest filter at unnormalised (u, v), edges clamped.
-SampleResult blitTexel(const ImageStore& image, uint32_t mip, uint32_t layer, double u, double v, VkFilter filter);
+/// A texel of an axis-aligned blit: linear or nearest filter at unnormalised coordinates, of which volumes take the
+/// third, edges clamped. `truncated`: OracleRules::truncatedBlits.
+SampleResult blitTexel(const ImageStore& image, uint32_t mip, uint32_t layer, const std::array<double, 3>& at,
+                       VkFilter filter, bool truncated = false);
 
 /// Nominal level of detail with its range, before clamping to the image: -infinity without any derivative.
 Interval levelOfDetail(const SampleQuery& query, const SceneSampler& sampler, VkExtent2D extent, uint32_t depth = 1);
+
+/// What OpImageQueryLod computes before the sampler's limits clamp it, on any of the faces that a direction may choose.
+/// Nothing for a direction without length.
+std::optional<Interval> queriedLevel(const ImageStore& image, const SceneSampler& sampler, const SampleQuery& query);
 
 }  // namespace vernier::conformance::exact

@@ -64,6 +64,7 @@ std::optional<Triangle> Triangle::create(const Setup& setup) {
     t.subUnit_ = std::ldexp(1.0, -setup.subPixelBits);
     t.freedom_ = t.subUnit_;
     t.snapped_ = inFront;
+    t.planesBehindEye_ = setup.planesBehindEye && !inFront;
     for (size_t i = 0; i < 3 && t.snapped_; ++i) {
         t.window_[i] = {v[i].x / v[i].w, v[i].y / v[i].w};
         const double reach = std::max(std::abs(t.window_[i][0]), std::abs(t.window_[i][1]));
@@ -288,11 +289,23 @@ SampleVerdict Triangle::classify(const GridPoint& sample) const {
     return verdict;
 }
 
+double Triangle::leverage(double x, double y) const {
+    if (!planesBehindEye_) return 1;
+    // The weights of the projected vertices, which sum to 1 and of which some are negative.
+    const std::array<double, 3> b = shape_.weights(x, y);
+    double sum = 0, magnitudes = 0;
+    for (size_t i = 0; i < 3; ++i) {
+        sum += b[i] * shape_.vertex[i].w;
+        magnitudes += std::abs(b[i] * shape_.vertex[i].w);
+    }
+    return sum == 0 ? 1 : magnitudes / std::abs(sum);
+}
+
 Interval Triangle::depth(const GridPoint& sample) const {
     const WindowVertex<double>& v = shape_.vertex[0];
     if (slopeX_ == 0 && slopeY_ == 0 && depthSlack_ == 0) return v.z / v.w;
     const Point p = toPoint(sample, subUnit_);
-    return Interval(shape_.depth(shape_.weights(p.x, p.y))).widened(depthSlack_);
+    return Interval(shape_.depth(shape_.weights(p.x, p.y))).widened(depthSlack_ * leverage(p.x, p.y));
 }
 
 std::array<double, 3> Triangle::vertexDepths() const {

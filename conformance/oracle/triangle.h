@@ -56,6 +56,7 @@ class Triangle {
         std::vector<std::array<double, 3>> clipDistances;  // per distance: the three vertices' values
         uint64_t context = 0;  // vertices with equal clip coordinates snap alike within a context
         int subPixelBits = 8;
+        bool planesBehindEye = false;  // OracleRules::planesBehindEye
     };
 
     /// Nothing when no implementation draws any of it.
@@ -78,8 +79,8 @@ class Triangle {
     SampleVerdict classify(const GridPoint& sample) const;
 
     const HomogeneousTriangle<double>& homogeneous() const { return shape_; }
-    /// How far a vertex may move, in pixels.
-    double freedom() const { return freedom_; }
+    /// How far a point of the triangle may move, in pixels.
+    double freedomAt(double x, double y) const { return freedom_ * leverage(x, y); }
 
     /// Window depth at a sample before clamping, with the freedom of snapping and of float interpolation.
     Interval depth(const GridPoint& sample) const;
@@ -93,6 +94,9 @@ class Triangle {
     explicit Triangle(const HomogeneousTriangle<double>& shape) : shape_(shape) {}
 
     bool addCuts(const Setup& setup);
+    /// By how much vertices that move at most so far move a point at most: 1 inside of all three, more where planes
+    /// through snapped vertices behind the eye are followed.
+    double leverage(double x, double y) const;
     void findDepths(const Setup& setup);
 
     SampleVerdict classifySnapped(const GridPoint& sample) const;
@@ -101,7 +105,7 @@ class Triangle {
     OpenEdge openEdge(size_t oppositeVertex, bool nominalInside, bool tie) const;
 
     HomogeneousTriangle<double> shape_;
-    bool snapped_ = false;
+    bool snapped_ = false, planesBehindEye_ = false;
     double side_ = 1;  // sign that makes edge functions positive inside
     int orientation_ = 0;
     bool orientationOpen_ = false;

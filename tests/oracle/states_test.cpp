@@ -39,6 +39,66 @@ size_t countOf(const OracleImage& image, size_t channel) {
     return count;
 }
 
+// Vulkan, Rasterization Order, says nothing of the edges of one polygon.
+TEST(Outlines, TheirEdgesComeInAnyOrder) {
+    const std::vector<Vertex> corners{vertex(2.5f, 2.5f, kRed), vertex(13.5f, 2.5f, kGreen),
+                                      vertex(2.5f, 13.5f, kBlue)};
+    const auto outline = [&](std::array<size_t, 3> order, bool smooth) {
+        std::vector<Vertex> vertices;
+        for (const size_t i : order) vertices.push_back(corners[i]);
+        return drawScene(vertices, smooth ? kSmooth : kFlat, [](Scene& s) {
+            s.pipelines[0].polygonMode = VK_POLYGON_MODE_LINE;
+            s.pipelines[0].lineMode = VK_LINE_RASTERIZATION_MODE_RECTANGULAR_EXT;
+            s.pipelines[0].lineWidth = 3;
+        });
+    };
+    const Scene scene = outline({0, 1, 2}, true);
+    const OracleImage image = render(scene);
+    EXPECT_NE(at(image, 3, 3).flags & kOracleSequence, 0) << "two edges cover it";
+    EXPECT_LT(at(image, 3, 3).low[0], at(image, 3, 3).high[0]);
+    EXPECT_EQ(at(image, 7, 2).flags & kOracleSequence, 0) << "one edge covers it";
+    EXPECT_EQ(judge(scene, outline({1, 2, 0}, true)).outside, 0u);
+    EXPECT_GT(judge(scene, outline({0, 1, 2}, false)).outside, 20u);
+}
+
+// An edge on a column of centres: which stencil it leaves there is open, and so is what a later pass makes of it.
+TEST(Stencils, StayOpenFromPassToPass) {
+    const auto scene = [](float right) {
+        return drawScene({vertex(-8, -8, kRed), vertex(right, -8, kRed), vertex(right, 40, kRed), vertex(-8, -8, kRed),
+                          vertex(right, 40, kRed), vertex(-8, 40, kRed)},
+                         kFlat, [&](Scene& s) {
+                             SceneImage depth = s.images[0];
+                             depth.format = VK_FORMAT_D32_SFLOAT_S8_UINT;
+                             s.images.push_back(depth);
+                             passOf(s).depthStencil.image = 1;
+                             ScenePipeline second = s.pipelines[0];
+                             VkStencilOpState replace{};
+                             replace.compareOp = VK_COMPARE_OP_ALWAYS;
+                             replace.passOp = VK_STENCIL_OP_REPLACE;
+                             replace.compareMask = replace.writeMask = 0xff;
+                             replace.reference = 3;
+                             s.pipelines[0].stencilTest = second.stencilTest = true;
+                             s.pipelines[0].front = s.pipelines[0].back = replace;
+                             replace.passOp = VK_STENCIL_OP_KEEP;
+                             replace.compareOp = VK_COMPARE_OP_EQUAL;
+                             second.front = second.back = replace;
+                             s.pipelines.push_back(second);
+                             ScenePass after = passOf(s);
+                             after.depthStencil.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
+                             after.draws[0].pipeline = 1;
+                             s.steps.emplace_back(after);
+                         });
+    };
+    const OracleImage image = render(scene(8.501f));
+    EXPECT_EQ(at(image, 7, 5).low[0], 1);
+    EXPECT_EQ(at(image, 8, 5).low[0], 0) << "it may be snapped to the centre, or short of it";
+    EXPECT_EQ(at(image, 8, 5).high[0], 1);
+    EXPECT_EQ(at(image, 9, 5).high[0], 0);
+    EXPECT_EQ(judge(scene(8.501f), scene(8.495f)).outside, 0u);
+    EXPECT_EQ(judge(scene(8.501f), scene(9.4f)).outside, 0u) << "no centre between";
+    EXPECT_EQ(judge(scene(8.501f), scene(7.4f)).outside, 16u);
+}
+
 TEST(LogicOperations, OnStoredCodes) {
     const auto scene = [](VkLogicOp op) {
         return drawScene(everywhere({240.0f / 255, 15.0f / 255, 1, 0}), kFlat, [&](Scene& s) {
