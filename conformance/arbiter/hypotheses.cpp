@@ -81,6 +81,10 @@ bool startScissors(Scene& scene, int by) {
     });
 }
 
+bool testsDepths(const Scene& scene) {
+    return std::ranges::any_of(scene.pipelines, [](const ScenePipeline& p) { return p.depthTest; });
+}
+
 bool snap(const Scene&, OracleRules& rules, int bits) {
     rules.subPixelBits = bits;
     return true;
@@ -114,6 +118,29 @@ constexpr Hypothesis kHypotheses[] = {
      [](Scene& scene, OracleRules& rules) { return snap(scene, rules, 4); }},
     {"snap3", "vertices are snapped to 3 sub-pixel bits",
      [](Scene& scene, OracleRules& rules) { return snap(scene, rules, 3); }},
+    // SwiftShader, PixelRoutine::quad, subtracts a sample's x where its edges and its y are added.
+    {"mirroredDepths", "depths of samples are taken at places mirrored from left to right in the pixel",
+     [](Scene& scene, OracleRules& rules) {
+         rules.mirroredDepths = true;
+         return testsDepths(scene) && std::ranges::any_of(scene.pipelines, [](const ScenePipeline& pipeline) {
+                    return pipeline.samples != VK_SAMPLE_COUNT_1_BIT;
+                });
+     }},
+    // SwiftShader sets planes up from the projected vertices, those behind the eye too.
+    {"planesBehindEye", "depths and inputs of triangles through the eye plane follow all three snapped vertices",
+     [](Scene& scene, OracleRules& rules) {
+         rules.planesBehindEye = true;
+         return !scene.pipelines.empty();
+     }},
+    // SwiftShader, Blitter::blit, clamps linear blits only when its coordinates at the destination's origin are small.
+    {"truncatedBlits", "linear blits that are mirrored in x and y go on beyond the first texels' centres",
+     [](Scene& scene, OracleRules& rules) {
+         rules.truncatedBlits = true;
+         return std::ranges::any_of(scene.steps, [](const SceneStep& step) {
+             const auto* blit = std::get_if<SceneBlitImage>(&step);
+             return blit != nullptr && blit->filter == VK_FILTER_LINEAR;
+         });
+     }},
     {"scissorWide", "scissors reach one pixel too far to the right and down",
      [](Scene& scene, OracleRules&) { return moveScissors(scene, 1); }},
     {"scissorNarrow", "scissors end one pixel too early at the right and below",

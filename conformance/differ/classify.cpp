@@ -87,6 +87,7 @@ PixelClass causeOf(OracleFlags flags) {
     constexpr std::pair<OracleFlag, PixelClass> kOpen[] = {{kOracleSnap, PixelClass::snap},
                                                            {kOracleTie, PixelClass::tie},
                                                            {kOracleOrder, PixelClass::order},
+                                                           {kOracleSequence, PixelClass::sequence},
                                                            {kOraclePattern, PixelClass::pattern}};
     constexpr std::pair<OracleFlag, PixelClass> kRanges[] = {{kOracleLevel, PixelClass::level},
                                                              {kOracleWeights, PixelClass::weights}};

@@ -24,6 +24,7 @@ namespace vernier::conformance {
     X(tie, "a sample lies exactly on an edge, and belongs to either side")                  \
     X(snap, "snapping to the sub-pixel grid decides coverage, both are legal")              \
     X(order, "two depths are too near to each other to say which is in front")              \
+    X(sequence, "the edges of one polygon's outline are drawn in whatever order")           \
     X(pattern, "alpha becomes coverage in whatever pattern")                                \
     X(undefined, "the specification defines no value here")                                 \
     X(otherWrong, "ours is legal, the other driver's value is not")                         \

@@ -62,6 +62,14 @@ std::vector<Finding> findingsOf(const ReportScene& scene, const std::vector<Repo
     }
     if (scene.everything && !scene.everything->failure.empty())
         findings.push_back({scene.scene.name, "api", "everything", std::string(kLeavingOutChangesBits), 1});
+    // What another driver does wrong must have a cause. What ours do wrong is a finding as it is, below.
+    for (const auto& [name, verdict] : scene.verdicts) {
+        const uint64_t explained = verdict.explanation && verdict.explanation->convinces() ? verdict.wrong : 0;
+        if (ours(name) || verdict.wrong == explained) continue;
+        const uint64_t left = verdict.explanation ? verdict.wrong - verdict.explanation->explained : verdict.wrong;
+        findings.push_back({scene.scene.name, name, "oracle", std::string(pixelClassName(PixelClass::unexplained)),
+                            std::max<uint64_t>(left, 1)});
+    }
     for (const ReportComparison& comparison : scene.comparisons) {
         if (!ours(comparison.ours)) continue;  // how others stand to each other is shown, not judged
         for (size_t i = 0; i < kPixelClassCount; ++i) {

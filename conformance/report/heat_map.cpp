@@ -37,6 +37,7 @@ Rgb8 classColor(PixelClass pixelClass) {
             return {120, 150, 230};
         case PixelClass::snap:
             return {90, 130, 200};
+        case PixelClass::sequence:
         case PixelClass::order:
             return {70, 100, 170};
         case PixelClass::pattern:

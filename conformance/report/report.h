@@ -71,7 +71,8 @@ struct Report {
 /// every driver against the oracle. An error means images that cannot be compared.
 Status compareScene(ReportScene& scene, const std::vector<ReportDriver>& drivers);
 
-/// What of a scene's comparisons and renderings counts as failed.
+/// What of a scene's comparisons, renderings and verdicts counts as failed: other drivers' wrong pixels do when nothing
+/// explains them.
 std::vector<Finding> findingsOf(const ReportScene& scene, const std::vector<ReportDriver>& drivers);
 
 /// Writes index.html, a page per scene, and report.json. All pages carry their pictures inside.

@@ -5,15 +5,6 @@
 namespace vernier::conformance {
 namespace {
 
-/// Whether a driver snaps by as many sub-pixel bits as the hypothesis says, by its own limits.
-bool declares(const ReportDriver& driver, std::string_view hypothesis) {
-    constexpr std::string_view kName = "subPixelPrecisionBits ";
-    if (!hypothesis.starts_with("snap")) return false;
-    const size_t at = driver.limits.find(kName);
-    return at != std::string::npos &&
-           driver.limits.compare(at + kName.size(), hypothesis.size() - 4, hypothesis.substr(4)) == 0;
-}
-
 std::string pairRow(const Report& report, const ReportComparison& comparison, const std::string& image) {
     uint64_t differing = 0, legal = 0;
     std::string causes;
@@ -45,7 +36,7 @@ std::string verdictText(const ReportDriver& driver, const ReportVerdict& verdict
     if (!verdict.explanation)
         return driver.title + " has " + grouped(verdict.wrong) + " wrong pixels; no hypothesis explains them.";
     const std::string text = driver.title + ": " + describe(*verdict.explanation);
-    return text + (declares(driver, verdict.explanation->hypothesis->name)
+    return text + (verdict.explanation->hypotheses == declaredBy(driver.limits)
                        ? ", as it declares: legal by its own promise."
                        : ".");
 }

@@ -64,7 +64,7 @@ std::string reportJson(const Report& report) {
             entry["verdicts"][driver] = {{"wrong", verdict.wrong}};
             if (!verdict.explanation) continue;
             const Explanation& why = *verdict.explanation;
-            entry["verdicts"][driver]["explanation"] = {{"hypothesis", why.hypothesis->name},
+            entry["verdicts"][driver]["explanation"] = {{"hypothesis", namesOf(why.hypotheses)},
                                                         {"explained", why.explained},
                                                         {"broken", why.broken},
                                                         {"text", describe(why)}};

@@ -69,14 +69,14 @@ int render(const DriverPaths& paths, const RenderOptions& options) {
     return 0;
 }
 
-/// The oracle's verdict on one scene, or on what a hypothesis makes of it, into a file.
-int judge(const std::string& name, const std::string& hypothesisName, const std::filesystem::path& out) {
+/// The oracle's verdict on one scene, or on what hypotheses make of it, into a file.
+int judge(const std::string& name, const std::vector<std::string>& hypotheses, const std::filesystem::path& out) {
     const SceneEntry* entry = findScene(name);
     if (entry == nullptr) return fail(invalidArgument("--scene: no scene is called '" + name + "'"));
     Result<Scene> scene = entry->build();
     if (!scene) return fail(scene.error());
     OracleRules rules;
-    if (!hypothesisName.empty()) {
+    for (const std::string& hypothesisName : hypotheses) {
         const Hypothesis* hypothesis = findHypothesis(hypothesisName);
         if (hypothesis == nullptr) return fail(invalidArgument("--hypothesis: there is no '" + hypothesisName + "'"));
         hypothesis->apply(*scene, rules);
@@ -103,10 +103,11 @@ int run(int argc, char** argv) {
     renderCommand->add_flag("--png", renderOptions.png, "Write a PNG file beside each raw image");
 
     CLI::App* oracleCommand = app.add_subcommand("oracle", "Compute what the specification permits in one scene");
-    std::string oracleScene, oracleHypothesis;
+    std::string oracleScene;
+    std::vector<std::string> oracleHypotheses;
     std::filesystem::path oracleOut;
     oracleCommand->add_option("--scene", oracleScene, "Name of the scene")->required();
-    oracleCommand->add_option("--hypothesis", oracleHypothesis, "What an implementation might do instead");
+    oracleCommand->add_option("--hypothesis", oracleHypotheses, "What an implementation might do instead");
     oracleCommand->add_option("--out", oracleOut, "File for the result")->required();
 
     CLI::App* runCommand = app.add_subcommand("run", "Draw all scenes with all drivers, compare, and write the report");
@@ -127,7 +128,7 @@ int run(int argc, char** argv) {
     const std::vector<DriverChoice> choices = driverChoices(paths);
     if (*listCommand) return list(choices);
     if (*renderCommand) return render(paths, renderOptions);
-    if (*oracleCommand) return judge(oracleScene, oracleHypothesis, oracleOut);
+    if (*oracleCommand) return judge(oracleScene, oracleHypotheses, oracleOut);
     runOptions.oracle = !withoutOracle;
     runOptions.commonArguments = driverArguments(paths);
     const Result<bool> passed = runComparison(choices, runOptions);

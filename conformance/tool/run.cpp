@@ -121,18 +121,19 @@ ReportRendering renderEverything(const DriverChoice& api, const ReportScene& sce
     return rendering;
 }
 
-/// The oracle's images of a scene, or of what a hypothesis makes of it, from a child process; otherwise why there are
+/// The oracle's images of a scene, or of what hypotheses make of it, from a child process; otherwise why there are
 /// none.
 Result<std::vector<OracleImage>> oracleInChild(const RunOptions& options, const std::string& scene,
-                                               const std::string& hypothesis) {
+                                               const Hypotheses& hypotheses) {
     const std::filesystem::path folder = options.out / "work" / "oracle";
-    const std::string name = hypothesis.empty() ? scene : scene + "-" + hypothesis;
+    const std::string name = hypotheses.empty() ? scene : scene + "-" + namesOf(hypotheses);
     const std::filesystem::path file = folder / (name + ".bin");
     std::error_code ignored;
     std::filesystem::create_directories(folder, ignored);
     std::filesystem::remove(file, ignored);
     std::vector<std::string> arguments{"oracle", "--scene", scene, "--out", file.string()};
-    if (!hypothesis.empty()) arguments.insert(arguments.end(), {"--hypothesis", hypothesis});
+    for (const Hypothesis* each : hypotheses)
+        arguments.insert(arguments.end(), {"--hypothesis", std::string(each->name)});
     const ChildResult child = runChild(arguments, folder / (name + ".log"), options.oracleTimeoutSeconds);
     if (!child.ok) return unsupported(child.failure);
     return loadOracle(file);
@@ -154,23 +155,26 @@ void askOracle(const RunOptions& options, ReportScene& scene) {
 }
 
 /// How every driver stands to the oracle, and what is behind what is wrong. Hypotheses are computed once for a scene.
-Status findVerdicts(const RunOptions& options, ReportScene& scene) {
+Status findVerdicts(const RunOptions& options, const std::vector<ReportDriver>& drivers, ReportScene& scene) {
     if (scene.oracle.empty()) return {};
-    std::map<std::string_view, std::optional<std::vector<OracleImage>>> known;
-    const AskOracle ask = [&](const Hypothesis& hypothesis) {
-        const auto [entry, fresh] = known.try_emplace(hypothesis.name);
+    std::map<std::string, std::optional<std::vector<OracleImage>>> known;
+    const AskOracle ask = [&](const Hypotheses& hypotheses) {
+        const auto [entry, fresh] = known.try_emplace(namesOf(hypotheses));
         if (fresh) {
-            Result<std::vector<OracleImage>> images =
-                oracleInChild(options, scene.scene.name, std::string(hypothesis.name));
+            Result<std::vector<OracleImage>> images = oracleInChild(options, scene.scene.name, hypotheses);
             if (images) entry->second = std::move(images).value();
         }
         return entry->second;
     };
-    for (const auto& [name, rendering] : scene.renderings) {
+    for (const ReportDriver& driver : drivers) {
+        const auto found = scene.renderings.find(driver.name);
+        if (found == scene.renderings.end()) continue;
+        const auto& [name, rendering] = *found;
         if (!rendering.failure.empty() || rendering.images.size() != scene.oracle.size()) continue;
         const Result<uint64_t> wrong = wrongPixels(rendering.images, scene.oracle);
         if (!wrong) return wrong.error();
-        Result<std::optional<Explanation>> why = explainWrong(scene.scene, rendering.images, scene.oracle, ask);
+        Result<std::optional<Explanation>> why =
+            explainWrong(scene.scene, rendering.images, scene.oracle, ask, declaredBy(driver.limits));
         if (!why) return why.error();
         scene.verdicts[name] = {*wrong, std::move(why).value()};
     }
@@ -255,7 +259,7 @@ Result<bool> runComparison(const std::vector<DriverChoice>& choices, const RunOp
         }
         if (!scene.oracle.empty()) extent.drivers.push_back("oracle");
         VERNIER_TRY(compareScene(scene, report.drivers));
-        VERNIER_TRY(findVerdicts(options, scene));
+        VERNIER_TRY(findVerdicts(options, report.drivers, scene));
         const std::vector<Finding> found = findingsOf(scene, report.drivers);
         scene.judged = std::any_of(report.drivers.begin(), report.drivers.end(),
                                    [](const ReportDriver& driver) { return driver.ours && driver.absence.empty(); });

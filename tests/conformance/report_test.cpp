@@ -93,6 +93,24 @@ TEST(Findings, UnexplainedPixelsAndMissingImagesAreFound) {
     EXPECT_THAT(otherCrashed.compare(), IsEmpty()) << "another driver's crash is not ours";
 }
 
+TEST(Findings, WhatOthersDoWrongMustHaveACause) {
+    const auto judged = [](std::optional<Explanation> why) {
+        TestReport test(100, 100);
+        test.report.scenes[0].verdicts["lavapipe"] = {7, std::move(why)};
+        return test.compare();
+    };
+    const std::vector<Finding> none = judged(std::nullopt);
+    ASSERT_THAT(none, SizeIs(1));
+    EXPECT_EQ(none[0].driver, "lavapipe");
+    EXPECT_EQ(none[0].kind, "unexplained");
+    EXPECT_EQ(none[0].count, 7u);
+    const Hypotheses some{findHypothesis("snap4")};
+    EXPECT_THAT(judged(Explanation{some, 7, 7, 0}), IsEmpty());
+    ASSERT_THAT(judged(Explanation{some, 7, 6, 0}), SizeIs(1)) << "a straggler";
+    EXPECT_EQ(judged(Explanation{some, 7, 6, 0})[0].count, 1u);
+    EXPECT_THAT(judged(Explanation{some, 7, 7, 3}), SizeIs(1)) << "others would be wrong instead";
+}
+
 TEST(Findings, LeavingOutMustChangeNoBit) {
     TestReport test(100, 100);
     test.report.scenes[0].everything = ReportRendering{};
