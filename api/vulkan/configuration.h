@@ -10,8 +10,8 @@
 //   VERNIER_SKIP         off: what draws do not need is done all the same, with the same pictures; "hidden_work=off":
 //   one
 //                        rule of leaving out alone, see runtime/skips.h
-//   VERNIER_EXPLAIN      stderr, or a file that is appended to: what every pipeline runs and leaves out, and why; an
-//                        object a line where its name ends in .json
+//   VERNIER_EXPLAIN      stderr, or a file that is appended to: what every pipeline runs and leaves out, and why, and
+//                        what every submission ran; an object a line where its name ends in .json
 //   VERNIER_LOG          set and not 0: messages go to stderr, too
 #pragma once
 

@@ -6,6 +6,7 @@
 #include "api/vulkan/chain.h"
 #include "api/vulkan/entry_points.h"
 #include "api/vulkan/instance.h"
+#include "runtime/raster/frame_facts.h"
 
 namespace vernier::vulkan {
 
@@ -52,6 +53,10 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateDevice(VkPhysicalDevice physicalDevice, con
         desc.maxIsa = parent.isa;
         desc.accuracy = parent.accuracy;
         desc.skips = parent.configuration.skips;
+        if (ExplainLog& log = parent.instance.explainLog; log.enabled())
+            desc.report = [&log](const SubmissionReport& ran) {
+                log.submission(frameFacts(ran.commands, ran.statistics));
+            };
         Result<std::unique_ptr<vernier::Device>> made = vernier::Device::create(desc);
         if (!made) return refuse(resultOf(made.error()), made.error().message);
         return createHandle(pAllocator, pDevice, parent, extensions, std::move(made).value());

@@ -23,13 +23,24 @@ void ExplainLog::pipeline(const char* kind, std::span<const Fact> facts) {
     if (!enabled()) return;
     const std::lock_guard lock(mutex_);
     const std::string number = std::to_string(++pipelines_);
+    write("pipeline " + number + ", " + kind, "\"pipeline\": " + number + ", \"kind\": \"" + kind + "\"", facts);
+}
+
+void ExplainLog::submission(std::span<const Fact> facts) {
+    if (!enabled()) return;
+    const std::lock_guard lock(mutex_);
+    const std::string number = std::to_string(++submissions_);
+    write("submission " + number, "\"submission\": " + number, facts);
+}
+
+void ExplainLog::write(const std::string& title, const std::string& json, std::span<const Fact> facts) {
     std::string text;
     if (json_) {
         text = factsJson(facts);
         std::replace(text.begin(), text.end(), '\n', ' ');
-        text = "{\"pipeline\": " + number + ", \"kind\": \"" + kind + "\", \"facts\": " + text + "}\n";
+        text = "{" + json + ", \"facts\": " + text + "}\n";
     } else {
-        text = "pipeline " + number + ", " + kind + "\n" + factsText(facts) + "\n";
+        text = title + "\n" + factsText(facts) + "\n";
     }
     std::fputs(text.c_str(), file_);
     std::fflush(file_);

@@ -1,4 +1,5 @@
-// VERNIER_EXPLAIN: every pipeline that is created is explained, on stderr or in a file.
+// VERNIER_EXPLAIN: every pipeline that is created is explained, and every submission that has run, on stderr or in a
+// file.
 #pragma once
 
 #include <cstdint>
@@ -27,12 +28,17 @@ class ExplainLog {
     bool enabled() const { return file_ != nullptr; }
     /// `kind`: "graphics" or "compute".
     void pipeline(const char* kind, std::span<const Fact> facts);
+    /// What a submission ran and left out, by what it counted.
+    void submission(std::span<const Fact> facts);
 
   private:
+    /// `json`: the members of the object before its facts.
+    void write(const std::string& title, const std::string& json, std::span<const Fact> facts);
+
     std::mutex mutex_;
     std::FILE* file_ = nullptr;
     bool json_ = false;
-    uint64_t pipelines_ = 0;
+    uint64_t pipelines_ = 0, submissions_ = 0;
 };
 
 }  // namespace vernier::vulkan

@@ -61,8 +61,10 @@ void Queue::Impl::process(Submission& submission) {
     if (!lost) {
         try {
             if (!executor) executor = std::make_unique<Executor>(device);
+            const SubmissionReport before = executor->ran();
             for (const CommandBuffer* commands : submission.commands) executor->run(*commands);
             if (!executor->finish()) lost = true;
+            if (device.desc().report && !lost) device.desc().report(executor->ran().since(before));
         } catch (...) {  // memory ran out: std::bad_alloc, or std::length_error of a container
             executor.reset();
             lost = true;

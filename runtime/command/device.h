@@ -15,10 +15,21 @@
 #include "runtime/accuracy.h"
 #include "runtime/command/command_buffer.h"
 #include "runtime/command/sync.h"
+#include "runtime/raster/frame_facts.h"
 #include "runtime/resource/memory.h"
 #include "runtime/skips.h"
 
 namespace vernier {
+
+/// What a submission ran.
+struct SubmissionReport {
+    FrameCommands commands;
+    PassStatistics statistics;
+    SubmissionReport since(const SubmissionReport& earlier) const {
+        return {{commands.draws - earlier.commands.draws, commands.dispatches - earlier.commands.dispatches},
+                combine(statistics, earlier.statistics, std::minus<>{})};
+    }
+};
 
 struct DeviceDesc {
     uint32_t threads = 0;  // 0: as many as there are usable CPUs
@@ -26,6 +37,8 @@ struct DeviceDesc {
     Accuracy accuracy;
     Skips skips;
     HostAllocator allocator;
+    /// Called on the queue's thread after each submission that was run to its end.
+    std::function<void(const SubmissionReport&)> report;
 };
 
 /// One batch of work: waits, runs the command buffers in order, signals. Everything named stays alive until it is done.

@@ -265,6 +265,7 @@ void Executor::draw(const command::Draw& command) {
     call.vertexOffset = command.vertexOffset;
     call.firstInstance = command.firstInstance;
     call.drawIndex = command.drawIndex;
+    ++commandsRun_.draws;
     pass_->pass.draw(call);
     if (pass_->pass.recordedDraws() >= kDrawsPerFlush) catchUp();
 }
@@ -302,6 +303,7 @@ void Executor::run(const command::DrawIndirect& command) {
 
 void Executor::dispatch(const DispatchWork& work) {
     if (!computePipeline_ || pass_ != nullptr || lost_) return;
+    ++commandsRun_.dispatches;
     if (dispatchArena_.used() > kDispatchBytes) {
         scheduler_.finish();
         dispatchArena_.reset();

@@ -31,6 +31,8 @@ class Executor {
     void run(const CommandBuffer& commands);
     /// Waits for all work. False: a shader ran out of its loop budget. Throws what a piece of work threw.
     bool finish();
+    /// All that was run since the executor was made; after finish().
+    SubmissionReport ran() const { return {commandsRun_, totals()}; }
 
   private:
     void runAll(const CommandBuffer& commands);
@@ -84,6 +86,7 @@ class Executor {
     PassWork* pass_ = nullptr;  // that is being recorded
     uint32_t views_ = 0;        // of it
     std::atomic<bool> lost_{false};
+    FrameCommands commandsRun_;
 
     std::mutex endedMutex_;              // of what follows, and of sinks of statistics
     std::vector<PassWork*> idlePasses_;  // the one that ended last is taken first: its memory is in the caches

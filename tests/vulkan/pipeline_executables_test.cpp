@@ -153,5 +153,29 @@ TEST_F(ExecutablesTest, everyPipelineIsExplainedInTheFile) {
     EXPECT_GT(lines[0]["facts"].size(), 5u);
 }
 
+TEST_F(ExecutablesTest, everySubmissionIsExplainedInTheFile) {
+    const TestBuffer buffer = makeStorage(64);
+    const Compute twice = makeCompute(
+        "#version 450\nlayout(local_size_x = 16) in;\nlayout(binding = 0) buffer B { float v[]; };\n"
+        "void main() { v[gl_GlobalInvocationID.x] *= 2.0; }",
+        {storageBuffer(buffer)});
+    run(twice, 4);
+    run(twice, 2);
+    std::ifstream file(log_);
+    std::vector<nlohmann::json> submissions;
+    for (std::string line; std::getline(file, line);)
+        if (nlohmann::json entry = nlohmann::json::parse(line); entry.contains("submission"))
+            submissions.push_back(std::move(entry));
+    ASSERT_EQ(submissions.size(), 2u);
+    const auto invocations = [](const nlohmann::json& submission) {
+        for (const nlohmann::json& fact : submission["facts"])
+            if (fact["what"].get<std::string>().starts_with("compute programs")) return fact["count"].get<int>();
+        return -1;
+    };
+    EXPECT_EQ(submissions[1]["submission"], 2);
+    EXPECT_EQ(invocations(submissions[0]), 64);
+    EXPECT_EQ(invocations(submissions[1]), 32) << "of this submission alone";
+}
+
 }  // namespace
 }  // namespace vernier::test
