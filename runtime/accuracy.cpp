@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include "runtime/settings.h"
 
@@ -15,19 +16,22 @@ struct Position {
 
 using Interpolation = InterpolationArithmetic;
 
-/// The dial, position by position; in the order of Profile.
+/// The dial, position by position; in the order of Profile. Fragments for 2x2 pixels are in none: Vulkan has them only
+/// when an application asks.
 constexpr std::array<Position, 5> kDial{{
-    {"draft", {4, Interpolation::singleFloat, MathTier::fast}},
-    {"fast", {8, Interpolation::singleFloat, MathTier::fast}},
-    {"standard", {8, Interpolation::singleFloat, MathTier::standard}},
-    {"fine", {12, Interpolation::doubleFloat, MathTier::fine}},
-    {"reference", {16, Interpolation::doubleFloat, MathTier::reference}},
+    {"draft", {4, Interpolation::singleFloat, MathTier::fast, 2, ShadingRate::pixel}},
+    {"fast", {8, Interpolation::singleFloat, MathTier::fast, 4, ShadingRate::pixel}},
+    {"standard", {8, Interpolation::singleFloat, MathTier::standard, 16, ShadingRate::pixel}},
+    {"fine", {12, Interpolation::doubleFloat, MathTier::fine, 16, ShadingRate::pixel}},
+    {"reference", {16, Interpolation::doubleFloat, MathTier::reference, 16, ShadingRate::pixel}},
 }};
 static_assert(kDial.size() == std::size(kProfiles));
 
 constexpr const char* kSubPixelPositions[] = {"4", "8", "12", "16"};
 constexpr const char* kInterpolationPositions[] = {"float", "double"};
 constexpr const char* kMathPositions[] = {"fast", "standard", "fine", "reference"};
+constexpr const char* kAnisotropyPositions[] = {"1", "2", "4", "8", "16"};
+constexpr const char* kShadingPositions[] = {"2x2", "1x1"};
 
 template <class Field, Field Accuracy::*kField>
 constexpr Axis enumAxis(const char* name, const char* meaning, std::span<const char* const> positions,
@@ -48,6 +52,12 @@ constexpr Axis kAxes[] = {
                                                       kInterpolationPositions, 0),
     enumAxis<MathTier, &Accuracy::math>("math", "tier of the elementary functions of shaders: docs/precision.md",
                                         kMathPositions, 1),
+    {"anisotropy", "samples of an anisotropic filter, at most; Vulkan leaves the scheme to implementations",
+     kAnisotropyPositions, 0,
+     [](const Accuracy& accuracy) { return static_cast<size_t>(std::countr_zero(accuracy.anisotropy)); },
+     [](Accuracy& accuracy, size_t position) { accuracy.anisotropy = 1u << position; }},
+    enumAxis<ShadingRate, &Accuracy::shading>("shading", "pixels that a fragment program runs for at once",
+                                              kShadingPositions, 1),
 };
 
 Status setAxis(Accuracy& accuracy, std::string_view name, std::string_view position) {

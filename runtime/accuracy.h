@@ -22,10 +22,17 @@ enum class InterpolationArithmetic : uint8_t {
     doubleFloat,  // double barycentrics and attributes, rounded once at the end
 };
 
+enum class ShadingRate : uint8_t {
+    twoByTwo,  // a fragment program runs once for 2x2 pixels where it can: Plan::coarse
+    pixel,
+};
+
 struct Accuracy {
     uint32_t subPixelBits = 8;  // 4, 8, 12 or 16
     InterpolationArithmetic interpolation = InterpolationArithmetic::singleFloat;
     MathTier math = MathTier::standard;
+    uint32_t anisotropy = 16;  // 1, 2, 4, 8 or 16: at most so many samples of an anisotropic filter
+    ShadingRate shading = ShadingRate::pixel;
     bool operator==(const Accuracy&) const = default;
 };
 

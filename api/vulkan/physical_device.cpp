@@ -23,9 +23,10 @@ void fillCacheUuid(const PhysicalDevice& device, uint8_t (&uuid)[VK_UUID_SIZE]) 
     std::memcpy(uuid, name, VK_UUID_SIZE);
     const uint32_t version = device.properties.driverVersion;
     std::memcpy(uuid + 8, &version, sizeof version);
-    uint16_t axisBits = 0;  // two bits an axis
-    for (const Axis& axis : axes()) axisBits = static_cast<uint16_t>(axisBits << 2 | axis.get(device.accuracy));
-    std::memcpy(uuid + 12, &axisBits, sizeof axisBits);
+    uint16_t place = 0;  // among all combinations of positions
+    for (const Axis& axis : axes())
+        place = static_cast<uint16_t>(place * axis.positions.size() + axis.get(device.accuracy));
+    std::memcpy(uuid + 12, &place, sizeof place);
     uuid[14] = static_cast<uint8_t>(device.isa);
 }
 

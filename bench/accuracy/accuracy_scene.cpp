@@ -106,6 +106,7 @@ Result<Scene> buildAccuracyScene(const AccuracyScene& scene, SceneUse use) {
         SceneSampler sampler;
         sampler.magFilter = sampler.minFilter = VK_FILTER_LINEAR;
         sampler.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
+        sampler.maxAnisotropy = scene.anisotropy;
         if (scene.texture == SceneTexture::ramp)
             sampler.addressModeU = sampler.addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
         draw.texture(0, texture, record.sampler(sampler));

@@ -32,6 +32,7 @@ struct AccuracyScene {
     uint32_t cover = 1;  // how often the mesh covers each pixel
     SceneTexture texture = SceneTexture::none;
     bool blend = false, depth = false;
+    float anisotropy = 0;  // of the sampler; 0: off
 };
 
 std::span<const AccuracyScene> accuracySceneTable();

@@ -48,13 +48,32 @@ std::vector<std::string> paretoFront(const AccuracyRun& run, const MeasuredScene
     return labels;
 }
 
-std::vector<std::string> neverOnFront(const AccuracyRun& run) {
-    std::set<std::string> seen;
-    for (const MeasuredScene& scene : run.scenes)
-        for (const std::string& label : paretoFront(run, scene)) seen.insert(label);
-    std::vector<std::string> never;
+std::vector<std::string> neverOnFront(const AccuracyRun& run, double tolerance) {
+    std::set<std::string> axes;
     for (const AccuracyPosition& position : run.positions)
-        if (position.driver == "api" && !seen.contains(position.label)) never.push_back(position.label);
+        if (!position.axis.empty()) axes.insert(position.axis);
+    const auto isOf = [](const AccuracyPosition& position, const std::string& axis) {
+        return position.axis == axis || position.label == kBaseProfile;
+    };
+    // Whether the scene has a use for a position: no other one of the axis is as good in both ways.
+    const auto uses = [&](const MeasuredScene& scene, const std::string& axis, const AccuracyPosition& position) {
+        const AccuracyFigures& own = scene.figures.at(position.label);
+        if (!own.failure.empty()) return false;
+        const std::vector<Candidate> all = candidates(run, scene);
+        return std::none_of(all.begin(), all.end(), [&](const Candidate& other) {
+            return isOf(*other.position, axis) && other.position->label != position.label &&
+                   other.figures->frame <= own.frame * (1 + tolerance) && other.error <= rankedError(scene, own);
+        });
+    };
+    std::vector<std::string> never;
+    for (const std::string& axis : axes)
+        for (const AccuracyPosition& position : run.positions) {
+            if (!isOf(position, axis)) continue;
+            if (std::any_of(run.scenes.begin(), run.scenes.end(),
+                            [&](const MeasuredScene& scene) { return uses(scene, axis, position); }))
+                continue;
+            never.push_back(position.label == kBaseProfile ? axis + " of " + kBaseProfile : position.label);
+        }
     return never;
 }
 

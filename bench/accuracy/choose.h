@@ -16,8 +16,9 @@ double rankedError(const MeasuredScene& scene, const AccuracyFigures& figures);
 /// exact. Times that differ by less than `tolerance` (a fraction) are equal: the more exact position wins.
 std::vector<std::string> paretoFront(const AccuracyRun& run, const MeasuredScene& scene, double tolerance = 0.03);
 
-/// Positions of axes that are on no scene's front.
-std::vector<std::string> neverOnFront(const AccuracyRun& run);
+/// Positions of axes that no scene has a use for: in each, another position of the same axis is as fast within
+/// `tolerance` and as exact, too. "AXIS of standard" is the position that axis has there.
+std::vector<std::string> neverOnFront(const AccuracyRun& run, double tolerance = 0.03);
 
 /// The most exact of Vernier's positions that Vulkan allows whose frame takes at most `milliseconds`; empty when none
 /// does.

@@ -108,7 +108,8 @@ std::string overview(const AccuracyRun& run) {
 }
 
 std::string verdicts(const AccuracyRun& run) {
-    std::string html = "<p>Positions that are on no scene's front: ";
+    std::string html =
+        "<p>Positions that no scene has a use for, as another one of their axis is as fast and as exact: ";
     const std::vector<std::string> never = neverOnFront(run);
     if (never.empty()) html += "none";
     for (size_t i = 0; i < never.size(); ++i) html += (i ? ", " : "") + escapeHtml(never[i]);

@@ -199,6 +199,8 @@ constexpr AccuracyScene kScenes[] = {
      SceneTexture::ramp},
     {"horizon", "A chequered floor to the horizon, trilinear.", "level of detail, perspective", kSmall, kLarge, kFloat,
      kFloor, kTextured, 1, 1, 1, 1, SceneTexture::checker},
+    {"grazing_floor", "The same floor through an anisotropic filter of at most 16 samples.", "anisotropy", kSmall,
+     kLarge, kFloat, kFloor, kTextured, 1, 1, 1, 1, SceneTexture::checker, false, false, 16},
     {"minified", "A turned chequered texture between two levels.", "level of detail", kSmall, kLarge, kFloat, kUv,
      kMinified, 1, 1, 1, 1, SceneTexture::checker},
     {"perspective_mesh", "Smooth colours over a mesh whose corners differ in distance by up to eight times.",

@@ -15,6 +15,7 @@ using reference::InterfaceVariable;
 
 struct ModuleTraits {
     bool derivatives = false;
+    bool ofPixels = false;  // drops fragments, or asks for inputs at places of its own
     double imprecision = 0;
 };
 
@@ -54,6 +55,13 @@ double imprecisionOf(uint32_t instruction) {
     }
 }
 
+/// Knows single pixels or samples, or decides about them.
+bool isOfPixels(const InterfaceVariable& v) {
+    if (!v.isBuiltin) return false;
+    return v.output || v.builtin == spv::BuiltInSampleMask || v.builtin == spv::BuiltInPointCoord ||
+           v.builtin == spv::BuiltInSampleId || v.builtin == spv::BuiltInSamplePosition;
+}
+
 ModuleTraits scan(const std::vector<uint32_t>& words) {
     ModuleTraits traits;
     for (size_t at = 5; at < words.size();) {
@@ -61,7 +69,11 @@ ModuleTraits scan(const std::vector<uint32_t>& words) {
         if (length == 0) break;
         traits.derivatives =
             traits.derivatives || opcode == spv::OpDPdx || opcode == spv::OpDPdy || opcode == spv::OpFwidth;
+        traits.ofPixels = traits.ofPixels || opcode == spv::OpKill || opcode == spv::OpTerminateInvocation ||
+                          opcode == spv::OpDemoteToHelperInvocation;
         if (opcode == spv::OpExtInst && length > 4 && at + 4 < words.size()) {
+            traits.ofPixels = traits.ofPixels || (words[at + 4] >= GLSLstd450InterpolateAtCentroid &&
+                                                  words[at + 4] <= GLSLstd450InterpolateAtOffset);
             traits.imprecision = std::max(traits.imprecision, imprecisionOf(words[at + 4]));
         }
         at += length;
@@ -86,6 +98,7 @@ Result<FragmentShader> FragmentShader::create(const Scene& scene, const ScenePip
 
     const ModuleTraits traits = scan(shader.spirv);
     result.imprecision_ = traits.imprecision;
+    result.mayShadeCoarsely_ = !traits.ofPixels;
     if (traits.derivatives) {
         reference::Options coarse;
         coarse.coarseDerivatives = true;
@@ -97,6 +110,7 @@ Result<FragmentShader> FragmentShader::create(const Scene& scene, const ScenePip
         const reference::EntryPoint& entry = module->entryPoints()[i];
         if (entry.model != spv::ExecutionModelFragment || entry.name != "main") continue;
         for (const InterfaceVariable& v : module->interfaceVariables(i)) {
+            result.mayShadeCoarsely_ = result.mayShadeCoarsely_ && !isOfPixels(v);
             if (v.output) {
                 result.outputs_.push_back(v);
                 continue;
@@ -147,7 +161,8 @@ std::array<FragmentShader::Values, 4> FragmentShader::inputsAt(const FragmentSou
     std::array<Values, 4> result;
     for (uint32_t lane = 0; lane < 4; ++lane) {
         Values& values = result[lane];
-        const double px = x + lane % 2 + place.offset[0], py = y + lane / 2 + place.offset[1];
+        const double px = x + place.pixels * (lane % 2) + place.offset[0];
+        const double py = y + place.pixels * (lane / 2) + place.offset[1];
         const auto weights = shape.weights(px + shiftX, py + shiftY);
         const auto centreWeights = shape.weights(x + lane % 2 + 0.5 + shiftX, y + lane / 2 + 0.5 + shiftY);
         auto centroidWeights = weights;

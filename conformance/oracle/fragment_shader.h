@@ -45,6 +45,7 @@ struct FragmentSource {
 /// Where in its pixel each of a quad's fragments is shaded.
 struct ShadingPlace {
     std::array<double, 2> offset{0.5, 0.5};  // of inputs and FragCoord, from the pixel's upper left corner
+    uint32_t pixels = 1;                     // on a side of a fragment: from one fragment of the quad to the next
     uint32_t sample = 0;                     // SampleId
     bool perSample = false;  // `offset` is a sample's: inputs without Sample may be taken at the centre all the same
     // Per lane: the places, in pixels of the framebuffer, among which centroid inputs may choose; the first is the
@@ -67,6 +68,8 @@ class FragmentShader {
     /// Whether it runs for each sample because of what it reads.
     bool perSample() const { return perSample_; }
     bool hasCentroids() const { return hasCentroids_; }
+    /// Whether it neither knows single pixels nor decides about them: fragments may then stand for several.
+    bool mayShadeCoarsely() const { return mayShadeCoarsely_; }
 
   private:
     using Interpreter = reference::Interpreter<double>;
@@ -97,7 +100,7 @@ class FragmentShader {
     std::shared_ptr<const Interpreter> coarse_;  // only if the module takes derivatives
     std::vector<reference::InterfaceVariable> inputs_, outputs_;
     bool variesWithPosition_ = false;  // reads something interpolated
-    bool perSample_ = false, hasCentroids_ = false;
+    bool perSample_ = false, hasCentroids_ = false, mayShadeCoarsely_ = true;
     uint32_t viewIndex_ = 0;
     double imprecision_ = 0;  // relative error of the built-in functions used
 };

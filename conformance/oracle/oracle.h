@@ -45,6 +45,10 @@ struct OracleRules {
     int subPixelBits = 8;               // subPixelPrecisionBits: vertices may be snapped by up to 2^-bits pixel
     int weightBits = 8;                 // subTexelPrecisionBits: of the weights of linear filters
     double levelSlack = 0x1p-6 + 0.03;  // by how much a level of detail may be off, beyond the accepted scale factors
+    // A fragment shader runs once for 2x2 pixels, at the point where they meet, where
+    // FragmentShader::mayShadeCoarsely() and one sample per pixel allow it. Not what the specification says unless the
+    // application asks.
+    bool coarseShading = false;
     // Attributes of Bresenham lines by the major axis alone. Not what the specification says: for explaining what an
     // implementation does.
     bool majorAxisLines = false;

@@ -161,6 +161,8 @@ class PassRenderer {
         if (!primitives) return primitives.error();
         positions_ = locations(pipeline);
 
+        pixels_ = shadesCoarsely(pipeline, shader ? &*shader : nullptr) ? 2 : 1;
+
         // Each thread owns whole rows of quads and sees all triangles in order: the result does not depend on
         // threads.
         const uint32_t threads = std::clamp(std::thread::hardware_concurrency(), 1u, 16u);
@@ -170,7 +172,7 @@ class PassRenderer {
         for (uint32_t t = 0; t < threads; ++t) {
             workers.emplace_back([&, t] {
                 ShaderResources resources(scene_, memory_, draw, rules_);
-                for (uint32_t row = t * 2; row < height_ && status[t].ok(); row += threads * 2)
+                for (uint32_t row = t * rows(); row < height_ && status[t].ok(); row += threads * rows())
                     status[t] = shadeRows(*primitives, row, shader ? &*shader : nullptr, output, resources);
                 writes[t] = std::move(resources.writes);
                 if (status[t].ok() && !writes[t].empty()) status[t] = checkStores(pipeline, resources);
@@ -214,6 +216,11 @@ class PassRenderer {
         return samples_ > 1 && shader && (asked || shader->perSample());
     }
 
+    bool shadesCoarsely(const ScenePipeline& pipeline, const FragmentShader* shader) const {
+        return rules_.coarseShading && samples_ == 1 && shader && shader->mayShadeCoarsely() &&
+               !pipeline.alphaToCoverage && pipeline.lineMode != VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT;
+    }
+
     std::vector<GridPoint> locations(const ScenePipeline& pipeline) const {
         if (pipeline.sampleLocations.empty()) return standardSampleLocations(samples_);
         std::vector<GridPoint> result;
@@ -227,7 +234,10 @@ class PassRenderer {
                 (int64_t{y} << rules_.subPixelBits) + positions_[s].y * unit};
     }
 
-    /// All primitives in their order, in the two pixel rows of quads that begin at `row`.
+    /// Of pixels in a row of quads of fragments.
+    uint32_t rows() const { return 2 * pixels_; }
+
+    /// All primitives in their order, in the pixel rows of quads that begin at `row`.
     Status shadeRows(std::span<const PreparedPrimitive> primitives, uint32_t row, const FragmentShader* shader,
                      const OutputState& output, ShaderResources& resources) {
         for (size_t first = 0; first < primitives.size();) {
@@ -248,7 +258,8 @@ class PassRenderer {
         std::vector<size_t> order;
         for (size_t i = 0; i < edges.size(); ++i) {
             const PixelBounds& bounds = edges[i].bounds;
-            if (bounds.y0 < static_cast<int32_t>(row) + 2 && bounds.y1 > static_cast<int32_t>(row)) order.push_back(i);
+            if (bounds.y0 < static_cast<int32_t>(row + rows()) && bounds.y1 > static_cast<int32_t>(row))
+                order.push_back(i);
         }
         const auto shadeAll = [&]() -> Status {
             for (const size_t i : order) {
@@ -258,7 +269,7 @@ class PassRenderer {
         };
         if (order.size() < 2) return shadeAll();
         const size_t begin = static_cast<size_t>(row) * width_ * samples_;
-        const size_t count = std::min(size_t{2}, static_cast<size_t>(height_ - row)) * width_ * samples_;
+        const size_t count = static_cast<size_t>(std::min(rows(), height_ - row)) * width_ * samples_;
         const std::vector<Sample> before(state_.begin() + static_cast<ptrdiff_t>(begin),
                                          state_.begin() + static_cast<ptrdiff_t>(begin + count));
         std::vector<Sample> declared;
@@ -277,24 +288,27 @@ class PassRenderer {
         return {};
     }
 
-    // The two pixel rows of quads that begin at `row`.
+    // The pixel rows of quads that begin at `row`: two of fragments.
     Status shadeRow(const PreparedPrimitive& t, uint32_t row, const FragmentShader* shader, const OutputState& output,
                     ShaderResources& resources) {
         const int32_t y0 = std::max<int32_t>(t.bounds.y0, static_cast<int32_t>(row));
-        const int32_t y1 = std::min<int32_t>(t.bounds.y1, static_cast<int32_t>(row) + 2);
+        const auto step = static_cast<int32_t>(2 * pixels_);
+        const int32_t y1 = std::min<int32_t>(t.bounds.y1, static_cast<int32_t>(row) + step);
         if (y0 >= y1) return {};
-        std::vector<SampleVerdict> verdicts(4 * samples_);
-        for (int32_t qx = t.bounds.x0 & ~1; qx < t.bounds.x1; qx += 2) {
+        std::vector<SampleVerdict> verdicts(4 * pixelsOfFragment() * samples_);
+        for (int32_t qx = t.bounds.x0 & ~(step - 1); qx < t.bounds.x1; qx += step) {
             std::array<bool, 4> covered{};
-            for (int32_t lane = 0; lane < 4; ++lane) {
-                const int32_t x = qx + lane % 2, y = static_cast<int32_t>(row) + lane / 2;
-                for (uint32_t s = 0; s < samples_; ++s) {
-                    SampleVerdict& verdict = verdicts[static_cast<size_t>(lane) * samples_ + s];
-                    verdict = SampleVerdict{};
-                    if (x < t.bounds.x0 || x >= t.bounds.x1 || y < y0 || y >= y1) continue;
-                    if (!(output.pipeline->sampleMask & (1u << s))) continue;
-                    verdict = t.classify(samplePoint(x, y, s));
-                    covered[static_cast<size_t>(lane)] = covered[static_cast<size_t>(lane)] || verdict.possible;
+            for (uint32_t lane = 0; lane < 4; ++lane) {
+                for (uint32_t pixel = 0; pixel < pixelsOfFragment(); ++pixel) {
+                    const auto [x, y] = pixelOf(qx, static_cast<int32_t>(row), lane, pixel);
+                    for (uint32_t s = 0; s < samples_; ++s) {
+                        SampleVerdict& verdict = verdicts[verdictIndex(lane, pixel, s)];
+                        verdict = SampleVerdict{};
+                        if (x < t.bounds.x0 || x >= t.bounds.x1 || y < y0 || y >= y1) continue;
+                        if (!(output.pipeline->sampleMask & (1u << s))) continue;
+                        verdict = t.classify(samplePoint(x, y, s));
+                        covered[lane] = covered[lane] || verdict.possible;
+                    }
                 }
             }
             if (std::ranges::none_of(covered, [](bool c) { return c; })) continue;
@@ -306,6 +320,16 @@ class PassRenderer {
         return {};
     }
 
+    uint32_t pixelsOfFragment() const { return pixels_ * pixels_; }
+    size_t verdictIndex(uint32_t lane, uint32_t pixel, uint32_t s) const {
+        return (size_t{lane} * pixelsOfFragment() + pixel) * samples_ + s;
+    }
+    /// A pixel of a lane's fragment, in the quad whose first pixel is (qx, qy).
+    std::pair<int32_t, int32_t> pixelOf(int32_t qx, int32_t qy, uint32_t lane, uint32_t pixel) const {
+        return {qx + static_cast<int32_t>(lane % 2 * pixels_ + pixel % pixels_),
+                qy + static_cast<int32_t>(lane / 2 * pixels_ + pixel / pixels_)};
+    }
+
     Status shadeQuad(const PreparedPrimitive& t, int32_t qx, int32_t qy, const std::array<bool, 4>& covered,
                      const std::vector<SampleVerdict>& verdicts, const FragmentShader* shader,
                      const OutputState& output, ShaderResources& resources) {
@@ -314,6 +338,8 @@ class PassRenderer {
             std::array<FragmentResult, 4> fragments{};
             if (shader) {
                 ShadingPlace place;
+                place.pixels = pixels_;
+                if (pixels_ > 1) place.offset = {1, 1};
                 if (perSample) {
                     place.sample = run;
                     place.perSample = true;
@@ -335,11 +361,13 @@ class PassRenderer {
             } else {
                 for (FragmentResult& fragment : fragments) fragment.colorFlags.fill(kOracleUnknown);
             }
-            for (size_t lane = 0; lane < 4; ++lane) {
-                const int32_t x = qx + static_cast<int32_t>(lane % 2), y = qy + static_cast<int32_t>(lane / 2);
-                for (uint32_t s = 0; s < samples_; ++s) {
-                    if (perSample && s != run) continue;
-                    applySample(t, x, y, s, verdicts[lane * samples_ + s], fragments[lane], output);
+            for (uint32_t lane = 0; lane < 4; ++lane) {
+                for (uint32_t pixel = 0; pixel < pixelsOfFragment(); ++pixel) {
+                    const auto [x, y] = pixelOf(qx, qy, lane, pixel);
+                    for (uint32_t s = 0; s < samples_; ++s) {
+                        if (perSample && s != run) continue;
+                        applySample(t, x, y, s, verdicts[verdictIndex(lane, pixel, s)], fragments[lane], output);
+                    }
                 }
             }
         }
@@ -480,6 +508,7 @@ class PassRenderer {
     uint32_t width_ = 0, height_ = 0, samples_ = 1;
     OutputState output_;  // attachments only
     std::vector<GridPoint> positions_;
+    uint32_t pixels_ = 1;  // on a side of a fragment of the draw
     std::vector<Sample> state_;
 };
 

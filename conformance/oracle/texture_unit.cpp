@@ -281,13 +281,35 @@ SampleResult filterLod(const Sampler& s, const Interval& lambda, const Place& pl
     return box.result();
 }
 
+// The declared value of an anisotropic filter: the mean of N samples evenly along the longer gradient, as Vulkan
+// describes one scheme ("Texel Anisotropic Filtering"), where more samples than the gradient has texels add nothing.
+std::array<double, 4> anisotropicMean(const Sampler& s, const SampleQuery& query) {
+    const VkExtent2D extent = s.image.level(0, s.layer).extent;
+    const double x = std::hypot(query.ddx[0] * extent.width, query.ddx[1] * extent.height);
+    const double y = std::hypot(query.ddy[0] * extent.width, query.ddy[1] * extent.height);
+    const double longer = std::max(x, y), shorter = std::min(x, y), most = s.state.maxAnisotropy;
+    const double ratio = longer > shorter * most ? most : std::max(1.0, longer / shorter);
+    const double samples = std::ceil(std::min(ratio, std::max(longer, 1.0)));
+    SampleQuery narrowed = query;
+    narrowed.bias -= std::log2(ratio);
+    const double lambda = std::max(levelOfDetail(narrowed, s.state, extent).value, -1.0);
+    const std::array<double, 3>& gradient = x > y ? query.ddx : query.ddy;
+    std::array<double, 4> mean{};
+    for (double i = 1; i <= samples; ++i) {
+        const double along = i / (samples + 1) - 0.5;
+        const SampleResult sample =
+            filterLod(s, Interval(lambda), {query.s + along * gradient[0], query.t + along * gradient[1], query.r});
+        for (size_t c = 0; c < 4; ++c) mean[c] += sample.color[c].value / samples;
+    }
+    return mean;
+}
+
 // Every texel that a sample within the footprint may touch, at the levels between the one of its shorter side and the
 // isotropic one. Vulkan leaves number, places and weights of an anisotropic filter's samples open ("implementation-
 // dependent"); as an average of samples along the footprint the result is between the smallest and the largest texel.
 SampleResult filterFootprint(const Sampler& s, const SampleQuery& query, const Interval& lambda) {
     const double last = s.image.mipLevels() - 1;
     const double narrow = lambda.low - std::log2(std::max(1.0f, s.state.maxAnisotropy));
-    // The declared value is the isotropic one: of no consequence where more than one is permitted.
     Box box;
     box.add(filterLod(s, Interval(std::max(lambda.value, -1.0)), {query.s, query.t}));
     const auto levelAt = [&](double lod) { return static_cast<uint32_t>(std::clamp(lod, 0.0, last)); };
@@ -307,7 +329,11 @@ SampleResult filterFootprint(const Sampler& s, const SampleQuery& query, const I
             for (int64_t x = left; x <= right; ++x) box.add(tap(s, mip, x, y, 0));
         }
     }
-    return box.result();
+    SampleResult result = box.result();
+    const std::array<double, 4> mean = anisotropicMean(s, query);
+    for (size_t c = 0; c < 4; ++c)
+        if (!result.color[c].isExact()) result.color[c] = Interval(mean[c]).united(result.color[c]);
+    return result;
 }
 
 // A filter may work at the precision of the texture's codes: one code to either side of the box (but nothing

@@ -226,12 +226,12 @@ void Executor::refreshDrawBindings() {
     BoundDescriptors& bound = drawBindings_.bound;
     Arena& arena = pass_->arena;
     bound.pushConstants = arena.copy(std::span<const std::byte>(drawBindings_.pushConstants));
-    vertexResources_ = resolveBindings(pipeline_->vertexIr(), bound, arena);
+    vertexResources_ = resolveBindings(pipeline_->vertexIr(), bound, pipeline_->accuracy(), arena);
     addAccesses(pipeline_->vertexIr(), bound, pass_->geometry);
     pass_->writesVertices |= pipeline_->vertexIr().hasSideEffects;
     fragmentResources_ = {};
     if (pipeline_->fragmentIr() == nullptr) return;
-    fragmentResources_ = resolveBindings(*pipeline_->fragmentIr(), bound, arena);
+    fragmentResources_ = resolveBindings(*pipeline_->fragmentIr(), bound, pipeline_->accuracy(), arena);
     needsLevels_ =
         pipeline_->planWithoutQuads() == nullptr || needsLevels(*pipeline_->fragmentIr(), fragmentResources_);
     addAccesses(*pipeline_->fragmentIr(), bound, pass_->rest);
@@ -314,7 +314,8 @@ void Executor::dispatch(const DispatchWork& work) {
     if (computeBindings_.changed) {
         computeBindings_.changed = false;
         bound.pushConstants = dispatchArena_.copy(std::span<const std::byte>(computeBindings_.pushConstants));
-        computeResources_ = resolveBindings(computePipeline_->ir(), bound, dispatchArena_);
+        computeResources_ =
+            resolveBindings(computePipeline_->ir(), bound, computePipeline_->accuracy(), dispatchArena_);
     }
     addAccesses(computePipeline_->ir(), bound, accesses);
     if (work.arguments.buffer != nullptr) {

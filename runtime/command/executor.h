@@ -32,7 +32,7 @@ class Executor {
     /// Waits for all work. False: a shader ran out of its loop budget. Throws what a piece of work threw.
     bool finish();
     /// All that was run since the executor was made; after finish().
-    SubmissionReport ran() const { return {commandsRun_, totals()}; }
+    SubmissionReport ran() const { return {commandsRun_, finished_}; }
 
   private:
     void runAll(const CommandBuffer& commands);
@@ -90,6 +90,7 @@ class Executor {
 
     std::mutex endedMutex_;              // of what follows, and of sinks of statistics
     std::vector<PassWork*> idlePasses_;  // the one that ended last is taken first: its memory is in the caches
+    PassStatistics finished_;            // of the passes and dispatches that have ended
     std::atomic<uint32_t> idleCount_{0};
 
     /// What descriptors and push constants draws, or dispatches, find.

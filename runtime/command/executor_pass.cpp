@@ -167,9 +167,9 @@ void Executor::run(const command::ClearAttachments& command) {
 }
 
 void Executor::count(const PassStatistics& difference, PassStatistics* sink) {
-    if (sink == nullptr) return;
     const std::lock_guard lock(endedMutex_);
-    *sink = combine(*sink, difference, std::plus<>{});
+    finished_ = combine(finished_, difference, std::plus<>{});
+    if (sink != nullptr) *sink = combine(*sink, difference, std::plus<>{});
 }
 
 /// What the pass counts from the segment on is the query's.

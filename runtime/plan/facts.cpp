@@ -70,13 +70,27 @@ void depthFacts(const GraphicsState& state, const Plan& plan, FactWriter& facts)
     if (depth.test && !depth.write) facts.leftOut("depth writes", "they are off");
 }
 
-void fragmentFacts(const ir::Program* fragment, const Plan& plan, FactWriter& facts) {
+/// How often the fragment program runs, and why.
+void fragmentRateFacts(const Plan& plan, const Accuracy& accuracy, FactWriter& facts) {
+    const bool askedCoarse = accuracy.shading == ShadingRate::twoByTwo;
+    facts.runs(std::string("fragment program, once per ") + (plan.coarse      ? "2x2 pixels"
+                                                             : plan.perSample ? "sample"
+                                                                              : "pixel"),
+               plan.coarse      ? "the accuracy asks for it"
+               : plan.perSample ? "it asks for samples"
+               : askedCoarse    ? "it knows single pixels or decides about them, or there are several samples"
+                                : "nothing in it varies between samples");
+}
+
+void fragmentFacts(const ir::Program* fragment, const Plan& plan, const Accuracy& accuracy, FactWriter& facts) {
     if (!plan.runsFragments) {
         facts.leftOut("fragment program", fragment == nullptr ? "there is none" : "it writes nothing that is kept");
         return;
     }
-    facts.runs(std::string("fragment program, once per ") + (plan.perSample ? "sample" : "pixel"),
-               plan.perSample ? "it asks for samples" : "nothing in it varies between samples");
+    fragmentRateFacts(plan, accuracy, facts);
+    if (accuracy.anisotropy < Accuracy().anisotropy && !fragment->imageOps.empty())
+        facts.runs("anisotropic filters with " + count(accuracy.anisotropy, "sample") + " at most",
+                   "the accuracy asks for no more");
     if (plan.splitSamples)
         facts.runs("a part of it once per pixel, " + count(plan.carried.size(), "value") + " handed on",
                    "it is the same for all samples");
@@ -161,7 +175,7 @@ void collectFacts(const GraphicsState& state, const ShaderProgram& program, Plan
         facts.leftOut(count(program.removedVaryings(), "vertex output"), "nobody reads them");
     if (state.rasterizerDiscard) return;
     depthFacts(state, plan, facts);
-    fragmentFacts(program.fragmentIr(), plan, facts);
+    fragmentFacts(program.fragmentIr(), plan, program.accuracy(), facts);
     if (plan.splitSamples) rateFacts("pixels' part of the fragment program", "pixel", *program.pixelPart(), facts);
     if (plan.runsFragments)
         rateFacts("fragment program", "fragment", plan.splitSamples ? *program.samplePart() : *program.fragment(),

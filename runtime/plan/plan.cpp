@@ -320,7 +320,20 @@ bool interpolates(const ir::Program& fragment) {
     });
 }
 
+/// Programs that know single pixels or decide about them, and samples, keep a run for each.
+bool canShadeCoarsely(const Plan& plan, const ir::Program& fragment) {
+    const auto isOfPixel = [](const BuiltinSlot& slot) {
+        return slot.builtin == ir::Builtin::sampleMaskIn || slot.builtin == ir::Builtin::pointCoord ||
+               slot.builtin == ir::Builtin::sampleId || slot.builtin == ir::Builtin::samplePosition;
+    };
+    return plan.samples == 1 && plan.runsFragments && plan.keepsCoverage && !plan.smoothLines &&
+           !fragment.writesDepth && plan.stencilRefSlot == kNoSlot && !fragment.hasSideEffects &&
+           !interpolates(fragment) &&
+           std::none_of(plan.fragmentBuiltins.begin(), plan.fragmentBuiltins.end(), isOfPixel);
+}
+
 bool packsSmall(const Plan& plan, const ir::Program* fragment) {
+    if (plan.coarse) return false;
     if (plan.samples != 1 || (plan.sampleMask & 1) == 0 || plan.preciseInterpolation || plan.smoothLines) return false;
     if (plan.depth.bounds || plan.depth.stencil || (plan.depth.any() && !plan.depth.early)) return false;
     return !plan.runsFragments || (plan.coverageIsFull && plan.fragmentBuiltins.empty() && !interpolates(*fragment));
@@ -372,6 +385,7 @@ Plan makePlan(const GraphicsState& state, const ShaderProgram& program) {
             planVaryings(vertex, *fragment, pixel, plan);
             planFragments(state, *fragment, program.isa(), plan);
             plan.usesQuads = plan.usesQuads || (pixel != nullptr && pixel->usesQuads);
+            plan.coarse = accuracy.shading == ShadingRate::twoByTwo && canShadeCoarsely(plan, *fragment);
         }
     }
     plan.packsSmall = packsSmall(plan, fragment);

@@ -114,6 +114,7 @@ struct Plan {
     bool perSample = false;       // one run per sample
     bool allAtSample = false;     // all inputs are taken at the sample, whatever they say of themselves
     bool splitSamples = false;    // perSample: a part of the program runs once per pixel
+    bool coarse = false;          // the program runs once for 2x2 pixels, at the point where they meet
     std::vector<CarriedValue> carried;
     bool needsBarycentrics = false;
     bool needsCentroid = false;         // some input is evaluated inside the covered part of the pixel

@@ -43,7 +43,8 @@ void FragmentStage::bindInterpolation() {
         input.offsetX = x;
         input.offsetY = y;
     };
-    bindTo(centreInput_, centreTargets_, nullptr, nullptr);
+    const float* const centre = plan_->coarse ? ones_.data() : nullptr;  // of 2x2 pixels: one pixel further
+    bindTo(centreInput_, centreTargets_, centre, centre);
     bindTo(centroidInput_, centroidTargets_, centroidX_.data(), centroidY_.data());
     bindTo(sampleInput_, sampleTargets_, batch_.offsetX.data(), batch_.offsetY.data());
     if (!plan_->perSample) centreInput_.perspective = plan_->smoothCount > 0;
@@ -117,14 +118,17 @@ void FragmentStage::fillBuiltin(const FragmentBatch& batch, const BuiltinSlot& b
         }
     };
     const bool perSample = plan_->perSample;
+    const float centre = plan_->coarse ? 1.0f : 0.5f;
     switch (builtin.builtin) {
         case ir::Builtin::fragCoord:
             if (c == 0)
-                eachLane(
-                    [&](uint32_t n) { return static_cast<float>(batch.x[n]) + (perSample ? batch.offsetX[n] : 0.5f); });
+                eachLane([&](uint32_t n) {
+                    return static_cast<float>(batch.x[n]) + (perSample ? batch.offsetX[n] : centre);
+                });
             if (c == 1)
-                eachLane(
-                    [&](uint32_t n) { return static_cast<float>(batch.y[n]) + (perSample ? batch.offsetY[n] : 0.5f); });
+                eachLane([&](uint32_t n) {
+                    return static_cast<float>(batch.y[n]) + (perSample ? batch.offsetY[n] : centre);
+                });
             if (c == 2) eachLane([&](uint32_t n) { return fragZ_[n]; });
             if (c == 3) eachLane([&](uint32_t n) { return fragInverseW_[n]; });
             return;

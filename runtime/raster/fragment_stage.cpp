@@ -114,10 +114,11 @@ void FragmentStage::bind(const PreparedDraw& draw, uint64_t token) {
     bindInterpolation();
     bindSmall();
     bindColors(isa);
+    if (plan_->coarse) bindCoarse();
     readsPixels_ = plan_->smoothLines || !plan_->fragmentBuiltins.empty() || plan_->preciseInterpolation ||
                    plan_->needsCentroid || !plan_->keepsCoverage;
 
-    block_.order = plan_->usesQuads ? LaneOrder::quads : LaneOrder::rows;
+    block_.order = plan_->usesQuads && !plan_->coarse ? LaneOrder::quads : LaneOrder::rows;
     block_.segmentCount = 1;
 }
 
@@ -165,6 +166,7 @@ uint32_t FragmentStage::appendSpan(int32_t x, int32_t y, uint32_t lanes) {
 void FragmentStage::add(const BlockCoverage& block) {
     uint64_t any = 0;
     for (uint32_t s = 0; s < samples_; ++s) any |= block.masks[s];
+    if (plan_->coarse) return addCoarse(block, any);
     const uint32_t index = blockIndex(block);
     const bool atOnce = !plan_->perSample && countBits(any) >= (inTwoRows(any) ? kMostOfTwoRows : kMostOfABlock);
     // What waits for these pixels comes first.
@@ -263,10 +265,12 @@ void FragmentStage::flush() {
     if (batch_.count != 0) {
         const uint32_t count = batch_.count;
         std::fill_n(batch_.execute.begin(), count, ~0u);
-        if (!plan_->usesQuads) std::fill_n(batch_.store.begin(), count, ~0u);
+        if (!plan_->usesQuads && !plan_->coarse) std::fill_n(batch_.store.begin(), count, ~0u);
         for (uint32_t lane = count; lane < capacity_; ++lane) batch_.execute[lane] = batch_.store[lane] = 0;
         if (plan_->perSample) {
             runSamples(batch_);
+        } else if (plan_->coarse) {
+            runCoarse();
         } else {
             run(batch_);
         }

@@ -70,6 +70,9 @@ class FragmentStage {
 
     void run(FragmentBatch& batch);
     void runSamples(FragmentBatch& batch);  // fragment_samples.cpp
+    void bindCoarse();                      // fragment_coarse.cpp, likewise the next two
+    void addCoarse(const BlockCoverage& block, uint64_t pixels);
+    void runCoarse();
     void fillInputs(const FragmentBatch& batch);
     void interpolate(const FragmentBatch& batch, InterpolationInput& input);
     void fillBuiltins(const FragmentBatch& batch, std::span<const BuiltinSlot> builtins, BatchContext& context);
@@ -127,6 +130,22 @@ class FragmentStage {
     };
     std::array<BoundColor, kMaxColorAttachments> boundColors_{};
     size_t boundColorCount_ = 0;
+    // Fragments of 2x2 pixels: the blocks whose fragments wait in batch_, and outputs of the program spread over
+    // pixels.
+    struct CoarseBlock {
+        static constexpr uint32_t kNone = ~0u;
+        int32_t x, y;       // first pixel
+        uint64_t pixels;    // that are covered
+        uint32_t quads[4];  // the first lane of each quad of fragments, which are 4x4 pixels; kNone: none is covered
+    };
+    struct CoarseOutput {
+        const float* fragments;
+        float* pixels;
+    };
+    std::array<CoarseBlock, kMaxFragmentLanes / 4> coarseBlocks_;
+    uint32_t coarseCount_ = 0;
+    std::vector<CoarseOutput> coarseOutputs_;
+    std::vector<std::array<float, kLaneRoom>> coarsePlanes_;
     bool readsPixels_ = false;  // somebody other than interpolation reads x, y, or coverage of a batch
     DepthStencilState depthState_;
 

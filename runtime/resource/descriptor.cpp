@@ -28,6 +28,22 @@ Table tableOf(ir::ResourceKind kind) {
     }
 }
 
+/// The sampler with no more than `accuracy` allows: itself, or another one in the arena.
+const SamplerState* limitSampler(const SamplerState* sampler, const Accuracy& accuracy, Arena& arena) {
+    const auto most = static_cast<float>(accuracy.anisotropy);
+    if (sampler == nullptr || !(sampler->maxAnisotropy > most)) return sampler;
+    SamplerState* const limited = arena.create(*sampler);
+    limited->maxAnisotropy = most;
+    return limited;
+}
+
+const TextureUnit& limitUnit(const TextureUnit& unit, const Accuracy& accuracy, Arena& arena) {
+    const SamplerState* const sampler = limitSampler(unit.sampler, accuracy, arena);
+    if (sampler == unit.sampler) return unit;
+    const Result<TextureUnit> limited = makeTextureUnit(unit.view, sampler, unit.isa);
+    return limited ? *arena.create(*limited) : unit;
+}
+
 }  // namespace
 
 DescriptorSetLayout DescriptorSetLayout::create(std::vector<DescriptorBinding> bindings) {
@@ -96,7 +112,8 @@ BufferBinding boundBuffer(const BoundDescriptorRange& found, uint32_t index) {
             clampSize(std::min<VkDeviceSize>(descriptor.buffer.size, descriptor.bufferBytesLeft - offset))};
 }
 
-ResourceBindings resolveBindings(const ir::Program& program, const BoundDescriptors& bound, Arena& arena) {
+ResourceBindings resolveBindings(const ir::Program& program, const BoundDescriptors& bound, const Accuracy& accuracy,
+                                 Arena& arena) {
     const size_t resources = program.resources.size();
     const std::span<uint32_t> base = arena.array<uint32_t>(resources);
     const std::span<uint32_t> count = arena.array<uint32_t>(resources);
@@ -130,10 +147,10 @@ ResourceBindings resolveBindings(const ir::Program& program, const BoundDescript
                     buffers[base[r] + i] = boundBuffer(found, i);
                     break;
                 case Table::images:
-                    images[base[r] + i] = bindingOf(found.slots[i].texture);
+                    images[base[r] + i] = bindingOf(limitUnit(found.slots[i].texture, accuracy, arena));
                     break;
                 case Table::samplers:
-                    samplers[base[r] + i] = found.slots[i].sampler;
+                    samplers[base[r] + i] = limitSampler(found.slots[i].sampler, accuracy, arena);
                     break;
             }
         }

@@ -10,6 +10,7 @@
 
 #include "base/arena.h"
 #include "base/simd.h"
+#include "runtime/accuracy.h"
 #include "runtime/resource/image.h"
 #include "runtime/resource/texture_unit.h"
 #include "spirv_interp/resources.h"
@@ -81,7 +82,9 @@ BoundDescriptorRange findDescriptors(const ir::Resource& resource, const BoundDe
 BufferBinding boundBuffer(const BoundDescriptorRange& found, uint32_t index);
 
 /// The bindings of one program: looks up every resource of `program` in `bound` and lays the results out in `arena`.
-/// Unbound or missing descriptors become empty bindings, which read as zero. The result lives as long as the arena.
-ResourceBindings resolveBindings(const ir::Program& program, const BoundDescriptors& bound, Arena& arena);
+/// Unbound or missing descriptors become empty bindings, which read as zero. Samplers filter as `accuracy` allows. The
+/// result lives as long as the arena.
+ResourceBindings resolveBindings(const ir::Program& program, const BoundDescriptors& bound, const Accuracy& accuracy,
+                                 Arena& arena);
 
 }  // namespace vernier

@@ -52,7 +52,8 @@ TEST(Dial, everyAxisHasPositionsThatRiseAlongTheDial) {
         ASSERT_EQ(vnGetAxisPosition(index, VN_PROFILE_DEFAULT, &byDefault), VN_SUCCESS);
         EXPECT_EQ(byDefault, standard) << axis.name;
     }
-    EXPECT_TRUE(names.contains("subpixel"));
+    for (const char* name : {"subpixel", "interpolation", "math", "anisotropy", "shading"})
+        EXPECT_TRUE(names.contains(name)) << name;
     EXPECT_EQ(vnGetAxis(0, nullptr), VN_ERROR_INVALID_ARGUMENT);
     EXPECT_EQ(vnGetAxisPosition(0, static_cast<VnProfile>(6), nullptr), VN_ERROR_INVALID_ARGUMENT);
 }
@@ -91,7 +92,89 @@ TEST(Dial, whatIsUnknownIsNamed) {
     }
 }
 
-using ProgramAccuracy = ApiTest;
+class ProgramAccuracy : public ApiTest {
+  protected:
+    static constexpr uint32_t kSize = 64;
+
+    /// A floor of stripes to the horizon, through a sampler of so much anisotropy, by a program with `axes`.
+    std::vector<uint32_t> floorThrough(float anisotropy, const char* axes) {
+        constexpr uint32_t kTexels = 64;
+        const VnImage stripes = image(VK_FORMAT_R8G8B8A8_UNORM, kTexels, kTexels, VN_ALL_MIPS);
+        std::vector<uint32_t> texels(size_t{kTexels} * kTexels);
+        for (uint32_t i = 0; i < texels.size(); ++i) texels[i] = i % kTexels / 4 % 2 ? 0xFFFFFFFFu : 0xFF203040u;
+        EXPECT_EQ(vnUpdateImage(context_, stripes, nullptr, texels.data(), texels.size() * 4), VN_SUCCESS)
+            << lastError();
+        EXPECT_EQ(vnGenerateMips(context_, stripes), VN_SUCCESS) << lastError();
+        VnSamplerDesc samplerDesc{};
+        samplerDesc.magFilter = samplerDesc.minFilter = VK_FILTER_LINEAR;
+        samplerDesc.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
+        samplerDesc.maxAnisotropy = anisotropy;
+        VnSampler sampler{};
+        EXPECT_EQ(vnCreateSampler(device_, &samplerDesc, &sampler), VN_SUCCESS) << lastError();
+        const VnProgram floor = programWith(R"(#version 450
+layout(location = 0) out vec2 uv;
+void main() {
+    vec2 corner = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1);
+    float w = corner.y < 0.5 ? 24.0 : 1.0;
+    uv = corner * w * 2.0;
+    gl_Position = vec4((corner * 2.0 - 1.0) * w, 0.5 * w, w);
+})",
+                                            R"(#version 450
+layout(set = 0, binding = 0) uniform sampler2D image;
+layout(location = 0) in vec2 uv;
+layout(location = 0) out vec4 color;
+void main() { color = texture(image, uv); })",
+                                            axes);
+        const VnImage target = image(VK_FORMAT_R8G8B8A8_UNORM, kSize, kSize);
+        const VnPassDesc pass = passOn(target);
+        EXPECT_EQ(vnBeginPass(context_, &pass), VN_SUCCESS) << lastError();
+        EXPECT_EQ(vnBindProgram(context_, floor), VN_SUCCESS);
+        EXPECT_EQ(vnBindTexture(context_, 0, 0, 0, view(stripes), sampler), VN_SUCCESS) << lastError();
+        EXPECT_EQ(vnSetTopology(context_, VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP, 0), VN_SUCCESS);
+        EXPECT_EQ(vnDraw(context_, 4, 1, 0, 0), VN_SUCCESS) << lastError();
+        EXPECT_EQ(vnEndPass(context_), VN_SUCCESS);
+        return read(target, kSize, kSize);
+    }
+
+    VnProgram programWith(const char* vertex, const char* fragment, const char* axes) {
+        VnProgramDesc desc{};
+        desc.vertex = shader(VK_SHADER_STAGE_VERTEX_BIT, vertex);
+        desc.fragment = shader(VK_SHADER_STAGE_FRAGMENT_BIT, fragment);
+        desc.axes = axes;
+        VnProgram made{};
+        EXPECT_EQ(vnCreateProgram(device_, &desc, &made), VN_SUCCESS) << lastError();
+        return made;
+    }
+};
+
+TEST_F(ProgramAccuracy, AnisotropyIsTheSamplersOrLess) {
+    const std::vector<uint32_t> full = floorThrough(16, nullptr), two = floorThrough(2, nullptr);
+    EXPECT_NE(full, two);
+    EXPECT_EQ(floorThrough(16, "anisotropy=2"), two) << "as a sampler of 2 at most";
+    EXPECT_EQ(floorThrough(16, "anisotropy=1"), floorThrough(0, nullptr)) << "as one without";
+    EXPECT_EQ(floorThrough(2, "anisotropy=8"), two) << "never more than the sampler asks for";
+}
+
+TEST_F(ProgramAccuracy, FragmentsOfFourPixelsWhereAProgramAsks) {
+    const auto invocations = [&](const char* axes) {
+        const VnProgram made = programWith(kFullScreenVertex, R"(#version 450
+layout(location = 0) out vec4 color;
+void main() { color = gl_FragCoord / 64.0; })",
+                                           axes);
+        const VnImage target = image(VK_FORMAT_R8G8B8A8_UNORM, kSize, kSize);
+        const VnPassDesc pass = passOn(target);
+        EXPECT_EQ(vnResetStatistics(context_), VN_SUCCESS);
+        EXPECT_EQ(vnBeginPass(context_, &pass), VN_SUCCESS) << lastError();
+        EXPECT_EQ(vnBindProgram(context_, made), VN_SUCCESS);
+        EXPECT_EQ(vnDraw(context_, 3, 1, 0, 0), VN_SUCCESS) << lastError();
+        EXPECT_EQ(vnEndPass(context_), VN_SUCCESS);
+        VnStatistics statistics{};
+        EXPECT_EQ(vnGetStatistics(context_, &statistics), VN_SUCCESS);
+        return statistics.fragmentInvocations;
+    };
+    EXPECT_EQ(invocations(nullptr), uint64_t{kSize} * kSize);
+    EXPECT_EQ(invocations("shading=2x2"), uint64_t{kSize} * kSize / 4);
+}
 
 TEST_F(ProgramAccuracy, aProgramChangesTheAxesOfItsDevice) {
     VnProgramDesc desc{};

@@ -12,6 +12,7 @@
 #include "bench/accuracy/figures.h"
 #include "bench/accuracy/page.h"
 #include "conformance/drivers/api_driver.h"
+#include "conformance/tool/driver_choice.h"
 
 namespace vernier::bench {
 namespace {
@@ -19,6 +20,7 @@ namespace {
 using namespace conformance;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 TEST(AccuracyScenes, AreManyAndSound) {
     std::set<std::string> names;
@@ -49,6 +51,37 @@ TEST(AccuracyScenes, CoverEveryPixelExactlySoOften) {
             EXPECT_EQ(figures.holes, 0u) << scene.name << " at profile " << profile;
             EXPECT_EQ(figures.doubles, 0u) << scene.name << " at profile " << profile;
         }
+    }
+}
+
+/// Pixels of a scene at standard with `axes` that are outside what `rules` permit, of those that are judged.
+std::pair<uint64_t, uint64_t> outsideOf(const AccuracyScene& scene, const char* axes, const OracleRules& rules) {
+    const Result<Scene> built = buildAccuracyScene(scene, SceneUse::judged);
+    const Result<std::vector<OracleImage>> oracle = judgeScene(*built, rules);
+    EXPECT_TRUE(oracle.ok()) << scene.name << ": " << oracle.error().message;
+    const Result<std::unique_ptr<ApiDriver>> driver = ApiDriver::create({VN_PROFILE_STANDARD, 2, nullptr, axes});
+    EXPECT_TRUE(driver.ok()) << driver.error().message;
+    const Result<std::vector<RenderedImage>> images = (*driver)->render(*built, nullptr);
+    EXPECT_TRUE(images.ok()) << scene.name << ": " << images.error().message;
+    AccuracyFigures figures;
+    judgeImage((*images)[0], (*oracle)[0], (*oracle)[0], figures);
+    return {figures.outside, figures.judged};
+}
+
+/// Less accurate is never unverified: what fragments of 2x2 pixels are to show, the oracle says pixel by pixel.
+TEST(AccuracyScenes, CoarseShadingIsWhatTheOracleDeclares) {
+    for (const char* name : {"plasma", "specular", "perspective_mesh", "magnified_ramp", "minified", "gradient"}) {
+        const auto table = accuracySceneTable();
+        const auto scene = std::find_if(table.begin(), table.end(),
+                                        [&](const AccuracyScene& each) { return each.name == std::string(name); });
+        ASSERT_NE(scene, table.end()) << name;
+        OracleRules coarse;
+        coarse.coarseShading = true;
+        const auto [wrong, judged] = outsideOf(*scene, "shading=2x2", coarse);
+        EXPECT_EQ(wrong, 0u) << name;
+        EXPECT_GT(judged, 1000u) << name;
+        EXPECT_GT(outsideOf(*scene, "shading=2x2", {}).first, judged / 4)
+            << name << ": the same as a fragment for each pixel";
     }
 }
 
@@ -149,7 +182,18 @@ TEST(AccuracyChoice, FrontIsWhatNothingOfOursBeats) {
     const AccuracyRun run = sampleRun();
     // `fine` is as fast as `standard` within the tolerance, and more exact; lavapipe is no position of ours.
     EXPECT_THAT(paretoFront(run, run.scenes[0]), ElementsAre("draft", "fast", "fine"));
-    EXPECT_THAT(neverOnFront(run), ElementsAre("standard", "reference", "math=fine"));
+}
+
+TEST(AccuracyChoice, PositionsAreEarnedAgainstTheirAxis) {
+    EXPECT_THAT(neverOnFront(sampleRun()), IsEmpty()) << "math=fine is faster, standard more exact";
+    const AccuracyRun run = runOf({{"standard", 3, 0.1},
+                                   {"subpixel=4", 2.95, 0.2},
+                                   {"subpixel=12", 3.05, 0.1},
+                                   {"math=fast", 2, 0.3},
+                                   {"math=fine", 3.01, 0.05},
+                                   {"lavapipe", 0.5, 0.01}});
+    EXPECT_THAT(neverOnFront(run), ElementsAre("math of standard", "subpixel of standard", "subpixel=4", "subpixel=12"))
+        << "4 is no faster than 8, 12 no more exact; and finer maths costs nothing";
 }
 
 TEST(AccuracyChoice, BudgetsPickByTimeAndByError) {
