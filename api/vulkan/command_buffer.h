@@ -27,7 +27,8 @@ struct CommandBuffer : Dispatchable {
     /// The render pass being recorded. `pass` alone is set in a secondary command buffer that continues one.
     struct Pass {
         const RenderPassObject* pass = nullptr;
-        const Framebuffer* framebuffer = nullptr;
+        std::vector<const ImageView*> views;
+        uint32_t layers = 0;  // 0: not begun here
         uint32_t subpass = 0;
         VkRect2D area{};
         std::vector<VkClearValue> clears;

@@ -1,6 +1,7 @@
 // Beginning and ending render passes and subpasses.
 #include <algorithm>
 
+#include "api/vulkan/chain.h"
 #include "api/vulkan/command_buffer.h"
 #include "api/vulkan/entry_points.h"
 
@@ -21,11 +22,21 @@ VkRect2D clipArea(const VkRect2D& area, const VkExtent2D& extent) {
     return result;
 }
 
+/// Those of the framebuffer, or, if it is imageless, those that the beginning gives.
+std::vector<const ImageView*> viewsOf(const Framebuffer& framebuffer, const VkRenderPassBeginInfo& begin) {
+    std::vector<const ImageView*> views = framebuffer.views;
+    const auto* given = findInChain<VkRenderPassAttachmentBeginInfo>(begin.pNext);
+    if (views.empty() && given != nullptr) {
+        for (uint32_t i = 0; i < given->attachmentCount; ++i) views.push_back(object(given->pAttachments[i]));
+    }
+    return views;
+}
+
 void beginSubpass(CommandBuffer& buffer, uint32_t subpass) {
     CommandBuffer::Pass& pass = buffer.pass;
     pass.subpass = subpass;
     pass.formats = pass.pass->formats(subpass);
-    buffer.stream.record(renderingOf(*pass.pass, *pass.framebuffer, subpass, pass.area, pass.clears));
+    buffer.stream.record(renderingOf(*pass.pass, pass.views, pass.layers, subpass, pass.area, pass.clears));
     buffer.checkPipeline();
 }
 
@@ -39,11 +50,15 @@ VKAPI_ATTR void VKAPI_CALL CmdBeginRenderPass(VkCommandBuffer commandBuffer,
         if (buffer.level != VK_COMMAND_BUFFER_LEVEL_PRIMARY || buffer.pass.pass != nullptr) {
             return buffer.fail("vkCmdBeginRenderPass", "needs a primary command buffer outside a render pass");
         }
-        if (framebuffer->views.size() != pass->attachments.size() || pass->subpasses.empty()) {
-            return buffer.fail("vkCmdBeginRenderPass", "the framebuffer does not fit the render pass");
+        std::vector<const ImageView*> views = viewsOf(*framebuffer, *pRenderPassBegin);
+        if (const Status status = checkViews(*pass, views, framebuffer->extent, framebuffer->layers);
+            !status || pass->subpasses.empty()) {
+            return buffer.fail("vkCmdBeginRenderPass",
+                               status ? "the render pass has no subpass" : status.error().message);
         }
         buffer.pass.pass = pass;
-        buffer.pass.framebuffer = framebuffer;
+        buffer.pass.views = std::move(views);
+        buffer.pass.layers = framebuffer->layers;
         buffer.pass.area = clipArea(pRenderPassBegin->renderArea, framebuffer->extent);
         buffer.pass.clears.assign(pass->attachments.size(), VkClearValue{});
         const size_t given = std::min<size_t>(pRenderPassBegin->clearValueCount, buffer.pass.clears.size());
@@ -54,7 +69,7 @@ VKAPI_ATTR void VKAPI_CALL CmdBeginRenderPass(VkCommandBuffer commandBuffer,
 
 VKAPI_ATTR void VKAPI_CALL CmdNextSubpass(VkCommandBuffer commandBuffer, VkSubpassContents) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
-        if (buffer.pass.framebuffer == nullptr || buffer.pass.subpass + 1 >= buffer.pass.pass->subpasses.size()) {
+        if (buffer.pass.layers == 0 || buffer.pass.subpass + 1 >= buffer.pass.pass->subpasses.size()) {
             return buffer.fail("vkCmdNextSubpass", "there is no next subpass");
         }
         buffer.stream.record(command::EndRendering{});
@@ -64,7 +79,7 @@ VKAPI_ATTR void VKAPI_CALL CmdNextSubpass(VkCommandBuffer commandBuffer, VkSubpa
 
 VKAPI_ATTR void VKAPI_CALL CmdEndRenderPass(VkCommandBuffer commandBuffer) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
-        if (buffer.pass.framebuffer == nullptr) {
+        if (buffer.pass.layers == 0) {
             return buffer.fail("vkCmdEndRenderPass", "no render pass was begun");
         }
         buffer.stream.record(command::EndRendering{});

@@ -65,7 +65,17 @@ constexpr DeviceTypeName kDeviceTypes[] = {
     {"virtual", VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU},
     {"other", VK_PHYSICAL_DEVICE_TYPE_OTHER},
 };
-constexpr uint32_t kMaxThreads = 1024;
+constexpr uint32_t kMaxThreads = 1024, kMaxRefreshRate = 1000;
+
+/// Leaves `number` alone when the variable is unset.
+Status readNumber(const char* name, uint32_t largest, const char* allowed, uint32_t& number) {
+    const auto text = variable(name);
+    if (text.empty()) return {};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    const bool whole = error == std::errc() && end == text.data() + text.size();
+    if (!whole || number > largest) return badValue(name, text, allowed);
+    return {};
+}
 
 }  // namespace
 
@@ -82,11 +92,11 @@ Result<Configuration> readConfiguration() {
         }
         if (!known) return badValue("VERNIER_DEVICE_TYPE", text, "cpu, integrated, discrete, virtual, other");
     }
-    if (const auto text = variable("VERNIER_THREADS"); !text.empty()) {
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), result.threads);
-        if (error != std::errc() || end != text.data() + text.size() || result.threads > kMaxThreads) {
-            return badValue("VERNIER_THREADS", text, "0 (as many as CPUs) to 1024");
-        }
+    if (Status s = readNumber("VERNIER_THREADS", kMaxThreads, "0 (as many as CPUs) to 1024", result.threads); !s) {
+        return s.error();
+    }
+    if (Status s = readNumber("VERNIER_REFRESH", kMaxRefreshRate, "0 (at once) to 1000", result.refreshRate); !s) {
+        return s.error();
     }
     if (const auto text = variable("VERNIER_ISA"); !text.empty()) {
         const auto isa = isaFromName(text);

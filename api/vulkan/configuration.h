@@ -12,6 +12,8 @@
 //                        rule of leaving out alone, see runtime/skips.h
 //   VERNIER_EXPLAIN      stderr, or a file that is appended to: what every pipeline runs and leaves out, and why, and
 //                        what every submission ran; an object a line where its name ends in .json
+//   VERNIER_REFRESH      how often a second swapchains show an image in the modes FIFO and MAILBOX, 0 to 1000; default
+//                        60, 0: at once
 //   VERNIER_LOG          set and not 0: messages go to stderr, too
 #pragma once
 
@@ -41,6 +43,7 @@ struct Configuration {
     Isa maxIsa = Isa::avx512;
     Skips skips;
     std::string explain;
+    uint32_t refreshRate = 60;  // of swapchains, in Hz; 0: they do not wait
     bool log = false;
 };
 

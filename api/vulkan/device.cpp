@@ -73,6 +73,11 @@ VKAPI_ATTR void VKAPI_CALL GetDeviceQueue(VkDevice device, uint32_t queueFamilyI
     *pQueue = exists ? handleOf<VkQueue>(&object(device)->queue) : VK_NULL_HANDLE;
 }
 
+VKAPI_ATTR void VKAPI_CALL GetDeviceQueue2(VkDevice device, const VkDeviceQueueInfo2* pQueueInfo, VkQueue* pQueue) {
+    *pQueue = VK_NULL_HANDLE;
+    if (pQueueInfo->flags == 0) GetDeviceQueue(device, pQueueInfo->queueFamilyIndex, pQueueInfo->queueIndex, pQueue);
+}
+
 VKAPI_ATTR VkResult VKAPI_CALL DeviceWaitIdle(VkDevice device) {
     return guarded([&] {
         object(device)->runtime->queue().waitIdle();

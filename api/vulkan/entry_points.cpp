@@ -44,13 +44,13 @@ const EntryPoint* find(std::string_view name, ExtensionSet available) {
     const auto* entry = std::ranges::lower_bound(kEntryPoints, name, {}, &EntryPoint::name);
     if (entry == std::end(kEntryPoints) || entry->name != name) return nullptr;
     const bool core = entry->coreVersion != 0 && entry->coreVersion <= kApiVersion;
-    return core || (entry->extensions & available) != 0 ? entry : nullptr;
+    return core || entry->extensions.intersects(available) ? entry : nullptr;
 }
 
 constexpr ExtensionSet kDeviceExtensions = [] {
-    ExtensionSet set = 0;
+    ExtensionSet set;
 #define VERNIER_EXTENSION_ROW(identifier, name, version, isInstance) \
-    if (!isInstance) set |= bit(Extension::identifier);
+    if (!isInstance) set |= Extension::identifier;
 #include "extensions.inc"
 #undef VERNIER_EXTENSION_ROW
     return set;
@@ -58,7 +58,8 @@ constexpr ExtensionSet kDeviceExtensions = [] {
 
 /// With an instance: everything that it, or any device of it, could offer.
 PFN_vkVoidFunction instanceProcAddr(VkInstance instance, std::string_view name) {
-    const ExtensionSet available = instance != nullptr ? object(instance)->extensions | kDeviceExtensions : 0;
+    const ExtensionSet available =
+        instance != nullptr ? object(instance)->extensions | kDeviceExtensions : ExtensionSet();
     const EntryPoint* entry = find(name, available);
     if (entry == nullptr || (instance == nullptr && entry->level != Level::loader)) return nullptr;
     return entry->function;

@@ -5,6 +5,8 @@
 
 #include <type_traits>
 
+#include "api/vulkan/window_system.h"
+
 namespace vernier::vulkan {
 
 #define VERNIER_ENTRY_POINT(name) std::remove_pointer_t<PFN_vk##name> name;

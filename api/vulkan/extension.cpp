@@ -41,7 +41,7 @@ VkResult selectExtensions(ExtensionScope scope, std::span<const char* const> nam
         bool found = false;
         for (const ExtensionInfo& info : kExtensions) {
             if (info.scope == scope && info.name == name) {
-                set |= bit(info.extension);
+                set |= info.extension;
                 found = true;
             }
         }

@@ -78,6 +78,10 @@ namespace {
     X(VkPhysicalDeviceShaderFloat16Int8Features, shaderInt8, true)                                       \
     X(VkPhysicalDeviceShaderAtomicInt64Features, shaderBufferInt64Atomics, true)                         \
     X(VkPhysicalDeviceShaderAtomicInt64Features, shaderSharedInt64Atomics, true)                         \
+    X(VkPhysicalDeviceProtectedMemoryFeatures, protectedMemory, false)                                   \
+    X(VkPhysicalDeviceSamplerYcbcrConversionFeatures, samplerYcbcrConversion, false)                     \
+    X(VkPhysicalDeviceShaderSubgroupExtendedTypesFeatures, shaderSubgroupExtendedTypes, true)            \
+    X(VkPhysicalDeviceImagelessFramebufferFeatures, imagelessFramebuffer, true)                          \
     X(VkPhysicalDeviceVariablePointersFeatures, variablePointersStorageBuffer, true)                     \
     X(VkPhysicalDeviceVariablePointersFeatures, variablePointers, true)                                  \
     X(VkPhysicalDeviceShaderDrawParametersFeatures, shaderDrawParameters, true)                          \

@@ -132,6 +132,17 @@ VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties(VkPhysical
 VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties2(
     VkPhysicalDevice physicalDevice, const VkPhysicalDeviceImageFormatInfo2* pImageFormatInfo,
     VkImageFormatProperties2* pImageFormatProperties) {
+    if (auto* p = findInChain<VkExternalImageFormatProperties>(pImageFormatProperties->pNext)) {
+        p->externalMemoryProperties = {};
+    }
+    if (auto* p = findInChain<VkSamplerYcbcrConversionImageFormatProperties>(pImageFormatProperties->pNext)) {
+        p->combinedImageSamplerDescriptorCount = 1;
+    }
+    const auto* external = findInChain<VkPhysicalDeviceExternalImageFormatInfo>(pImageFormatInfo->pNext);
+    if (external != nullptr && external->handleType != 0) {
+        pImageFormatProperties->imageFormatProperties = {};
+        return VK_ERROR_FORMAT_NOT_SUPPORTED;
+    }
     return imageFormatProperties(*object(physicalDevice), pImageFormatInfo->format, pImageFormatInfo->type,
                                  pImageFormatInfo->tiling,
                                  usageOfAspects(pImageFormatInfo->pNext, pImageFormatInfo->usage),

@@ -45,6 +45,8 @@ struct Framebuffer;
 struct CommandPool;
 struct Semaphore;
 struct Event;
+struct Surface;
+struct Swapchain;
 struct DebugMessenger;
 
 template <class Handle>
@@ -80,6 +82,8 @@ VERNIER_HANDLE(VkFence, vernier::BinarySignal)
 VERNIER_HANDLE(VkSemaphore, Semaphore)
 VERNIER_HANDLE(VkEvent, Event)
 VERNIER_HANDLE(VkQueryPool, vernier::QueryPool)
+VERNIER_HANDLE(VkSurfaceKHR, Surface)
+VERNIER_HANDLE(VkSwapchainKHR, Swapchain)
 VERNIER_HANDLE(VkDebugUtilsMessengerEXT, DebugMessenger)
 #undef VERNIER_HANDLE
 

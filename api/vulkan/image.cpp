@@ -7,6 +7,7 @@
 #include "api/vulkan/entry_points.h"
 #include "api/vulkan/format_properties.h"
 #include "api/vulkan/memory.h"
+#include "api/vulkan/swapchain.h"
 #include "runtime/resource/image.h"
 
 namespace vernier::vulkan {
@@ -42,6 +43,16 @@ Status checkCreateInfo(const PhysicalDevice& device, const VkImageCreateInfo& in
                                std::to_string(limits.sampleCounts));
     }
     return {};
+}
+
+/// To the memory of an image of a swapchain, as another name of it.
+VkResult bindToSwapchain(const Device& device, Image& image, const VkBindImageMemorySwapchainInfoKHR& info) {
+    const auto& images = object(info.swapchain)->images;
+    if (info.imageIndex >= images.size() || images[info.imageIndex].memory->size() < image.memorySize()) {
+        return device.report("vkBindImageMemory2", VK_ERROR_UNKNOWN, "the swapchain has no such image");
+    }
+    image.bind(*images[info.imageIndex].memory, 0);
+    return VK_SUCCESS;
 }
 
 }  // namespace
@@ -111,7 +122,10 @@ VKAPI_ATTR VkResult VKAPI_CALL BindImageMemory2(VkDevice device, uint32_t bindIn
     VkResult result = VK_SUCCESS;
     for (uint32_t i = 0; i < bindInfoCount; ++i) {
         const VkBindImageMemoryInfo& bind = pBindInfos[i];
-        const VkResult one = BindImageMemory(device, bind.image, bind.memory, bind.memoryOffset);
+        const auto* shown = findInChain<VkBindImageMemorySwapchainInfoKHR>(bind.pNext);
+        const VkResult one = shown != nullptr && shown->swapchain != VK_NULL_HANDLE
+                                 ? bindToSwapchain(*object(device), *object(bind.image), *shown)
+                                 : BindImageMemory(device, bind.image, bind.memory, bind.memoryOffset);
         if (one != VK_SUCCESS) result = one;
     }
     return result;
@@ -161,6 +175,20 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateSampler(VkDevice, const VkSamplerCreateInfo
                                              const VkAllocationCallbacks* pAllocator, VkSampler* pSampler) {
     return guarded([&] { return createHandle(pAllocator, pSampler, makeSamplerState(*pCreateInfo)); });
 }
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateSamplerYcbcrConversion(VkDevice device, const VkSamplerYcbcrConversionCreateInfo*,
+                                                            const VkAllocationCallbacks*,
+                                                            VkSamplerYcbcrConversion* pYcbcrConversion) {
+    return guarded([&] {
+        *pYcbcrConversion = VK_NULL_HANDLE;
+        return object(device)->report("vkCreateSamplerYcbcrConversion", VK_ERROR_FEATURE_NOT_PRESENT,
+                                      "samplerYcbcrConversion is not supported");
+    });
+}
+
+// There are none.
+VKAPI_ATTR void VKAPI_CALL DestroySamplerYcbcrConversion(VkDevice, VkSamplerYcbcrConversion,
+                                                         const VkAllocationCallbacks*) {}
 
 VKAPI_ATTR void VKAPI_CALL DestroySampler(VkDevice, VkSampler sampler, const VkAllocationCallbacks* pAllocator) {
     destroyHandle(pAllocator, sampler);

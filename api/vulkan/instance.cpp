@@ -14,6 +14,11 @@ VKAPI_ATTR VkResult VKAPI_CALL EnumerateInstanceExtensionProperties(const char* 
     return enumerateExtensions(ExtensionScope::instance, pPropertyCount, pProperties);
 }
 
+VKAPI_ATTR VkResult VKAPI_CALL EnumerateInstanceVersion(uint32_t* pApiVersion) {
+    *pApiVersion = kApiVersion;
+    return VK_SUCCESS;
+}
+
 VKAPI_ATTR VkResult VKAPI_CALL EnumerateInstanceLayerProperties(uint32_t* pPropertyCount, VkLayerProperties*) {
     *pPropertyCount = 0;
     return VK_SUCCESS;
@@ -28,7 +33,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateInstance(const VkInstanceCreateInfo* pCreat
             std::fprintf(stderr, "vernier: vkCreateInstance: %s\n", configuration.error().message.c_str());
             return VK_ERROR_INITIALIZATION_FAILED;
         }
-        ExtensionSet extensions = 0;
+        ExtensionSet extensions;
         const char* missing = nullptr;
         const VkResult selected = selectExtensions(
             ExtensionScope::instance, {pCreateInfo->ppEnabledExtensionNames, pCreateInfo->enabledExtensionCount},

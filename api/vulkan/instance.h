@@ -20,7 +20,7 @@ struct Instance : Dispatchable {
     }
 
     Configuration configuration;
-    ExtensionSet extensions = 0;
+    ExtensionSet extensions;
     Messages messages;
     ExplainLog explainLog;
     std::vector<std::unique_ptr<PhysicalDevice>> physicalDevices;

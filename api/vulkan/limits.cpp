@@ -1,14 +1,10 @@
-// The limits of the device, in the order of the specification's table "Required Limits", and the properties
-// of extensions.
+// The limits of the device, in the order of the specification's table "Required Limits".
 #include <algorithm>
 
-#include "api/vulkan/chain.h"
 #include "api/vulkan/physical_device.h"
 #include "api/vulkan/resource_limits.h"
 #include "runtime/geometry/primitive_setup.h"
 #include "runtime/limits.h"
-#include "runtime/plan/sample_positions.h"
-#include "runtime/raster/depth_resolve.h"
 #include "runtime/resource/buffer_view.h"
 #include "runtime/resource/memory.h"
 #include "runtime/texture/texture.h"
@@ -51,24 +47,6 @@ void setAlignments(VkPhysicalDeviceLimits& limits) {
     limits.optimalBufferCopyOffsetAlignment = 1;
     limits.optimalBufferCopyRowPitchAlignment = 1;
     limits.nonCoherentAtomSize = 1;
-}
-
-/// Every operation of every width rounds to nearest even, and keeps denormals, signs of zeros, infinities and NaNs;
-/// there is no other mode.
-void setFloatControls(VkPhysicalDeviceFloatControlsProperties& p) {
-    p.denormBehaviorIndependence = p.roundingModeIndependence = VK_SHADER_FLOAT_CONTROLS_INDEPENDENCE_NONE;
-    for (VkBool32* mode :
-         {&p.shaderSignedZeroInfNanPreserveFloat16, &p.shaderSignedZeroInfNanPreserveFloat32,
-          &p.shaderSignedZeroInfNanPreserveFloat64, &p.shaderDenormPreserveFloat16, &p.shaderDenormPreserveFloat32,
-          &p.shaderDenormPreserveFloat64, &p.shaderRoundingModeRTEFloat16, &p.shaderRoundingModeRTEFloat32,
-          &p.shaderRoundingModeRTEFloat64}) {
-        *mode = VK_TRUE;
-    }
-    for (VkBool32* mode :
-         {&p.shaderDenormFlushToZeroFloat16, &p.shaderDenormFlushToZeroFloat32, &p.shaderDenormFlushToZeroFloat64,
-          &p.shaderRoundingModeRTZFloat16, &p.shaderRoundingModeRTZFloat32, &p.shaderRoundingModeRTZFloat64}) {
-        *mode = VK_FALSE;
-    }
 }
 
 void setComputeLimits(VkPhysicalDeviceLimits& limits) {
@@ -155,62 +133,6 @@ VkPhysicalDeviceLimits deviceLimits(const VkPhysicalDeviceFeatures& features, co
     limits.strictLines = VK_TRUE;
     limits.standardSampleLocations = VK_TRUE;
     return limits;
-}
-
-void fillPropertyChain(const Accuracy& accuracy, void* chain) {
-    if (auto* p = findInChain<VkPhysicalDeviceMaintenance3Properties>(chain)) {
-        p->maxPerSetDescriptors = kMaxDescriptorsPerSet;
-        p->maxMemoryAllocationSize = kMaxAllocation;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceTimelineSemaphoreProperties>(chain)) {
-        p->maxTimelineSemaphoreValueDifference = UINT64_MAX;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceProvokingVertexPropertiesEXT>(chain)) {
-        p->provokingVertexModePerPipeline = VK_TRUE;
-        p->transformFeedbackPreservesTriangleFanProvokingVertex = VK_FALSE;
-    }
-    if (auto* p = findInChain<VkPhysicalDevicePointClippingProperties>(chain)) {
-        p->pointClippingBehavior = VK_POINT_CLIPPING_BEHAVIOR_ALL_CLIP_PLANES;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceDepthStencilResolveProperties>(chain)) {
-        p->supportedDepthResolveModes = kDepthResolveModes;
-        p->supportedStencilResolveModes = kStencilResolveModes;
-        p->independentResolveNone = p->independentResolve = VK_TRUE;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceLineRasterizationPropertiesEXT>(chain)) {
-        p->lineSubPixelPrecisionBits = accuracy.subPixelBits;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceMultiviewProperties>(chain)) {
-        p->maxMultiviewViewCount = kMaxViews;
-        p->maxMultiviewInstanceIndex = UINT32_MAX;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceSampleLocationsPropertiesEXT>(chain)) {
-        p->sampleLocationSampleCounts = kSampleCounts;
-        p->maxSampleLocationGridSize = {1, 1};
-        p->sampleLocationCoordinateRange[0] = 0;
-        p->sampleLocationCoordinateRange[1] = 1 - 1.0f / (1u << kSampleLocationBits);
-        p->sampleLocationSubPixelBits = kSampleLocationBits;
-        p->variableSampleLocations = VK_TRUE;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceVertexAttributeDivisorPropertiesEXT>(chain)) {
-        p->maxVertexAttribDivisor = UINT32_MAX;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceMultiDrawPropertiesEXT>(chain)) p->maxMultiDrawCount = UINT32_MAX;
-    if (auto* p = findInChain<VkPhysicalDeviceCustomBorderColorPropertiesEXT>(chain)) {
-        p->maxCustomBorderColorSamplers = UINT32_MAX;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceSamplerFilterMinmaxProperties>(chain)) {
-        p->filterMinmaxSingleComponentFormats = VK_TRUE;
-        p->filterMinmaxImageComponentMapping = VK_TRUE;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceFloatControlsProperties>(chain)) setFloatControls(*p);
-    if (auto* p = findInChain<VkPhysicalDeviceShaderIntegerDotProductProperties>(chain)) {
-        // None of them is faster than the products and sums written out.
-        const VkBaseOutStructure head{p->sType, static_cast<VkBaseOutStructure*>(p->pNext)};
-        *p = {};
-        p->sType = head.sType;
-        p->pNext = head.pNext;
-    }
 }
 
 }  // namespace vernier::vulkan

@@ -23,10 +23,8 @@ void fillCacheUuid(const PhysicalDevice& device, uint8_t (&uuid)[VK_UUID_SIZE]) 
     std::memcpy(uuid, name, VK_UUID_SIZE);
     const uint32_t version = device.properties.driverVersion;
     std::memcpy(uuid + 8, &version, sizeof version);
-    uint16_t place = 0;  // among all combinations of positions
-    for (const Axis& axis : axes())
-        place = static_cast<uint16_t>(place * axis.positions.size() + axis.get(device.accuracy));
-    std::memcpy(uuid + 12, &place, sizeof place);
+    const uint16_t axes = axisBits(device.accuracy);
+    std::memcpy(uuid + 12, &axes, sizeof axes);
     uuid[14] = static_cast<uint8_t>(device.isa);
 }
 
@@ -46,6 +44,12 @@ constexpr VkQueueFamilyProperties kQueueFamily{
     VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT | VK_QUEUE_TRANSFER_BIT, 1, 64, {1, 1, 1}};
 
 }  // namespace
+
+uint16_t axisBits(const Accuracy& accuracy) {
+    uint16_t place = 0;  // among all combinations of positions
+    for (const Axis& axis : axes()) place = static_cast<uint16_t>(place * axis.positions.size() + axis.get(accuracy));
+    return place;
+}
 
 PhysicalDevice::PhysicalDevice(Instance& owner, const Configuration& settings, const DeviceAccuracy& chosen)
     : instance(owner),
@@ -87,7 +91,7 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceProperties(VkPhysicalDevice physical
 VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceProperties2(VkPhysicalDevice physicalDevice,
                                                         VkPhysicalDeviceProperties2* pProperties) {
     pProperties->properties = object(physicalDevice)->properties;
-    fillPropertyChain(object(physicalDevice)->accuracy, pProperties->pNext);
+    fillPropertyChain(*object(physicalDevice), pProperties->pNext);
 }
 
 VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceQueueFamilyProperties(VkPhysicalDevice, uint32_t* pQueueFamilyPropertyCount,

@@ -35,8 +35,10 @@ VkResult checkFeatures(const VkDeviceCreateInfo& info, const char*& missing);
 
 /// The limits of the specification's table "Required Limits" (limits.cpp).
 VkPhysicalDeviceLimits deviceLimits(const VkPhysicalDeviceFeatures& features, const Accuracy& accuracy);
-/// Fills every property structure of the chain that the driver knows (limits.cpp).
-void fillPropertyChain(const Accuracy& accuracy, void* chain);
+/// Fills every property structure of the chain that the driver knows (properties.cpp).
+void fillPropertyChain(const PhysicalDevice& device, void* chain);
+/// The position of every axis of accuracy, two bits each.
+uint16_t axisBits(const Accuracy& accuracy);
 
 /// The memory that allocations may come from (memory_heap.cpp): three quarters of what this process may use.
 VkDeviceSize heapSize();

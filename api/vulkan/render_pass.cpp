@@ -177,23 +177,25 @@ uint32_t viewsBefore(const RenderPassObject& pass, uint32_t subpass, uint32_t at
     return views;
 }
 
-Status checkFramebuffer(const RenderPassObject& pass, const VkFramebufferCreateInfo& info) {
-    if (info.attachmentCount != pass.attachments.size()) {
-        return invalidArgument("attachmentCount is " + std::to_string(info.attachmentCount) + "; the render pass has " +
+}  // namespace
+
+Status checkViews(const RenderPassObject& pass, std::span<const ImageView* const> views, const VkExtent2D& extent,
+                  uint32_t layers) {
+    if (views.size() != pass.attachments.size()) {
+        return invalidArgument("attachmentCount is " + std::to_string(views.size()) + "; the render pass has " +
                                std::to_string(pass.attachments.size()));
     }
-    uint32_t views = 0;
-    for (const Subpass& subpass : pass.subpasses) views |= subpass.viewMask;
-    const auto viewLayers = static_cast<uint32_t>(std::bit_width(views));
-    for (uint32_t i = 0; i < info.attachmentCount; ++i) {
+    uint32_t viewMask = 0;
+    for (const Subpass& subpass : pass.subpasses) viewMask |= subpass.viewMask;
+    const auto viewLayers = static_cast<uint32_t>(std::bit_width(viewMask));
+    for (size_t i = 0; i < views.size(); ++i) {
         const std::string name = "attachment " + std::to_string(i);
-        const ImageView* view = object(info.pAttachments[i]);
+        const ImageView* view = views[i];
         if (view == nullptr) return invalidArgument(name + " is VK_NULL_HANDLE");
-        const VkExtent2D extent = view->extent();
-        if (extent.width < info.width || extent.height < info.height) {
+        if (view->extent().width < extent.width || view->extent().height < extent.height) {
             return invalidArgument(name + " is smaller than the framebuffer");
         }
-        if (view->info().range.layerCount < std::max(info.layers, viewLayers)) {
+        if (view->info().range.layerCount < std::max(layers, viewLayers)) {
             return invalidArgument(name + " has fewer layers than the framebuffer");
         }
         const VkAttachmentDescription& description = pass.attachments[i].description;
@@ -207,8 +209,6 @@ Status checkFramebuffer(const RenderPassObject& pass, const VkFramebufferCreateI
     }
     return {};
 }
-
-}  // namespace
 
 SubpassFormats RenderPassObject::formats(uint32_t subpass) const {
     SubpassFormats result;
@@ -225,14 +225,15 @@ SubpassFormats RenderPassObject::formats(uint32_t subpass) const {
     return result;
 }
 
-command::BeginRendering renderingOf(const RenderPassObject& pass, const Framebuffer& framebuffer, uint32_t subpass,
-                                    const VkRect2D& area, const std::vector<VkClearValue>& clears) {
+command::BeginRendering renderingOf(const RenderPassObject& pass, const std::vector<const ImageView*>& views,
+                                    uint32_t layers, uint32_t subpass, const VkRect2D& area,
+                                    const std::vector<VkClearValue>& clears) {
     const Subpass& from = pass.subpasses[subpass];
     const auto attach = [&](uint32_t index) {
         RenderingAttachment result;
         if (index == VK_ATTACHMENT_UNUSED) return result;
         const auto& attachment = pass.attachments[index];
-        result.view = framebuffer.views[index];
+        result.view = views[index];
         result.clear = clears[index];
         // With multiview, an attachment is loaded in the first subpass that uses it with the view.
         if (from.viewMask != 0) result.loadViews = from.viewMask & ~viewsBefore(pass, subpass, index);
@@ -254,17 +255,17 @@ command::BeginRendering renderingOf(const RenderPassObject& pass, const Framebuf
         rendering.colors[i] = attach(from.colors[i]);
         if (i < from.resolves.size() && from.resolves[i] != VK_ATTACHMENT_UNUSED &&
             rendering.colors[i].view != nullptr) {
-            rendering.colors[i].resolve = framebuffer.views[from.resolves[i]];
+            rendering.colors[i].resolve = views[from.resolves[i]];
         }
     }
     rendering.depthStencil = attach(from.depthStencil);
     if (from.depthStencilResolve != VK_ATTACHMENT_UNUSED && rendering.depthStencil.view != nullptr) {
-        rendering.depthStencil.resolve = framebuffer.views[from.depthStencilResolve];
+        rendering.depthStencil.resolve = views[from.depthStencilResolve];
         rendering.depthStencil.depthResolveMode = from.depthResolveMode;
         rendering.depthStencil.stencilResolveMode = from.stencilResolveMode;
     }
     rendering.renderArea = area;
-    rendering.layers = framebuffer.layers;
+    rendering.layers = layers;
     rendering.viewMask = from.viewMask;
     rendering.samples = std::max(1u, pass.formats(subpass).samples);
     return rendering;
@@ -292,15 +293,17 @@ VKAPI_ATTR void VKAPI_CALL GetRenderAreaGranularity(VkDevice, VkRenderPass, VkEx
 VKAPI_ATTR VkResult VKAPI_CALL CreateFramebuffer(VkDevice device, const VkFramebufferCreateInfo* pCreateInfo,
                                                  const VkAllocationCallbacks* pAllocator, VkFramebuffer* pFramebuffer) {
     return guarded([&] {
-        if (const Status status = checkFramebuffer(*object(pCreateInfo->renderPass), *pCreateInfo); !status) {
-            return object(device)->report("vkCreateFramebuffer", status.error());
-        }
         Framebuffer framebuffer;
-        for (uint32_t i = 0; i < pCreateInfo->attachmentCount; ++i) {
-            framebuffer.views.push_back(object(pCreateInfo->pAttachments[i]));
-        }
         framebuffer.extent = {pCreateInfo->width, pCreateInfo->height};
-        framebuffer.layers = pCreateInfo->layers;
+        framebuffer.layers = std::max(1u, pCreateInfo->layers);
+        if ((pCreateInfo->flags & VK_FRAMEBUFFER_CREATE_IMAGELESS_BIT) == 0) {
+            for (uint32_t i = 0; i < pCreateInfo->attachmentCount; ++i) {
+                framebuffer.views.push_back(object(pCreateInfo->pAttachments[i]));
+            }
+            const Status status =
+                checkViews(*object(pCreateInfo->renderPass), framebuffer.views, framebuffer.extent, framebuffer.layers);
+            if (!status) return object(device)->report("vkCreateFramebuffer", status.error());
+        }
         return createHandle(pAllocator, pFramebuffer, std::move(framebuffer));
     });
 }

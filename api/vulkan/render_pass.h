@@ -2,9 +2,11 @@
 // its description says in the first subpass that uses it and kept from then on.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "api/vulkan/handle.h"
+#include "base/result.h"
 #include "runtime/command/commands.h"
 #include "runtime/limits.h"
 
@@ -44,13 +46,18 @@ struct RenderPassObject {
 };
 
 struct Framebuffer {
-    std::vector<const ImageView*> views;
+    std::vector<const ImageView*> views;  // empty if imageless: they are given when a render pass begins
     VkExtent2D extent{};
     uint32_t layers = 1;
 };
 
 /// The rendering that a subpass is. `clears` has an entry for each attachment, zeros where none was given.
-command::BeginRendering renderingOf(const RenderPassObject& pass, const Framebuffer& framebuffer, uint32_t subpass,
-                                    const VkRect2D& area, const std::vector<VkClearValue>& clears);
+command::BeginRendering renderingOf(const RenderPassObject& pass, const std::vector<const ImageView*>& views,
+                                    uint32_t layers, uint32_t subpass, const VkRect2D& area,
+                                    const std::vector<VkClearValue>& clears);
+
+/// Whether the views can stand for the attachments of the pass in a framebuffer of this size.
+Status checkViews(const RenderPassObject& pass, std::span<const ImageView* const> views, const VkExtent2D& extent,
+                  uint32_t layers);
 
 }  // namespace vernier::vulkan

@@ -27,7 +27,7 @@ bool validated() {
     return std::getenv("VK_INSTANCE_LAYERS") != nullptr;
 }
 
-std::vector<uint32_t> compileGlsl(VkShaderStageFlagBits stage, const std::string& source) {
+std::vector<uint32_t> compileGlsl(VkShaderStageFlagBits stage, const std::string& source, uint32_t apiVersion) {
     // Kept for all tests: every shader would set the compiler up anew.
     struct Compiler {
         Compiler() { vnRetainGlslCompiler(); }
@@ -37,7 +37,7 @@ std::vector<uint32_t> compileGlsl(VkShaderStageFlagBits stage, const std::string
     VnGlslDesc desc{};
     desc.stage = stage;
     desc.source = source.c_str();
-    desc.target = VN_GLSL_TARGET_VULKAN_1_0;
+    desc.target = apiVersion == VK_API_VERSION_1_0 ? VN_GLSL_TARGET_VULKAN_1_0 : VN_GLSL_TARGET_VULKAN_1_1;
     VnGlslOutput* output = nullptr;
     const VnGlslResult result = vnCompileGlsl(&desc, &output);
     EXPECT_EQ(result, VN_GLSL_SUCCESS) << (output != nullptr ? output->log : "");
@@ -50,14 +50,16 @@ std::vector<uint32_t> compileGlsl(VkShaderStageFlagBits stage, const std::string
 void VulkanTest::SetUp() {
     useOwnDriver();
     auto application = make<VkApplicationInfo>(VK_STRUCTURE_TYPE_APPLICATION_INFO);
-    application.apiVersion = VK_API_VERSION_1_0;
-    const char* extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
-                                VK_KHR_GET_PHYSICAL_DEVICE_PROPERTIES_2_EXTENSION_NAME,
-                                VK_KHR_DEVICE_GROUP_CREATION_EXTENSION_NAME};
+    application.apiVersion = apiVersion();
+    std::vector<const char*> extensions = moreInstanceExtensions();
+    for (const char* name : {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_KHR_GET_PHYSICAL_DEVICE_PROPERTIES_2_EXTENSION_NAME,
+                             VK_KHR_DEVICE_GROUP_CREATION_EXTENSION_NAME}) {
+        extensions.push_back(name);
+    }
     auto info = make<VkInstanceCreateInfo>(VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO);
     info.pApplicationInfo = &application;
-    info.enabledExtensionCount = 3;
-    info.ppEnabledExtensionNames = extensions;
+    info.enabledExtensionCount = static_cast<uint32_t>(extensions.size());
+    info.ppEnabledExtensionNames = extensions.data();
     ASSERT_EQ(vkCreateInstance(&info, nullptr, &instance), VK_SUCCESS);
 
     auto messengerInfo =
@@ -188,7 +190,7 @@ TestImage VulkanTest::makeImage(VkFormat format, VkExtent2D extent, VkImageUsage
 }
 
 VkShaderModule VulkanTest::makeShader(VkShaderStageFlagBits stage, const std::string& glsl) {
-    const std::vector<uint32_t> words = compileGlsl(stage, glsl);
+    const std::vector<uint32_t> words = compileGlsl(stage, glsl, apiVersion());
     auto info = make<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
     info.codeSize = words.size() * sizeof(uint32_t);
     info.pCode = words.data();

@@ -18,8 +18,9 @@ namespace vernier::test {
 /// Points the loader to the driver of this build. Call before the first Vulkan call.
 void useOwnDriver();
 
-/// GLSL to SPIR-V; the test fails when it does not compile.
-std::vector<uint32_t> compileGlsl(VkShaderStageFlagBits stage, const std::string& source);
+/// GLSL to SPIR-V for a version of core Vulkan; the test fails when it does not compile.
+std::vector<uint32_t> compileGlsl(VkShaderStageFlagBits stage, const std::string& source,
+                                  uint32_t apiVersion = VK_API_VERSION_1_0);
 
 struct TestBuffer {
     VkBuffer buffer = VK_NULL_HANDLE;
@@ -46,6 +47,10 @@ class VulkanTest : public testing::Test {
   protected:
     void SetUp() override;
     void TearDown() override;
+    /// The version of core Vulkan that the instance is made for.
+    virtual uint32_t apiVersion() { return VK_API_VERSION_1_0; }
+    /// Extensions that the instance gets besides those every test has.
+    virtual std::vector<const char*> moreInstanceExtensions() { return {}; }
     /// Extensions that the device gets besides those every test has, and their features: a chain, or nullptr.
     virtual std::vector<const char*> moreExtensions() { return {}; }
     virtual void* moreFeatures() { return nullptr; }

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Writes the driver's tables from the Vulkan registry.
 
-usage: generate.py vk.xml ENTRY_POINTS.def EXTENSIONS.def OUT_DIR
+usage: generate.py vk.xml MINOR_VERSION ENTRY_POINTS.def EXTENSIONS.def OUT_DIR
 
 Reads which commands and extensions the driver implements from the two lists, takes everything else about them from the
 registry, and fails when a list names something the registry does not know. Output:
 
   entry_points.inc     VERNIER_ENTRY_ROW(name, function, level, core version or 0, extensions that bring it), by name
-  core_1_0.inc         VERNIER_CORE_COMMAND(name, level, implemented) for every command of Vulkan 1.0; for tests
+  core_commands.inc    VERNIER_CORE_COMMAND(name, level, implemented) for every command of Vulkan 1.0 to 1.MINOR_VERSION;
+                       for tests
   extensions.inc       VERNIER_EXTENSION_ROW(identifier, "name", spec version, isInstance)
   structures.inc       VERNIER_STRUCTURE(type, sType value) for every structure that can stand in a pNext chain
   feature_names.inc    VERNIER_FEATURE_NAME(member) for the members of VkPhysicalDeviceFeatures, in order
@@ -38,7 +39,8 @@ def listed(path, macro):
 
 
 class Registry:
-    def __init__(self, path):
+    def __init__(self, path, minor):
+        self.minor = minor
         self.root = ElementTree.parse(path).getroot()
         self.first_parameter, self.alias_of = {}, {}
         for command in self.root.findall("commands/command"):
@@ -67,6 +69,11 @@ class Registry:
             return "loader"
         return LEVEL_OF_FIRST_PARAMETER.get(self.first_parameter[self.resolve(name)], "loader")
 
+    def is_ours(self, feature):
+        """Whether VK_VERSION_1_n, or its number, is one of the core versions that the driver has."""
+        major, minor = re.fullmatch(r"(?:VK_VERSION_)?(\d)[._](\d)", feature).groups()
+        return major == "1" and int(minor) <= self.minor
+
     def providers(self):
         """command -> (core version or 0, [extensions])"""
         result = {}
@@ -76,8 +83,10 @@ class Registry:
                 result.setdefault(command.get("name"), [0, []])[0] = "VK_API_VERSION_%s_%s" % (major, minor)
         for name, extension in self.extensions.items():
             for require in extension.findall("require"):
-                # A block under a condition belongs to the pair of extensions; only unconditional ones are taken.
-                if require.get("extension") or require.get("feature") or require.get("depends"):
+                # A block under a condition belongs to the pair: of extensions, which is not taken, or with a core version.
+                if require.get("extension") or require.get("depends"):
+                    continue
+                if require.get("feature") and not self.is_ours(require.get("feature")):
                     continue
                 for command in require.findall("command"):
                     result.setdefault(command.get("name"), [0, []])[1].append(name)
@@ -115,12 +124,12 @@ class Registry:
 
 
 def main():
-    if len(sys.argv) != 5:
+    if len(sys.argv) != 6:
         fail("wrong arguments\n" + __doc__)
-    registry = Registry(sys.argv[1])
-    commands = ["vk" + name for name in listed(sys.argv[2], "VERNIER_ENTRY_POINT")]
-    extensions = ["VK_" + name for name in listed(sys.argv[3], "VERNIER_EXTENSION")]
-    out = pathlib.Path(sys.argv[4])
+    registry = Registry(sys.argv[1], int(sys.argv[2]))
+    commands = ["vk" + name for name in listed(sys.argv[3], "VERNIER_ENTRY_POINT")]
+    extensions = ["VK_" + name for name in listed(sys.argv[4], "VERNIER_EXTENSION")]
+    out = pathlib.Path(sys.argv[5])
     out.mkdir(parents=True, exist_ok=True)
 
     for name in commands:
@@ -137,7 +146,7 @@ def main():
         if function not in commands:
             continue
         ours = [e for e in bringing if e in extensions]
-        mask = " | ".join("bit(Extension::%s)" % e[3:] for e in ours) or "0"
+        mask = " | ".join("ExtensionSet(Extension::%s)" % e[3:] for e in ours) or "ExtensionSet()"
         if core or ours:
             rows.append("VERNIER_ENTRY_ROW(%s, %s, %s, %s, %s)" %
                         (name, function[2:], registry.level(name), core or "0", mask))
@@ -150,9 +159,10 @@ def main():
         (out / name).write_text("// Written by api/vulkan/gen/generate.py from vk.xml.\n" + "\n".join(lines) + "\n")
 
     write("entry_points.inc", rows)
-    write("core_1_0.inc", ["VERNIER_CORE_COMMAND(%s, %s, %s)" %
-                           (name, registry.level(name), "true" if name in commands else "false")
-                           for name, (core, _) in sorted(providers.items()) if core == "VK_API_VERSION_1_0"])
+    ours = ["VK_API_VERSION_1_%d" % minor for minor in range(registry.minor + 1)]
+    write("core_commands.inc", ["VERNIER_CORE_COMMAND(%s, %s, %s)" %
+                                (name, registry.level(name), "true" if name in commands else "false")
+                                for name, (core, _) in sorted(providers.items()) if core in ours])
     write("extensions.inc", ['VERNIER_EXTENSION_ROW(%s, "%s", %d, %s)' %
                              (name[3:], name, registry.spec_version(name),
                               "true" if registry.extensions[name].get("type") == "instance" else "false")
