@@ -7,9 +7,8 @@
 //   VERNIER_DEVICE_TYPE  cpu (default), integrated, discrete, virtual, other: some programs refuse a CPU device
 //   VERNIER_THREADS      a number of threads; default: as many as there are usable CPUs
 //   VERNIER_ISA          sse4, avx2, avx512: the best instruction set to use. The pictures are the same
-//   VERNIER_SKIP         off: what draws do not need is done all the same, with the same pictures; "hidden_work=off":
-//   one
-//                        rule of leaving out alone, see runtime/skips.h
+//   VERNIER_SKIP         off: what draws do not need is done all the same, with the same pictures; "hidden_work=off",
+//                        one rule of leaving out alone: see runtime/skips.h
 //   VERNIER_EXPLAIN      stderr, or a file that is appended to: what every pipeline runs and leaves out, and why, and
 //                        what every submission ran; an object a line where its name ends in .json
 //   VERNIER_REFRESH      how often a second swapchains show an image in the modes FIFO and MAILBOX, 0 to 1000; default

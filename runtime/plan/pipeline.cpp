@@ -18,8 +18,7 @@ Result<std::shared_ptr<const GraphicsPipeline>> GraphicsPipeline::create(const G
     pipeline->program_ = desc.program;
     pipeline->plan_ = std::make_unique<const Plan>(makePlan(desc.state, program));
     if (pipeline->plan_->quadsForLevels)
-        pipeline->planWithoutQuads_ =
-            std::make_unique<const Plan>(vernier::planWithoutQuads(*pipeline->plan_, program));
+        pipeline->planWithoutQuads_ = std::make_unique<const Plan>(vernier::planWithoutQuads(*pipeline->plan_));
     return std::shared_ptr<const GraphicsPipeline>(std::move(pipeline));
 }
 

@@ -255,6 +255,17 @@ void planColor(const GraphicsState& state, const ir::Program& fragment, uint32_t
     plan.colors.push_back(color);
 }
 
+/// The program itself asks for inputs at other places (interpolateAtCentroid, -Sample, -Offset).
+bool interpolates(const ir::Program& fragment) {
+    const auto asks = [](const ir::Inst& inst) {
+        return inst.op == ir::Op::interpolateAtCentroid || inst.op == ir::Op::interpolateAtSample ||
+               inst.op == ir::Op::interpolateAtOffset;
+    };
+    return std::any_of(fragment.blocks.begin(), fragment.blocks.end(), [&](const ir::Block& block) {
+        return std::any_of(block.insts.begin(), block.insts.end(), asks);
+    });
+}
+
 bool coverageIsFull(const Plan& plan) {
     const auto readsCoverage = [](const BuiltinSlot& slot) { return slot.builtin == ir::Builtin::sampleMaskIn; };
     return plan.samples == 1 && plan.keepsCoverage && !plan.usesQuads &&
@@ -305,19 +316,9 @@ void planFragments(const GraphicsState& state, const ir::Program& fragment, Isa 
     for (const BuiltinSlot& builtin : plan.fragmentBuiltins)
         plan.usesFragCoord |= builtin.builtin == ir::Builtin::fragCoord;
     plan.coverageIsFull = coverageIsFull(plan);
+    plan.interpolates = interpolates(fragment);
     plan.ordered = std::any_of(plan.colors.begin(), plan.colors.end(),
                                [](const ColorPlan& color) { return color.readsDestination; });
-}
-
-/// The program itself asks for inputs at other places (interpolateAtCentroid, -Sample, -Offset).
-bool interpolates(const ir::Program& fragment) {
-    const auto asks = [](const ir::Inst& inst) {
-        return inst.op == ir::Op::interpolateAtCentroid || inst.op == ir::Op::interpolateAtSample ||
-               inst.op == ir::Op::interpolateAtOffset;
-    };
-    return std::any_of(fragment.blocks.begin(), fragment.blocks.end(), [&](const ir::Block& block) {
-        return std::any_of(block.insts.begin(), block.insts.end(), asks);
-    });
 }
 
 /// Programs that know single pixels or decide about them, and samples, keep a run for each.
@@ -327,16 +328,15 @@ bool canShadeCoarsely(const Plan& plan, const ir::Program& fragment) {
                slot.builtin == ir::Builtin::sampleId || slot.builtin == ir::Builtin::samplePosition;
     };
     return plan.samples == 1 && plan.runsFragments && plan.keepsCoverage && !plan.smoothLines &&
-           !fragment.writesDepth && plan.stencilRefSlot == kNoSlot && !fragment.hasSideEffects &&
-           !interpolates(fragment) &&
+           !fragment.writesDepth && plan.stencilRefSlot == kNoSlot && !fragment.hasSideEffects && !plan.interpolates &&
            std::none_of(plan.fragmentBuiltins.begin(), plan.fragmentBuiltins.end(), isOfPixel);
 }
 
-bool packsSmall(const Plan& plan, const ir::Program* fragment) {
+bool packsSmall(const Plan& plan) {
     if (plan.coarse) return false;
     if (plan.samples != 1 || (plan.sampleMask & 1) == 0 || plan.preciseInterpolation || plan.smoothLines) return false;
     if (plan.depth.bounds || plan.depth.stencil || (plan.depth.any() && !plan.depth.early)) return false;
-    return !plan.runsFragments || (plan.coverageIsFull && plan.fragmentBuiltins.empty() && !interpolates(*fragment));
+    return !plan.runsFragments || (plan.coverageIsFull && plan.fragmentBuiltins.empty() && !plan.interpolates);
 }
 
 }  // namespace
@@ -388,15 +388,15 @@ Plan makePlan(const GraphicsState& state, const ShaderProgram& program) {
             plan.coarse = accuracy.shading == ShadingRate::twoByTwo && canShadeCoarsely(plan, *fragment);
         }
     }
-    plan.packsSmall = packsSmall(plan, fragment);
+    plan.packsSmall = packsSmall(plan);
     collectFacts(state, program, plan);
     return plan;
 }
 
-Plan planWithoutQuads(Plan plan, const ShaderProgram& program) {
+Plan planWithoutQuads(Plan plan) {
     plan.usesQuads = plan.quadsForLevels = false;
     plan.coverageIsFull = coverageIsFull(plan);
-    plan.packsSmall = packsSmall(plan, program.fragmentIr());
+    plan.packsSmall = packsSmall(plan);
     return plan;
 }
 

@@ -124,6 +124,7 @@ struct Plan {
     bool countsEarly = false;           // samples are counted before the program may drop them (EarlyFragmentTests)
     bool coverageIsFull = false;        // every lane of a batch is one covered sample, and stays so
     bool usesFragCoord = false;
+    bool interpolates = false;  // the program itself asks for inputs at other places
     bool packsSmall = false;  // primitives of a few pixels may be drawn many at a time: lanes of a batch need not know
                               // their primitive, and the early test is one of depth at most
     uint32_t samples = 1;
@@ -142,6 +143,6 @@ struct Plan {
 /// The state and the program have passed check_state.h.
 Plan makePlan(const GraphicsState& state, const ShaderProgram& program);
 /// Of a plan with quadsForLevels, what draws follow whose images need no level of detail.
-Plan planWithoutQuads(Plan plan, const ShaderProgram& program);
+Plan planWithoutQuads(Plan plan);
 
 }  // namespace vernier

@@ -27,4 +27,11 @@ inline uint64_t rectangleBits(int32_t x0, int32_t y0, int32_t x1, int32_t y1) {
     return rows & (row * 0x0101010101010101u);
 }
 
+/// The upper left pixels of the quads of a block that have some of `pixels`.
+inline uint64_t quadsOf(uint64_t pixels) {
+    constexpr uint64_t kQuadOrigins = 0x0055005500550055;
+    const uint64_t pairs = pixels | pixels >> 1;
+    return (pairs | pairs >> 8) & kQuadOrigins;
+}
+
 }  // namespace vernier

@@ -32,7 +32,8 @@ enum class LaneOrder : uint8_t {
     quads,  // such a rectangle, quad by quad: upper left, upper right, lower left, lower right
 };
 
-/// In rows and quads, all pixels belong to one primitive. It covers all samples of all of them, or a part (`partial`).
+/// In rows and quads, all pixels belong to one primitive, which covers all samples of all of them, or a part
+/// (`partial`). Or to two, both segments of all lanes: `second` tells the lanes of the other one.
 struct FragmentBatch {
     uint32_t count = 0;
     LaneOrder order = LaneOrder::spans;
@@ -42,6 +43,7 @@ struct FragmentBatch {
     alignas(64) std::array<int32_t, kLaneRoom> x, y;      // pixels; in rows and quads only where somebody reads them
     alignas(64) std::array<uint32_t, kLaneRoom> execute;  // ~0: the lane runs, as a helper perhaps
     alignas(64) std::array<uint32_t, kLaneRoom> store;    // ~0: its effects count
+    alignas(64) std::array<uint32_t, kLaneRoom> second;   // ~0: a lane of segments[1], where that has all lanes
     alignas(64) std::array<float, kLaneRoom> offsetX,
         offsetY;                                           // place inside the pixel, when it is not the centre
     alignas(64) std::array<uint32_t, kLaneRoom> coverage;  // samples the lane stands for

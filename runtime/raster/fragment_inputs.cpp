@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstring>
 
+#include "runtime/raster/bits.h"
 #include "runtime/raster/fragment_stage.h"
 
 namespace vernier {
@@ -66,7 +67,15 @@ void FragmentStage::interpolate(const FragmentBatch& batch, InterpolationInput& 
         others.smooth = others.linear = {};
     }
     const uint32_t divided = interpolate_(precise ? others : input);
-    statistics_.perspectiveDivides += batch.partial ? std::min(divided, batch.running) : divided;
+    const uint32_t pixels = batch.partial ? batch.running : batch.count;
+    if (batch.order != LaneOrder::spans && batch.segmentCount > 1) {  // each divides for pixels of its own
+        const uint32_t second = countBits(secondPixels_ >> blockShift_ & blockRectangle_);
+        const uint32_t own[] = {pixels - second, second};
+        for (uint32_t s = 0; s < batch.segmentCount; ++s)
+            if (input.perspective && !batch.segments[s].planes->affine) statistics_.perspectiveDivides += own[s];
+    } else {
+        statistics_.perspectiveDivides += std::min(divided, pixels);
+    }
     if (precise) interpolatePrecise(input);
 }
 

@@ -22,7 +22,7 @@ void FragmentStage::addSmall(const SmallGroup& group, const SmallFragment* fragm
     gatherSmall_({&group, smallTargets_, smooth + linear, smallAttributes_.data()});
     while (count != 0) {
         if (batch_.count == capacity_) {
-            flush();
+            flushBatch();
             // What is expected was forgotten with the batch.
             for (uint32_t n = 0; n < count; ++n) {
                 const uint32_t x = fragments[n] & 63, y = fragments[n] >> 6 & 63;

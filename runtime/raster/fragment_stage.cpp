@@ -10,9 +10,6 @@
 namespace vernier {
 namespace {
 
-/// Lanes of a block that is run at once, at most.
-constexpr uint32_t kBlockLanes = kBlockSize * kBlockSize;
-
 /// A block with so many covered pixels is run at once: what packing would gain is less than what it costs.
 constexpr uint32_t kMostOfABlock = 20;
 /// Likewise of two rows, which are a batch of their own.
@@ -21,13 +18,6 @@ constexpr uint32_t kMostOfTwoRows = 8;
 /// Whether the pixels lie in one pair of rows.
 bool inTwoRows(uint64_t pixels) {
     return std::countr_zero(pixels) / 16 == (63 - std::countl_zero(pixels)) / 16;
-}
-
-/// The upper left pixels of the quads that have some of `pixels`.
-uint64_t quadsOf(uint64_t pixels) {
-    constexpr uint64_t kQuadOrigins = 0x0055005500550055;
-    const uint64_t pairs = pixels | pixels >> 1;
-    return (pairs | pairs >> 8) & kQuadOrigins;
 }
 
 /// The samples of one pixel of a block.
@@ -118,6 +108,9 @@ void FragmentStage::bind(const PreparedDraw& draw, uint64_t token) {
     readsPixels_ = plan_->smoothLines || !plan_->fragmentBuiltins.empty() || plan_->preciseInterpolation ||
                    plan_->needsCentroid || !plan_->keepsCoverage;
 
+    holdsBlocks_ = samples_ == 1 && !plan_->usesQuads && !plan_->perSample && !plan_->coarse && !plan_->interpolates &&
+                   !readsPixels_;
+
     block_.order = plan_->usesQuads && !plan_->coarse ? LaneOrder::quads : LaneOrder::rows;
     block_.segmentCount = 1;
 }
@@ -143,7 +136,7 @@ TrianglePlanes& FragmentStage::startPrimitive() {
 }
 
 void FragmentStage::reserve(uint32_t lanes) {
-    if (batch_.count + lanes > capacity_) flush();
+    if (batch_.count + lanes > capacity_) flushBatch();
 }
 
 /// Up to 8 pixels of a row; returns the first lane. Writes whole vectors of 8: what is too much, the next
@@ -170,8 +163,19 @@ void FragmentStage::add(const BlockCoverage& block) {
     const uint32_t index = blockIndex(block);
     const bool atOnce = !plan_->perSample && countBits(any) >= (inTwoRows(any) ? kMostOfTwoRows : kMostOfABlock);
     // What waits for these pixels comes first.
-    if ((plan_->ordered || atOnce) && (inBatch_[index] & any) != 0) flush();
-    if (atOnce) return runBlock(block, any);
+    if ((plan_->ordered || atOnce) && (inBatch_[index] & any) != 0) flushBatch();
+    if (isHeld(index)) {
+        const HeldBlock& held = held_[index];
+        const bool apart = (held.pixels & any) == 0 && !planes_[planesCount_ - 1].precise;
+        if (apart && (inBatch_[index] & any) == 0) return runWithHeld(index, any);
+        runHeld(index);
+    }
+    if (atOnce) {
+        if (holdsBlocks_ && ~any != 0 && !planes_[planesCount_ - 1].precise) return hold(index, any);
+        block_.segments[0].planes = &planes_[planesCount_ - 1];
+        std::copy_n(block.masks.begin(), samples_, blockMasks_.begin());
+        return runBlock(block.x, block.y, any);
+    }
     if (plan_->usesQuads) {
         addQuads(block, any);
     } else {
@@ -180,58 +184,9 @@ void FragmentStage::add(const BlockCoverage& block) {
     expect(index, any);
 }
 
-void FragmentStage::placeBlock() {
-    placeLanes_(block_);
-    if (!block_.partial) {
-        std::fill_n(block_.store.begin(), block_.count, ~0u);
-        std::fill_n(block_.coverage.begin(), block_.count, (1u << samples_) - 1);
-        return;
-    }
-    std::fill_n(block_.coverage.begin(), block_.count, 0);
-    for (uint32_t s = 0; s < samples_; ++s) {
-        spreadPixels_(blockPixels(s), block_.order, block_.count, mask_.data());
-        for (uint32_t lane = 0; lane < block_.count; ++lane) block_.coverage[lane] |= mask_[lane] & 1u << s;
-    }
-}
-
-/// A block of which the current primitive covers `pixels`: shaded and written without being collected.
-void FragmentStage::runBlock(const BlockCoverage& block, uint64_t pixels) {
-    uint64_t running = pixels;
-    if (plan_->usesQuads) {
-        const uint64_t quads = quadsOf(pixels);
-        running = quads | quads << 1 | quads << 8 | quads << 9;
-    }
-    uint64_t all = ~uint64_t{0};
-    for (uint32_t s = 0; s < samples_; ++s) all &= blockMasks_[s] = block.masks[s];
-    block_.originX = tileX_ + block.x;
-    // Pairs of rows that have something covered.
-    const uint32_t firstRow = static_cast<uint32_t>(std::countr_zero(pixels)) / 16 * 2;
-    const uint32_t endRow = (static_cast<uint32_t>(63 - std::countl_zero(pixels)) / 16 + 1) * 2;
-    const uint32_t most = std::min(capacity_, kBlockLanes) / static_cast<uint32_t>(kBlockSize);
-    for (uint32_t row = firstRow; row < endRow; row += most) {
-        const uint32_t lanes = std::min(most, endRow - row) * static_cast<uint32_t>(kBlockSize);
-        block_.originY = tileY_ + block.y + static_cast<int32_t>(row);
-        blockShift_ = 8 * row;
-        blockRectangle_ = ~uint64_t{0} >> (64 - lanes);
-        const uint64_t stored = pixels >> blockShift_ & blockRectangle_;
-        if (stored == 0) continue;
-        block_.count = lanes;
-        block_.segments[0] = {&planes_[planesCount_ - 1], 0, lanes};
-        block_.partial = (all >> blockShift_ & blockRectangle_) != blockRectangle_;
-        if (block_.partial) {
-            const uint64_t run = running >> blockShift_ & blockRectangle_;
-            block_.running = countBits(run);
-            spreadPixels_(stored, block_.order, lanes, block_.store.data());
-            spreadPixels_(run, block_.order, lanes, block_.execute.data());
-        }
-        if (readsPixels_) placeBlock();
-        run(block_);
-    }
-}
-
 void FragmentStage::addPixels(const BlockCoverage& block, uint64_t any) {
     while (any != 0) {
-        if (batch_.count == capacity_) flush();
+        if (batch_.count == capacity_) flushBatch();
         // A run of pixels in the first row that has any.
         const auto bit = static_cast<uint32_t>(std::countr_zero(any));
         const uint32_t row = static_cast<uint32_t>(any >> (bit & ~7u)) & 0xFF;
@@ -262,6 +217,11 @@ void FragmentStage::addQuads(const BlockCoverage& block, uint64_t any) {
 }
 
 void FragmentStage::flush() {
+    for (; heldBlocks_ != 0;) runHeld(static_cast<uint32_t>(std::countr_zero(heldBlocks_)));
+    flushBatch();
+}
+
+void FragmentStage::flushBatch() {
     if (batch_.count != 0) {
         const uint32_t count = batch_.count;
         std::fill_n(batch_.execute.begin(), count, ~0u);

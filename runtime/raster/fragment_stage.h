@@ -39,7 +39,10 @@ class FragmentStage {
         blocksInBatch_ |= uint64_t{1} << block;
     }
     /// Fragments of these pixels must wait until what is collected, or expected, is written.
-    bool waitsFor(uint32_t block, uint64_t pixels) const { return plan_->ordered && (inBatch_[block] & pixels) != 0; }
+    bool waitsFor(uint32_t block, uint64_t pixels) const {
+        return (plan_->ordered && (inBatch_[block] & pixels) != 0) ||
+               (isHeld(block) && (held_[block].pixels & pixels) != 0);
+    }
     /// Fragments of small primitives that passed the early tests, all of them expected. Of a draw with
     /// Plan::packsSmall. The list has room for one vector more.
     void addSmall(const SmallGroup& group, const SmallFragment* fragments, uint32_t count);
@@ -56,6 +59,7 @@ class FragmentStage {
     ContextCache& contexts() { return contexts_; }
 
   private:
+    void flushBatch();
     uint32_t appendSpan(int32_t x, int32_t y, uint32_t lanes);
     void reserve(uint32_t lanes);
     void addPixels(const BlockCoverage& block, uint64_t any);
@@ -65,8 +69,13 @@ class FragmentStage {
     void bindInterpolation();
     void bindSmall();
     void takeSmallInputs(const FragmentBatch& batch);
+    // fragment_blocks.cpp
     void placeBlock();
-    void runBlock(const BlockCoverage& block, uint64_t pixels);
+    void runBlock(int32_t x, int32_t y, uint64_t pixels);
+    void hold(uint32_t block, uint64_t pixels);
+    void runHeld(uint32_t block);
+    void runWithHeld(uint32_t block, uint64_t pixels);
+    bool isHeld(uint32_t block) const { return (heldBlocks_ >> block & 1) != 0; }
 
     void run(FragmentBatch& batch);
     void runSamples(FragmentBatch& batch);  // fragment_samples.cpp
@@ -154,6 +163,7 @@ class FragmentStage {
     std::array<uint64_t, kMaxSamples> blockMasks_{};  // its coverage
     uint32_t blockShift_ = 0;                         // bits of it before the rows that are run
     uint64_t blockRectangle_ = 0;                     // as many bits as block_ has lanes
+    uint64_t secondPixels_ = 0;                       // of the block: those of its second segment, if there is one
     const FragmentBatch* current_ = nullptr;          // the one that runs
     // Of the primitives in batch_; slot planesCount_ - 1 belongs to the primitive being added.
     std::array<TrianglePlanes, kMaxFragmentLanes + 1> planes_;
@@ -168,6 +178,14 @@ class FragmentStage {
     alignas(64) std::array<float, kLaneRoom> smoothAlpha_;  // of colour 0, times the area that a smooth line covers
     std::array<uint64_t, kBlocksPerTile> inBatch_{};        // pixels of the tile that wait in batch_
     uint64_t blocksInBatch_ = 0;                            // blocks that have some
+    /// Part of a block, which waits for a primitive that has the rest: none of it waits in batch_.
+    struct HeldBlock {
+        uint64_t pixels = 0;
+        TrianglePlanes planes;
+    };
+    bool holdsBlocks_ = false;  // primitives may share the run of a block
+    std::array<HeldBlock, kBlocksPerTile> held_;
+    uint64_t heldBlocks_ = 0;
     bool outOfBudget_ = false;
     PassStatistics statistics_;
     ContextCache contexts_;

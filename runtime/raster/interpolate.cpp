@@ -165,14 +165,28 @@ HWY_INLINE void evaluate(const InterpolationInput& in, const SegmentPlanes& plan
 /// Vectors side by side: their weights stay in registers, and none waits for another.
 constexpr uint32_t kSide = 4, kSideLanes = kSide * kLanes;
 
-/// Stores the targets for kCount vectors with the weights w1, w2.
-template <uint32_t kCount>
+/// Stores a vector, or those of its lanes that `only` names.
+template <bool kMasked>
+HWY_INLINE void storeVector(VF value, float* lanes, const uint32_t* only) {
+    if constexpr (kMasked) {
+        const hn::RebindToUnsigned<F> u;
+        hn::BlendedStore(value, hn::MaskFromVec(hn::BitCast(F(), hn::LoadU(u, only))), F(), lanes);
+    } else {
+        (void)only;
+        hn::StoreU(value, F(), lanes);
+    }
+}
+
+/// Stores the targets for kCount vectors with the weights w1, w2. `only`: by lane of the batch, if kMasked.
+template <uint32_t kCount, bool kMasked = false>
 HWY_INLINE void storeSide(const TrianglePlanes& planes, std::span<const VaryingTarget> targets, const VF* w1,
-                          const VF* w2, uint32_t n) {
+                          const VF* w2, uint32_t n, const uint32_t* only = nullptr) {
     for (const VaryingTarget& target : targets) {
         const AttributePlane plane(planes, target.varying);
-        float* lanes = target.plane + n;
-        for (uint32_t v = 0; v < kCount; ++v) hn::StoreU(plane.at(w1[v], w2[v]), F(), lanes + v * kLanes);
+        for (uint32_t v = 0; v < kCount; ++v) {
+            const uint32_t lane = n + v * kLanes;
+            storeVector<kMasked>(plane.at(w1[v], w2[v]), target.plane + lane, kMasked ? only + lane : nullptr);
+        }
     }
 }
 
@@ -185,9 +199,10 @@ struct ColumnWeights {
 };
 
 /// kCount vectors of a rectangle, from lane n on.
-template <uint32_t kCount>
+template <uint32_t kCount, bool kMasked>
 HWY_INLINE void evaluateRows(const InterpolationInput& in, const SegmentPlanes& segment, const ColumnWeights& columns,
                              uint32_t n) {
+    const uint32_t* only = in.batch->second.data();
     const F f;
     const I i;
     const TrianglePlanes& p = segment.planes;
@@ -198,17 +213,18 @@ HWY_INLINE void evaluateRows(const InterpolationInput& in, const SegmentPlanes& 
         w1[v] = hn::Add(columns.w1[v % kColumns], hn::Mul(hn::Set(f, p.l1y), dy));
         w2[v] = hn::Add(columns.w2[v % kColumns], hn::Mul(hn::Set(f, p.l2y), dy));
     }
-    storeSide<kCount>(p, in.linear, w1, w2, n);
+    storeSide<kCount, kMasked>(p, in.linear, w1, w2, n, only);
     if (segment.divide)
         for (uint32_t v = 0; v < kCount; ++v) {
             const Perspective at = perspectiveAt(p, w1[v], w2[v]);
             w1[v] = at.weight1;
             w2[v] = at.weight2;
         }
-    storeSide<kCount>(p, in.smooth, w1, w2, n);
+    storeSide<kCount, kMasked>(p, in.smooth, w1, w2, n, only);
 }
 
 /// A rectangle at pixel centres, in float: the operations of weightsAt(), those that all rows have in common done once.
+template <bool kMasked>
 HWY_INLINE void evaluateRectangle(const InterpolationInput& in, const SegmentPlanes& segment) {
     const F f;
     const I i;
@@ -222,8 +238,8 @@ HWY_INLINE void evaluateRectangle(const InterpolationInput& in, const SegmentPla
     }
     const uint32_t count = in.batch->count;  // a multiple of 16
     uint32_t n = 0;
-    for (; n + kSideLanes <= count; n += kSideLanes) evaluateRows<kSide>(in, segment, columns, n);
-    for (; n < count; n += 16) evaluateRows<kColumns>(in, segment, columns, n);
+    for (; n + kSideLanes <= count; n += kSideLanes) evaluateRows<kSide, kMasked>(in, segment, columns, n);
+    for (; n < count; n += 16) evaluateRows<kColumns, kMasked>(in, segment, columns, n);
 }
 
 /// kSide vectors.
@@ -241,13 +257,18 @@ HWY_INLINE void evaluateSide(const InterpolationInput& in, const SegmentPlanes& 
 }
 
 /// The bits of the provoking vertex: an integer, perhaps, which no float operation may touch.
+template <bool kMasked>
 HWY_INLINE void copyFlat(const InterpolationInput& in, const FragmentSegment& segment) {
     for (const VaryingTarget& target : in.flat) {
         uint32_t bits;
         std::memcpy(&bits, segment.planes->flat + target.varying, 4);
         const VF value = hn::BitCast(F(), hn::Set(hn::RebindToUnsigned<F>(), bits));
-        for (uint32_t n = segment.first; n < segment.first + segment.count; n += kLanes)
-            storeLanes(value, target.plane, n, in.capacity);
+        for (uint32_t n = segment.first; n < segment.first + segment.count; n += kLanes) {
+            if constexpr (kMasked)
+                storeVector<true>(value, target.plane + n, in.batch->second.data() + n);
+            else
+                storeLanes(value, target.plane, n, in.capacity);
+        }
     }
 }
 
@@ -260,13 +281,20 @@ uint32_t interpolate(const InterpolationInput& in) {
     for (uint32_t s = 0; s < in.batch->segmentCount; ++s) {
         const FragmentSegment& segment = in.batch->segments[s];
         if (segment.planes == nullptr) continue;
-        copyFlat(in, segment);
+        const bool second = s != 0 && in.batch->order != LaneOrder::spans;
+        if (second)
+            copyFlat<true>(in, segment);
+        else
+            copyFlat<false>(in, segment);
         if (!weighted && !in.perspective) continue;
         const SegmentPlanes planes(in, pixels, *segment.planes);
         if (planes.divide && in.perspective) divides += segment.count;
         if (!weighted) continue;
         if (plain && !segment.planes->precise) {
-            evaluateRectangle(in, planes);
+            if (second)
+                evaluateRectangle<true>(in, planes);
+            else
+                evaluateRectangle<false>(in, planes);
             continue;
         }
         const uint32_t end = segment.first + segment.count;
