@@ -112,7 +112,7 @@ TEST_F(Explain, ImagesOfOneLevelNeedNoHelperLanes) {
 layout(set = 0, binding = 0) uniform sampler2D tex;
 layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 color;
-void main() { color = texture(tex, uv * 0.1)") + body + "; }");
+void main() { color = texture(tex, uv * 0.1))") + body + "; }");
         const uint64_t count = run(shading).helperInvocations;
         pixels = drawFullScreen(image(VK_FORMAT_R8G8B8A8_UNORM, kSize, kSize), kSize, kSize, shading);
         return count;
