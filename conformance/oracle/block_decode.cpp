@@ -1,5 +1,6 @@
 #include "conformance/oracle/block_decode.h"
 
+#include "conformance/oracle/bptc_decode.h"
 #include "conformance/oracle/quantise.h"
 
 #include <algorithm>
@@ -10,7 +11,7 @@ namespace vernier::conformance::exact {
 namespace {
 
 /// What a format's blocks are made of, from the first byte on.
-enum class Layout : uint8_t { bc1, bc1Alpha, bc2, bc3, bc4, bc5, etc2, etc2Punch, etc2Eac, eac, eac2 };
+enum class Layout : uint8_t { bc1, bc1Alpha, bc2, bc3, bc4, bc5, etc2, etc2Punch, etc2Eac, eac, eac2, bc6h, bc7 };
 
 struct BlockFormat {
     VkFormat format;
@@ -28,6 +29,10 @@ constexpr BlockFormat kFormats[] = {
     {VK_FORMAT_BC4_SNORM_BLOCK, Layout::bc4, true},
     {VK_FORMAT_BC5_UNORM_BLOCK, Layout::bc5},
     {VK_FORMAT_BC5_SNORM_BLOCK, Layout::bc5, true},
+    {VK_FORMAT_BC6H_UFLOAT_BLOCK, Layout::bc6h},
+    {VK_FORMAT_BC6H_SFLOAT_BLOCK, Layout::bc6h, true},
+    {VK_FORMAT_BC7_UNORM_BLOCK, Layout::bc7},
+    {VK_FORMAT_BC7_SRGB_BLOCK, Layout::bc7, false, true},
     {VK_FORMAT_ETC2_R8G8B8_UNORM_BLOCK, Layout::etc2},
     {VK_FORMAT_ETC2_R8G8B8A1_UNORM_BLOCK, Layout::etc2Punch},
     {VK_FORMAT_ETC2_R8G8B8A8_UNORM_BLOCK, Layout::etc2Eac},
@@ -242,6 +247,8 @@ uint32_t blockBytes(VkFormat format) {
         case Layout::bc5:
         case Layout::etc2Eac:
         case Layout::eac2:
+        case Layout::bc6h:
+        case Layout::bc7:
             return 16;
         default:
             return 8;
@@ -288,6 +295,11 @@ Color decodeBlockTexel(VkFormat format, std::span<const std::byte> block, uint32
         case Layout::eac2:
             color[0] = eac11(bigEndian(block), x, y);
             color[1] = eac11(bigEndian(second), x, y);
+            break;
+        case Layout::bc6h:
+            return bc6hTexel(block, texel, how.isSigned);
+        case Layout::bc7:
+            color = bc7Texel(block, texel);
             break;
     }
     const double low = how.isSigned ? -1 : 0;

@@ -1,6 +1,6 @@
-// Decoding block-compressed texels as the Khronos Data Format Specification says (1.3, "S3TC", "RGTC", "ETC2"), texel
-// by texel: exact where its arithmetic is of integers (ETC2, EAC), permitted intervals where it leaves the precision of
-// interpolated colours open (BC1 to BC5).
+// Decoding block-compressed texels as the Khronos Data Format Specification says (1.3, "S3TC", "RGTC", "BPTC", "ETC2"),
+// texel by texel: exact where its arithmetic is of integers (BC6H, BC7, ETC2, EAC), permitted intervals where it leaves
+// the precision of interpolated colours open (BC1 to BC5).
 #pragma once
 
 #include "conformance/oracle/interval.h"

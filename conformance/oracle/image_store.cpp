@@ -21,7 +21,11 @@ StoredTexel decodeStored(const PixelFormat& format, const std::byte* bytes) {
 /// The format whose channels and precision stand for a block-compressed one.
 const PixelFormat* decodedFormat(VkFormat format) {
     switch (format) {
+        case VK_FORMAT_BC6H_UFLOAT_BLOCK:
+        case VK_FORMAT_BC6H_SFLOAT_BLOCK:
+            return findPixelFormat(VK_FORMAT_R16G16B16A16_SFLOAT);
         case VK_FORMAT_BC3_SRGB_BLOCK:
+        case VK_FORMAT_BC7_SRGB_BLOCK:
             return findPixelFormat(VK_FORMAT_R8G8B8A8_SRGB);
         case VK_FORMAT_BC4_UNORM_BLOCK:
             return findPixelFormat(VK_FORMAT_R8_UNORM);
