@@ -51,7 +51,9 @@ Result<std::vector<SceneCost>> drawEffect(const DriverPaths& paths, const Effect
     const Result<std::unique_ptr<VulkanDriver>> driver = VulkanDriver::create({});
     if (!driver) return driver.error();
     std::vector<SceneCost> costs;
+    constexpr SceneQueries kQueries[] = {SceneQueries::none, SceneQueries::aroundNothing, SceneQueries::aroundPasses};
     for (const Scene& scene : effect.scenes) {
+        (*driver)->setQueries(effect.queries ? kQueries[costs.size()] : SceneQueries::none);
         if (underValgrind())
             (*driver)->setFrameMeter([&](const std::function<Status()>& runFrame) -> Result<FrameTimes> {
                 // What is allocated and planned once is so after a second frame.

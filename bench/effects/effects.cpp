@@ -35,12 +35,18 @@ class EffectMaker {
         }
         effects_.push_back(std::move(effect));
     }
+    /// One scene, whose queries are none, around nothing, and around its pass.
+    void addQueries() {
+        add(
+            "queries", "of occlusion, statistics and time, around nothing", {}, {}, [](Scene&) {}, false);
+        effects_.back().queries = true;
+    }
     std::vector<Effect> take() { return std::move(effects_); }
 
     /// Shaders that were compiled for one effect or another.
     struct Shaders {
-        uint32_t clipOne, clipCut, cullOne, cullCut, unreadOutputs, pointSize;
-        uint32_t killed, killing, texture, derivatives, unreadDerivatives, twoOutputs, eightOutputs;
+        uint32_t clipOne, clipCut, cullOne, cullCut, unreadOutputs, pointSize, viewports;
+        uint32_t killed, killing, texture, stretched, derivatives, unreadDerivatives, twoOutputs, eightOutputs;
     } shaders{};
     uint32_t texture = 0, sampler = 0, restartIndices = 0, plainIndices = 0;
 
@@ -97,12 +103,20 @@ Status EffectMaker::start() {
     shaders.unreadOutputs =
         vertex("layout(location = 1) out vec4 a;\nlayout(location = 2) out vec4 b;\nlayout(location = 3) out vec4 c;\n",
                "a = color * 2.0; b = sin(color); c = position.xyzz;");
+    shaders.viewports = record.vertex(
+        "#version 450\n#extension GL_ARB_shader_viewport_layer_array : require\n"
+        "layout(location = 0) in vec3 position;\nlayout(location = 1) in vec4 color;\n"
+        "layout(location = 0) out vec4 shade;\n"
+        "void main() { gl_Position = vec4(position, 1.0); shade = color; gl_ViewportIndex = gl_VertexIndex / 3 % 4; }");
     shaders.pointSize = vertex("", "gl_PointSize = 4.0;");
     shaders.killed = fragment("layout(constant_id = 0) const bool kill = false;\n",
                               "color = shade; if (kill && shade.r > 0.5) discard;");
     shaders.killing = fragment("", "color = shade; if (shade.r > 0.5) discard;");
     shaders.texture = fragment("layout(set = 0, binding = 0) uniform sampler2D image;\n",
                                "color = shade * texture(image, shade.xy * 3.0);");
+    // Eight texels of 16 to the right for half a texel down.
+    shaders.stretched = fragment("layout(set = 0, binding = 0) uniform sampler2D image;\n",
+                                 "color = shade * texture(image, gl_FragCoord.xy * vec2(0.5, 0.03));");
     shaders.derivatives = fragment("", "color = shade + 16.0 * fwidth(shade);");
     shaders.unreadDerivatives = fragment("", "vec4 width = fwidth(shade); color = shade; if (false) color = width;");
     shaders.twoOutputs = fragment("layout(location = 1) out vec4 more;\n", "color = shade; more = shade * shade;");
@@ -190,6 +204,13 @@ void moreTargets(Scene& scene, VkColorComponentFlags mask) {
         pipelineOf(scene).blend.push_back(pipelineOf(scene).blend[0]);
         pipelineOf(scene).blend.back().colorWriteMask = mask;
     }
+}
+
+/// A viewport over a quarter of the target, with the scissor of all of it.
+SceneView quarterView(int quarter) {
+    constexpr float kHalf = kExtent.width / 2.0f;
+    return {{kHalf * static_cast<float>(quarter % 2), kHalf * static_cast<float>(quarter / 2), kHalf, kHalf, 0, 1},
+            {{0, 0}, kExtent}};
 }
 
 void stencil(Scene& scene, VkStencilOp pass, VkCompareOp compare) {
@@ -335,6 +356,27 @@ void addGeometryEffects(EffectMaker& make) {
              withVertex(make.shaders.clipCut));
     make.add("cull_distance", "written, 1 everywhere", {}, withVertex(make.shaders.cullOne),
              withVertex(make.shaders.cullCut));
+    make.add(
+        "viewports", "four, of which only the first is chosen", {},
+        [](Scene& scene) {
+            for (int i = 0; i < 3; ++i) drawOf(scene).moreViews.push_back(quarterView(i));
+        },
+        [&make](Scene& scene) {
+            for (int i = 0; i < 3; ++i) drawOf(scene).moreViews.push_back(quarterView(i));
+            pipelineOf(scene).vertexShader = make.shaders.viewports;
+        });
+    const auto lines = [](Scene& scene) {
+        pipelineOf(scene).topology = VK_PRIMITIVE_TOPOLOGY_LINE_STRIP;
+        pipelineOf(scene).lineMode = VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT;
+    };
+    const auto stipple = [](Scene& scene, uint16_t pattern) {
+        pipelineOf(scene).stippleFactor = 1;
+        pipelineOf(scene).stipplePattern = pattern;
+    };
+    make.add(
+        "stipple", "enabled, a pattern without gaps", lines, [=](Scene& scene) { stipple(scene, 0xFFFF); },
+        [=](Scene& scene) { stipple(scene, 0x0F33); });
+    make.addQueries();
     make.add("point_size", "written, but triangles are drawn", {}, withVertex(make.shaders.pointSize), {});
     make.add("unread_outputs", "three vectors nobody reads", {}, withVertex(make.shaders.unreadOutputs), {});
     make.add("unread_attribute", "an attribute the shader lacks", {},
@@ -360,9 +402,10 @@ void addShaderEffects(EffectMaker& make) {
         "anisotropy", "enabled, at most 1",
         [&make](Scene& scene) {
             bindTexture(scene, make.texture, make.sampler);
-            pipelineOf(scene).fragmentShader = make.shaders.texture;
+            pipelineOf(scene).fragmentShader = make.shaders.stretched;
         },
-        [&make](Scene& scene) { scene.samplers[make.sampler].maxAnisotropy = 1; }, {});
+        [&make](Scene& scene) { scene.samplers[make.sampler].maxAnisotropy = 1; },
+        [&make](Scene& scene) { scene.samplers[make.sampler].maxAnisotropy = 16; });
     make.add("push_constants", "set, but not read", {},
              [](Scene& scene) {
                  pipelineOf(scene).pushConstantBytes = 64;

@@ -17,6 +17,7 @@ struct Effect {
     static constexpr size_t kOff = 0, kIdle = 1, kNeeded = 2;
     std::vector<conformance::Scene> scenes;
     bool visible = true;
+    bool queries = false;     // the idle scene has queries around nothing, the needed one around its pass
     double tolerance = 0.02;  // of instructions, by which idle may exceed off
 };
 

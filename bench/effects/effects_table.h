@@ -13,6 +13,8 @@ struct EffectsOptions {
     std::vector<std::string> names;  // empty: all
     std::filesystem::path out = "out/effects";
     std::string json;
+    std::string page;      // Markdown
+    std::string chart;     // SVG
     bool counted = false;  // this is the process under Valgrind
 };
 

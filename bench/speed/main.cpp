@@ -120,6 +120,8 @@ int main(int argc, char** argv) {
     effectsCommand->add_option("--effect", effects.names, "Only these");
     effectsCommand->add_option("--out", effects.out, "Folder for what Valgrind writes");
     effectsCommand->add_option("--json", effects.json, "File for the figures");
+    effectsCommand->add_option("--page", effects.page, "File for the table as a page in Markdown");
+    effectsCommand->add_option("--chart", effects.chart, "File for the ratios as a chart in SVG");
     effectsCommand->add_flag("--counted", effects.counted, "Used by the command itself, under Valgrind");
     CLI11_PARSE(app, argc, argv);
     if (*renderCommand) return renderOne(paths, driver, scene, out);

@@ -30,8 +30,8 @@ class SceneRun {
         return record();
     }
 
-    /// Puts queries around the passes; before prepare().
-    Status addQueries(const VulkanContext& context, bool precise);
+    /// Before prepare().
+    Status addQueries(const VulkanContext& context, SceneQueries queries, bool precise);
     Result<SceneCounts> readQueries() const;
     Status runFrame() { return resources_.run(frame_); }
     Result<std::vector<RenderedImage>> readBack();
@@ -57,6 +57,7 @@ class SceneRun {
     std::vector<VulkanPass> passes_;
     VkDevice device_ = VK_NULL_HANDLE;  // with queries only
     VkQueryPool occlusion_ = VK_NULL_HANDLE, statistics_ = VK_NULL_HANDLE, timestamps_ = VK_NULL_HANDLE;
+    SceneQueries queries_ = SceneQueries::none;
     bool precise_ = false;
     VkCommandBuffer frame_ = VK_NULL_HANDLE;
 };
@@ -67,6 +68,7 @@ Status SceneRun::record() {
     frame_ = *commands;
     resources_.startFrame();
     beginQueries();
+    if (queries_ == SceneQueries::aroundNothing) endQueries();
     size_t nextPass = 0;
     for (const SceneStep& step : scene_.steps) {
         if (const auto* pass = std::get_if<ScenePass>(&step)) recordPass(*pass, passes_[nextPass++]);
@@ -74,7 +76,7 @@ Status SceneRun::record() {
         if (const auto* copy = std::get_if<SceneCopyImage>(&step)) recordCopy(*copy);
         if (const auto* blit = std::get_if<SceneBlitImage>(&step)) recordBlit(*blit);
     }
-    endQueries();
+    if (queries_ == SceneQueries::aroundPasses) endQueries();
     resources_.endFrame(frame_);
     VERNIER_TRY_VK(vkEndCommandBuffer(frame_));
     return {};
@@ -86,12 +88,14 @@ constexpr VkQueryPipelineStatisticFlags kStatistics =
     VK_QUERY_PIPELINE_STATISTIC_VERTEX_SHADER_INVOCATIONS_BIT | VK_QUERY_PIPELINE_STATISTIC_CLIPPING_INVOCATIONS_BIT |
     VK_QUERY_PIPELINE_STATISTIC_CLIPPING_PRIMITIVES_BIT | VK_QUERY_PIPELINE_STATISTIC_FRAGMENT_SHADER_INVOCATIONS_BIT;
 
-Status SceneRun::addQueries(const VulkanContext& context, bool precise) {
+Status SceneRun::addQueries(const VulkanContext& context, SceneQueries queries, bool precise) {
+    if (queries == SceneQueries::none) return {};
     if (context.features().occlusionQueryPrecise == VK_FALSE ||
         context.features().pipelineStatisticsQuery == VK_FALSE ||
         context.properties().limits.timestampComputeAndGraphics == VK_FALSE)
         return unsupported("the device lacks precise occlusion queries, pipeline statistics or time stamps");
     device_ = context.device();
+    queries_ = queries;
     precise_ = precise;
     const auto create = [&](VkQueryType type, uint32_t count, VkQueryPool& pool) -> Status {
         VkQueryPoolCreateInfo info{};
@@ -109,7 +113,7 @@ Status SceneRun::addQueries(const VulkanContext& context, bool precise) {
 }
 
 void SceneRun::beginQueries() {
-    if (occlusion_ == VK_NULL_HANDLE) return;
+    if (queries_ == SceneQueries::none) return;
     vkCmdResetQueryPool(frame_, occlusion_, 0, 1);
     vkCmdResetQueryPool(frame_, statistics_, 0, 1);
     vkCmdResetQueryPool(frame_, timestamps_, 0, 2);
@@ -119,7 +123,6 @@ void SceneRun::beginQueries() {
 }
 
 void SceneRun::endQueries() {
-    if (occlusion_ == VK_NULL_HANDLE) return;
     vkCmdEndQuery(frame_, statistics_, 0);
     vkCmdEndQuery(frame_, occlusion_, 0);
     vkCmdWriteTimestamp(frame_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, timestamps_, 1);
@@ -322,7 +325,7 @@ std::string VulkanDriver::limits() const {
 Result<SceneCounts> VulkanDriver::count(const Scene& scene, bool precise) {
     VERNIER_TRY(validateScene(scene));
     SceneRun run(context_, scene);
-    VERNIER_TRY(run.addQueries(context_, precise));
+    VERNIER_TRY(run.addQueries(context_, SceneQueries::aroundPasses, precise));
     VERNIER_TRY(run.prepare());
     VERNIER_TRY(run.runFrame());
     return run.readQueries();
@@ -338,6 +341,7 @@ Result<std::vector<RenderedImage>> VulkanDriver::render(const Scene& scene, Timi
         return unsupported("robustBufferAccess is off");
     }
     SceneRun run(context_, scene);
+    VERNIER_TRY(run.addQueries(context_, queries_, false));
     VERNIER_TRY(run.prepare());
     const Stopwatch firstFrame;
     VERNIER_TRY(run.runFrame());

@@ -20,6 +20,13 @@ struct SceneCounts {
     uint64_t ticks = 0;  // between time stamps before and after
 };
 
+/// Queries of occlusion, statistics and time in the frames of a scene.
+enum class SceneQueries : uint8_t {
+    none,
+    aroundNothing,  // begun and ended before the passes
+    aroundPasses,
+};
+
 class VulkanDriver final : public Driver {
   public:
     /// Which driver is found is up to the loader: set VK_DRIVER_FILES and VK_ICD_FILENAMES before, once per
@@ -36,6 +43,9 @@ class VulkanDriver final : public Driver {
     /// pipeline statistics or time stamps.
     Result<SceneCounts> count(const Scene& scene, bool precise);
 
+    /// The queries of the frames that render() draws. Where the device lacks them, render() is `unsupported`.
+    void setQueries(SceneQueries queries) { queries_ = queries; }
+
     /// How frames are measured when render() is asked for timings: by measureFrames() unless said otherwise. The meter
     /// gets a function that runs one frame, which has run once before.
     using FrameMeter = std::function<Result<FrameTimes>(const std::function<Status()>& runFrame)>;
@@ -46,6 +56,7 @@ class VulkanDriver final : public Driver {
 
     VulkanContext context_;
     double startUp_ = 0;
+    SceneQueries queries_ = SceneQueries::none;
     FrameMeter meter_ = [](const std::function<Status()>& runFrame) { return measureFrames(runFrame); };
 };
 
