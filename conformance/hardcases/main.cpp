@@ -1,5 +1,6 @@
 // vernier-hardcases: the numeric hard cases on every driver, each in processes of its own, as a table.
 #include "conformance/drivers/try.h"
+#include "conformance/hardcases/chart.h"
 #include "conformance/hardcases/page.h"
 #include "conformance/hardcases/run.h"
 #include "conformance/hardcases/table.h"
@@ -19,7 +20,7 @@ struct Options {
     DriverPaths paths;
     bool all = false, dial = false;
     std::vector<std::string> groups, cases, drivers;
-    std::filesystem::path markdown, json, html, work = "out/hardcases";
+    std::filesystem::path markdown, chart, json, html, work = "out/hardcases";
     double timeoutSeconds = 300;
     size_t first = 0;  // of the child
 };
@@ -177,6 +178,7 @@ int run(int argc, char** argv) {
     app.add_flag("--dial", options.dial, "Vernier's API at every position of the accuracy dial");
     app.add_option("--markdown", options.markdown, "Write the table to a Markdown file");
     app.add_option("--json", options.json, "Write the table to a JSON file");
+    app.add_option("--chart", options.chart, "Write the table to a picture (SVG)");
     app.add_option("--html", options.html, "Write the table to an HTML page, with pictures of what is wrong");
     app.add_option("--work", options.work, "Folder for the drivers' images")->capture_default_str();
     app.add_option("--timeout", options.timeoutSeconds, "Seconds for a driver's process")->capture_default_str();
@@ -195,6 +197,7 @@ int run(int argc, char** argv) {
     if (Status s = write(options.markdown, tableMarkdown(*table)); !s) return fail(s.error());
     if (Status s = write(options.html, options.html.empty() ? std::string() : tablePage(*table)); !s)
         return fail(s.error());
+    if (Status s = write(options.chart, tableChart(*table)); !s) return fail(s.error());
     if (Status s = write(options.json, tableJson(*table)); !s) return fail(s.error());
     const bool good = std::ranges::all_of(table->columns, [](const TableColumn& column) {
         const auto counts = column.counts();
