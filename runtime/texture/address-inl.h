@@ -144,10 +144,10 @@ HWY_INLINE void linearTaps(VF s, const Axis& axis, AxisTaps& taps) {
 }
 
 // Out of line, for routines that are large anyway.
-HWY_NOINLINE static void sharedNearestTap(VF s, const Axis& axis, AxisTaps& taps) {
+[[maybe_unused]] HWY_NOINLINE static void sharedNearestTap(VF s, const Axis& axis, AxisTaps& taps) {
     nearestTap<Wrap::any>(s, axis, taps);
 }
-HWY_NOINLINE static void sharedLinearTaps(VF s, const Axis& axis, AxisTaps& taps) {
+[[maybe_unused]] HWY_NOINLINE static void sharedLinearTaps(VF s, const Axis& axis, AxisTaps& taps) {
     linearTaps(s, axis, taps);
 }
 
