@@ -171,8 +171,9 @@ void FragmentStage::add(const BlockCoverage& block) {
         runHeld(index);
     }
     if (atOnce) {
-        if (holdsBlocks_ && ~any != 0 && !planes_[planesCount_ - 1].precise) return hold(index, any);
-        block_.segments[0].planes = &planes_[planesCount_ - 1];
+        const TrianglePlanes& planes = planes_[planesCount_ - 1];
+        if (holdsBlocks_ && ~any != 0 && planes.shape == nullptr && !planes.precise) return hold(index, any);
+        block_.segments[0].planes = &planes;
         std::copy_n(block.masks.begin(), samples_, blockMasks_.begin());
         return runBlock(block.x, block.y, any);
     }

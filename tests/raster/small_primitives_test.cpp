@@ -125,6 +125,44 @@ TEST(SmallPrimitives, DepthFormatsAndComparisons) {
             }
 }
 
+/// Rectangles of two triangles, with corners between pixels, some of them in perspective; every third over the last.
+std::vector<Vertex> tiles(double width, double height) {
+    std::mt19937 random(5);
+    const auto jitter = [&] { return static_cast<double>(random() % 1024) / 300 - 1.7; };
+    std::vector<Vertex> vertices;
+    size_t count = 0;
+    for (double y = 0; y < kHeight; y += height)
+        for (double x = 0; x < kWidth; x += width, ++count) {
+            const double grown = count % 3 == 0 ? 5 : 0;
+            std::array<Vertex, 4> corners;
+            for (size_t k = 0; k < 4; ++k) {
+                const auto part = static_cast<float>(k) / 4;
+                corners[k] =
+                    at(x + (k % 2 == 1 ? width + grown : 0) + jitter(), y + (k > 1 ? height + grown : 0) + jitter(),
+                       kWidth, kHeight, {part, 1 - part, 0.5f * part, 0.25f + part / 2});
+                const float w = count % 2 == 0 ? 1 : 0.5f + part;
+                for (float& value : corners[k].position) value *= w;
+            }
+            for (const size_t k : {0, 1, 2, 1, 3, 2}) vertices.push_back(corners[k]);
+        }
+    return vertices;
+}
+
+TEST(SmallPrimitives, LargerOnesShareBlocks) {
+    for (const Isa isa : instructionSets())
+        for (const bool blends : {false, true})
+            for (const VkFormat depth : {VK_FORMAT_UNDEFINED, VK_FORMAT_D32_SFLOAT}) {
+                SCOPED_TRACE(std::string(isaName(isa)) + (blends ? ", blended" : "") + ", depth " +
+                             std::to_string(depth));
+                Case test = caseOf(isa, VK_FORMAT_R8G8B8A8_UNORM, depth, VK_COMPARE_OP_LESS_OR_EQUAL);
+                if (blends) setAdditive(test.options.state);
+                test.vertices = tiles(21.3, 17.9);
+                expectSame(test);
+                const uint64_t apart = render(test, true).statistics.batches;
+                EXPECT_LT(render(test, false).statistics.batches, apart * 9 / 10);
+            }
+}
+
 TEST(SmallPrimitives, Blending) {
     for (const Isa isa : instructionSets())
         for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R32G32B32A32_SFLOAT})
