@@ -1,6 +1,7 @@
 #include "runtime/plan/shader_program.h"
 
 #include "spirv_interp/ir/link.h"
+#include "spirv_interp/ir/optimise.h"
 #include "spirv_interp/ir/split_samples.h"
 
 namespace vernier {
@@ -15,14 +16,16 @@ ir::Program emptyFragment() {
     return program;
 }
 
-/// Linking, which optimises, then removes what only these outputs needed.
+/// Outputs that no attachment keeps go, with what only they needed.
 void dropColors(ir::Program& fragment, uint32_t kept) {
     const auto dropped = [&](const ir::Inst& inst) {
         if (inst.op != ir::Op::storeOutput) return false;
         const ir::InterfaceSlot& slot = fragment.outputs[inst.imm];
         return slot.builtin == ir::Builtin::user && slot.location < 32 && (kept >> slot.location & 1) == 0;
     };
-    for (ir::Block& block : fragment.blocks) std::erase_if(block.insts, dropped);
+    size_t count = 0;
+    for (ir::Block& block : fragment.blocks) count += std::erase_if(block.insts, dropped);
+    if (count != 0) ir::optimise(fragment);
 }
 
 }  // namespace
