@@ -101,6 +101,18 @@ const TextureLevel* commonLevel(const TextureView& view, const FetchRequest& req
     return differences == 0 && exists ? &view.levels[first] : nullptr;
 }
 
+/// Lanes that are looked at together: a row of a block, as a full-screen pass has them.
+constexpr uint32_t kRun = 8;
+
+/// Whether the values of kRun lanes from `first` on are equal, or (kStep 1) go up by one.
+template <uint32_t kStep>
+bool inARow(const int32_t* values, uint32_t first) {
+    if (values == nullptr) return kStep == 0;
+    uint32_t differences = 0;
+    for (uint32_t k = 1; k < kRun; ++k) differences |= (at(values, first + k) - at(values, first)) ^ (k * kStep);
+    return differences == 0;
+}
+
 /// Of 2D images with one sample and texels of kBytes, with or without layers. As fetch(), in one pass: all lanes read,
 /// those outside the image the texel of zero bits.
 template <uint32_t kBytes>
@@ -109,12 +121,28 @@ void fetchPlain(const TextureView& view, const FetchRequest& request) {
     if (level == nullptr || request.sample != nullptr) return fetch(view, request);
     const bool layered = view.type == VK_IMAGE_VIEW_TYPE_2D_ARRAY;
     alignas(16) std::byte texels[kMaxSampleLanes * kBytes];
-    for (uint32_t i = 0; i < request.lanes; ++i) {
-        const uint32_t x = at(request.coord[0], i, request.offset[0]), y = at(request.coord[1], i, request.offset[1]);
-        const uint32_t layer = layered ? at(request.coord[3], i) : 0;
-        const bool inside = x < level->width && y < level->height && layer < view.layerCount;
+    // The texel of a lane, if it and `more` behind it are inside.
+    const auto texelOf = [&](uint32_t lane, uint32_t more) -> const std::byte* {
+        const uint32_t x = at(request.coord[0], lane, request.offset[0]);
+        const uint32_t y = at(request.coord[1], lane, request.offset[1]);
+        const uint32_t layer = layered ? at(request.coord[3], lane) : 0;
+        const bool inside = x < level->width && level->width - x > more && y < level->height && layer < view.layerCount;
         const uint64_t place = layer * level->slicePitch + uint64_t{y} * level->rowPitch + uint64_t{x} * kBytes;
-        std::memcpy(texels + i * kBytes, inside ? level->data + place : kZeroTexel, kBytes);
+        return inside ? level->data + place : nullptr;
+    };
+    for (uint32_t i = 0; i < request.lanes;) {
+        const bool row = i + kRun <= request.lanes && inARow<1>(request.coord[0], i) &&
+                         inARow<0>(request.coord[1], i) && (!layered || inARow<0>(request.coord[3], i));
+        const std::byte* const first = row ? texelOf(i, kRun - 1) : nullptr;
+        if (first != nullptr) {
+            std::memcpy(texels + i * kBytes, first, kRun * kBytes);
+            i += kRun;
+            continue;
+        }
+        for (const uint32_t end = std::min(i + kRun, request.lanes); i < end; ++i) {
+            const std::byte* const texel = texelOf(i, 0);
+            std::memcpy(texels + i * kBytes, texel != nullptr ? texel : kZeroTexel, kBytes);
+        }
     }
     deliver(view, request, [&](void* const(&planes)[4]) { view.ops.unpack(texels, request.lanes, planes); });
 }

@@ -70,6 +70,39 @@ TEST(Fetch, OutsideGivesZero) {
     }
 }
 
+// Neighbours from left to right, inside and across the edges, between lanes that are anywhere.
+TEST(Fetch, RowsOfTexels) {
+    constexpr int32_t kWidth = 21, kHeight = 3;
+    for (const VkFormat format :
+         {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT}) {
+        Image image(VK_IMAGE_VIEW_TYPE_2D_ARRAY, format, kWidth, kHeight, 1, 2, 1);
+        image.randomize(7);
+        const TextureView view = image.view(bestIsa());
+        for (int32_t first = -9; first < kWidth + 2; ++first)
+            for (int32_t y = -1; y <= kHeight; ++y)
+                for (int32_t shift = 0; shift < 3; ++shift) {
+                    std::array<std::vector<int32_t>, 4> coord;
+                    for (int32_t lane = 0; lane < 28; ++lane) {
+                        const bool apart = shift == 2 && lane % 9 == 5;  // in the midst of a row
+                        coord[0].push_back(first + lane % 8 - shift);
+                        coord[1].push_back(lane / 8 == 2 || apart ? 1 : y);
+                        coord[2].push_back(0);
+                        coord[3].push_back(lane / 8 == 1 && (lane == 9 || shift == 1) ? 1 : 0);
+                    }
+                    const std::vector<int32_t> lod(28, 0);
+                    const Fetched f = fetch(view, coord, lod, {}, {shift, 0, 0});
+                    for (size_t lane = 0; lane < lod.size(); ++lane) {
+                        const int32_t x = coord[0][lane] + shift, row = coord[1][lane], layer = coord[3][lane];
+                        const bool inside = x >= 0 && x < kWidth && row >= 0 && row < kHeight;
+                        const VkClearColorValue texel =
+                            inside ? unpackTexel(image.info().color, image.texel(0, x, row, layer))
+                                   : VkClearColorValue{};
+                        for (int c = 0; c < 4; ++c) ASSERT_EQ(f.out[c][lane], texel.float32[c]) << first << ' ' << lane;
+                    }
+                }
+    }
+}
+
 TEST(Fetch, SamplesOfMultisampledImages) {
     // Four samples stored side by side in each texel.
     std::vector<float> data(3 * 2 * 4);
