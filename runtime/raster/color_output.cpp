@@ -88,8 +88,11 @@ void scatter(const ColorOutputInput& in, const std::byte* texels) {
             copyTexels<kBytes>(place, from, count);
             return;
         }
+        // At edges a branch would go either way: what is not written goes elsewhere.
+        std::byte unwritten[kBytes * kBlockSize];
+        std::byte* const places[] = {unwritten, place};
         for (uint32_t n = 0; n < count; ++n)
-            if (in.mask[first + n] != 0) std::memcpy(place + n * kBytes, from + n * kBytes, kBytes);
+            std::memcpy(places[in.mask[first + n] & 1] + n * kBytes, from + n * kBytes, kBytes);
     });
 }
 
