@@ -69,28 +69,59 @@ uint32_t cutSamples(const std::vector<PixelRect>& areas, int32_t tileX, int32_t 
 /// So many small primitives are drawn together, at least; what fewer would gain is less than what it costs.
 constexpr uint32_t kFewestSmall = 4;
 
-/// Entries of the same item that are asked for ahead.
-constexpr uint32_t kAhead = 16;
+/// Entries of a tile whose primitives are asked for ahead; and whose shapes, which the primitives tell.
+constexpr uint32_t kAhead = 16, kShapesAhead = 6;
 
 const Primitive& primitiveOf(const TileWork& item, uint32_t n) {
     return item.chunk->primitives[item.chunk->entries[n] & ~kCoversTile];
 }
 
-void prefetch(const Primitive& primitive) {
+/// All the lines of an object.
+template <class T>
+void prefetch(const T& object) {
     constexpr size_t kLine = 64;
-    const auto* bytes = reinterpret_cast<const std::byte*>(&primitive);
-    __builtin_prefetch(bytes);
-    __builtin_prefetch(bytes + kLine);
-    static_assert(sizeof(Primitive) <= 2 * kLine);
+    const auto* bytes = reinterpret_cast<const std::byte*>(&object);
+    for (size_t at = 0; at < sizeof(T); at += kLine) __builtin_prefetch(bytes + at);
+    __builtin_prefetch(bytes + sizeof(T) - 1);
 }
 
-/// The first primitives of the item after `index`, and where those of the one behind it are told.
-void prefetchItems(std::span<const TileWork> work, size_t index) {
-    if (index + 2 < work.size() && work[index + 2].chunk != nullptr)
-        __builtin_prefetch(work[index + 2].chunk->entries.data() + work[index + 2].first);
-    if (index + 1 >= work.size() || work[index + 1].chunk == nullptr) return;
-    const TileWork& next = work[index + 1];
-    for (uint32_t n = next.first; n < next.first + std::min(next.count, kAhead); ++n) prefetch(primitiveOf(next, n));
+/// Goes through the entries of a tile in front of whoever draws them.
+class Ahead {
+  public:
+    Ahead(std::span<const TileWork> work, size_t item, uint32_t entry) : work_(work), item_(item), entry_(entry) {}
+
+    /// Calls visit(item, n) for the next entry, if there is one.
+    template <class Visit>
+    void next(const Visit& visit) {
+        for (; item_ < work_.size(); ++item_, entry_ = 0) {
+            const TileWork& item = work_[item_];
+            if (item.chunk == nullptr) continue;
+            entry_ = std::max(entry_, item.first);
+            if (entry_ < item.first + item.count) return visit(item, entry_++);
+        }
+    }
+
+  private:
+    std::span<const TileWork> work_;
+    size_t item_;
+    uint32_t entry_;
+};
+
+void prefetchPrimitive(const TileWork& item, uint32_t n) {
+    prefetch(primitiveOf(item, n));
+}
+
+/// What a primitive covers that is no triangle.
+void prefetchShape(const TileWork& item, uint32_t n) {
+    const Primitive& primitive = primitiveOf(item, n);
+    if (primitive.shape != kNoShape) prefetch(item.chunk->shapes[primitive.shape]);
+}
+
+/// Where the primitives are told of the items behind those that are looked at already.
+void prefetchEntries(std::span<const TileWork> work, size_t index) {
+    constexpr size_t kItems = 8;
+    if (index + kItems < work.size() && work[index + kItems].chunk != nullptr)
+        __builtin_prefetch(work[index + kItems].chunk->entries.data() + work[index + kItems].first);
 }
 
 /// Where the pixel of a bit lies, as part of a SmallFragment.
@@ -344,6 +375,9 @@ void TileRenderer::render(const PixelRect& rect, uint32_t layer, int32_t tileX, 
     tileY_ = tileY;
     fragments_.startTile(tileX, tileY);
     uint32_t segment = work[firstItem].segment;
+    Ahead primitives(work, firstItem, firstEntry), shapes(work, firstItem, firstEntry);
+    for (uint32_t n = 0; n < kAhead; ++n) primitives.next(prefetchPrimitive);
+    for (uint32_t n = 0; n < kShapesAhead; ++n) shapes.next(prefetchShape);
     for (size_t index = firstItem; index < work.size(); ++index) {
         const TileWork& item = work[index];
         if (item.segment != segment) {
@@ -357,10 +391,11 @@ void TileRenderer::render(const PixelRect& rect, uint32_t layer, int32_t tileX, 
             coarse_.forget();
             continue;
         }
-        prefetchItems(work, index);
+        prefetchEntries(work, index);
         const uint32_t end = item.first + item.count;
         for (uint32_t n = std::max(item.first, index == firstItem ? firstEntry : 0); n < end; ++n) {
-            if (n + kAhead < end) prefetch(primitiveOf(item, n + kAhead));
+            primitives.next(prefetchPrimitive);
+            shapes.next(prefetchShape);
             const Primitive& primitive = primitiveOf(item, n);
             const PreparedDraw& prepared = draws[primitive.draw];
             if (waiting_.count != 0 && (!primitive.small || &prepared != waitingDraw_)) flushSmall();
