@@ -48,6 +48,7 @@ void must(VnResult result) {
 }
 
 App::App(const AppOptions& options) : options_(options) {
+    vnRetainGlslCompiler();  // samples compile several shaders: its tables need not be built for each
     VnDeviceDesc desc{};
     desc.message = printMessage;
     must(vnCreateDevice(&desc, &device_));
@@ -59,6 +60,7 @@ App::App(const AppOptions& options) : options_(options) {
 
 App::~App() {
     vnDestroyDevice(device_);
+    vnReleaseGlslCompiler();
 }
 
 int App::run(const std::function<void(const Frame&)>& frame) {
