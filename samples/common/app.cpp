@@ -1,12 +1,12 @@
 #include "samples/common/app.h"
 
-#include <stb/stb_image_write.h>
 #include <vernier/vernier_glsl.h>
 
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 
+#include "samples/common/picture_file.h"
 #include "samples/common/window.h"
 
 namespace samples {
@@ -81,8 +81,7 @@ void App::readPixels() {
 }
 
 bool App::writePixels(const std::string& path) {
-    const auto width = static_cast<int>(options_.width), height = static_cast<int>(options_.height);
-    if (stbi_write_png(path.c_str(), width, height, 4, pixels_.data(), 0)) return true;
+    if (savePicture(path, {options_.width, options_.height, pixels_})) return true;
     std::fprintf(stderr, "%s could not be written\n", path.c_str());
     return false;
 }

@@ -34,7 +34,7 @@ AppOptions parseOptions(int argc, char** argv, const std::string& title, const s
     result.options = options;
     CLI::App cli{title};
     std::string size;
-    cli.add_option("--headless", result.headless, "write one picture to this PNG file instead of opening a window");
+    cli.add_option("--headless", result.headless, "write one picture (.png, .bmp, .tga) instead of opening a window");
     cli.add_option("--size", size, "WIDTHxHEIGHT in pixels (800x600)");
     cli.add_option("--time", result.time, "seconds at which the picture is taken (0)");
     cli.add_option("--frames", result.frames, "draw this many frames, 25 a second, and print the time that one takes");

@@ -21,7 +21,7 @@ struct Option {
 struct AppOptions {
     std::string title;
     uint32_t width = 800, height = 600;
-    std::string headless;  // path of a PNG; empty: a window
+    std::string headless;  // path of a PNG, BMP or TGA; empty: a window
     double time = 0;       // seconds at which the headless picture is taken
     uint32_t frames = 0;   // not 0: that many pictures, 25 a second from `time` on, without a window
     std::string out;       // folder for those; empty: they are only timed
