@@ -68,15 +68,21 @@ VnResult checkSampler(VnDevice device, const VnSamplerDesc& desc) {
     const struct {
         const char* name;
         int64_t value, last;
-    } enums[] = {{"magFilter", enumValue(desc.magFilter), VK_FILTER_LINEAR},
-                 {"minFilter", enumValue(desc.minFilter), VK_FILTER_LINEAR},
-                 {"mipmapMode", enumValue(desc.mipmapMode), VK_SAMPLER_MIPMAP_MODE_LINEAR},
+    } enums[] = {{"mipmapMode", enumValue(desc.mipmapMode), VK_SAMPLER_MIPMAP_MODE_LINEAR},
                  {"addressU", enumValue(desc.addressU), VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE},
                  {"addressV", enumValue(desc.addressV), VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE},
                  {"addressW", enumValue(desc.addressW), VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE},
                  {"compareOp", enumValue(desc.compareOp), VK_COMPARE_OP_ALWAYS}};
     for (const auto& field : enums)
         if (VnResult r = checkEnum(device, kFunction, field.name, field.value, field.last)) return r;
+    for (const auto& [name, filter] : {std::pair{"magFilter", desc.magFilter}, {"minFilter", desc.minFilter}}) {
+        if (filter == VK_FILTER_CUBIC_EXT) {
+            if (desc.maxAnisotropy > 1)
+                return invalid(device, kFunction, std::string(name) + " is cubic, which maxAnisotropy excludes");
+            continue;
+        }
+        if (VnResult r = checkEnum(device, kFunction, name, enumValue(filter), VK_FILTER_LINEAR)) return r;
+    }
     const int64_t border = enumValue(desc.borderColor);
     if (border != VK_BORDER_COLOR_FLOAT_CUSTOM_EXT && border != VK_BORDER_COLOR_INT_CUSTOM_EXT)
         if (VnResult r = checkEnum(device, kFunction, "borderColor", border, VK_BORDER_COLOR_INT_OPAQUE_WHITE))

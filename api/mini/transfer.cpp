@@ -246,7 +246,7 @@ VnResult vnBlitImage(VnContext context, VnImage source, const VnRegion* sourceRe
         if (VnResult result = transferImage(context, "vnBlitImage", source, sourceRegion, from, a)) return result;
         if (VnResult result = transferImage(context, "vnBlitImage", destination, destinationRegion, to, b, true))
             return result;
-        if (filter != VK_FILTER_NEAREST && filter != VK_FILTER_LINEAR)
+        if (filter != VK_FILTER_NEAREST && filter != VK_FILTER_LINEAR && filter != VK_FILTER_CUBIC_EXT)
             return invalid(context->device, "vnBlitImage", "filter is " + std::to_string(filter));
         if (VnResult result = checkDisjoint(context, "vnBlitImage", from, a, to, b)) return result;
         const FormatInfo& fromFormat = from->image.format();
@@ -256,7 +256,8 @@ VnResult vnBlitImage(VnContext context, VnImage source, const VnRegion* sourceRe
             fromFormat.layout(a.subresource.aspectMask).type == toFormat.layout(b.subresource.aspectMask).type;
         const bool smooth = fromFormat.layout(a.subresource.aspectMask).type == ValueType::floating && color;
         if (a.subresource.aspectMask != b.subresource.aspectMask || !sameKind ||
-            (!color && fromFormat.format != toFormat.format) || (filter == VK_FILTER_LINEAR && !smooth) ||
+            (!color && fromFormat.format != toFormat.format) || (filter != VK_FILTER_NEAREST && !smooth) ||
+            (filter == VK_FILTER_CUBIC_EXT && from->image.info().type != VK_IMAGE_TYPE_2D) ||
             toFormat.block != nullptr || from->image.info().samples > 1 || to->image.info().samples > 1)
             return invalid(context->device, "vnBlitImage",
                            std::string(fromFormat.name) + " cannot be blitted to " + toFormat.name +

@@ -138,6 +138,14 @@ VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties2(
     if (auto* p = findInChain<VkSamplerYcbcrConversionImageFormatProperties>(pImageFormatProperties->pNext)) {
         p->combinedImageSamplerDescriptorCount = 1;
     }
+    if (auto* p = findInChain<VkFilterCubicImageViewImageFormatPropertiesEXT>(pImageFormatProperties->pNext)) {
+        const auto* view = findInChain<VkPhysicalDeviceImageViewImageFormatInfoEXT>(pImageFormatInfo->pNext);
+        const bool flat = view != nullptr && (view->imageViewType == VK_IMAGE_VIEW_TYPE_2D ||
+                                              view->imageViewType == VK_IMAGE_VIEW_TYPE_2D_ARRAY);
+        p->filterCubic = flat && (formatProperties(pImageFormatInfo->format).optimalTilingFeatures &
+                                  VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_CUBIC_BIT_EXT) != 0;
+        p->filterCubicMinmax = VK_FALSE;
+    }
     const auto* external = findInChain<VkPhysicalDeviceExternalImageFormatInfo>(pImageFormatInfo->pNext);
     if (external != nullptr && external->handleType != 0) {
         pImageFormatProperties->imageFormatProperties = {};

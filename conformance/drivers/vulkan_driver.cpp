@@ -283,6 +283,13 @@ Result<std::vector<RenderedImage>> SceneRun::readBack() {
     return images;
 }
 
+bool hasCubicBlit(const Scene& scene) {
+    return std::any_of(scene.steps.begin(), scene.steps.end(), [](const SceneStep& step) {
+        const auto* blit = std::get_if<SceneBlitImage>(&step);
+        return blit != nullptr && blit->filter == VK_FILTER_CUBIC_EXT;
+    });
+}
+
 bool hasNegativeViewport(const Scene& scene) {
     return std::any_of(scene.steps.begin(), scene.steps.end(), [](const SceneStep& step) {
         const auto* pass = std::get_if<ScenePass>(&step);
@@ -337,6 +344,8 @@ Result<std::vector<RenderedImage>> VulkanDriver::render(const Scene& scene, Timi
     if (hasNegativeViewport(scene) && !context_.hasNegativeViewports()) {
         return unsupported("viewports of negative height: the device has neither Vulkan 1.1 nor VK_KHR_maintenance1");
     }
+    if (hasCubicBlit(scene) && !context_.extensions().cubicFilters)
+        return unsupported("the device lacks cubic filters");
     if (scene.robustBufferAccess && context_.features().robustBufferAccess == VK_FALSE) {
         return unsupported("robustBufferAccess is off");
     }

@@ -37,6 +37,7 @@ namespace vernier::conformance {
     X(renderPass2, VK_KHR_CREATE_RENDERPASS_2_EXTENSION_NAME)           \
     X(depthStencilResolve, VK_KHR_DEPTH_STENCIL_RESOLVE_EXTENSION_NAME) \
     X(stencilExport, VK_EXT_SHADER_STENCIL_EXPORT_EXTENSION_NAME)       \
+    X(cubicFilters, VK_EXT_FILTER_CUBIC_EXTENSION_NAME)                 \
     X(reductions, VK_EXT_SAMPLER_FILTER_MINMAX_EXTENSION_NAME)          \
     X(sampleLocations, VK_EXT_SAMPLE_LOCATIONS_EXTENSION_NAME)          \
     X(viewportIndexLayer, VK_EXT_SHADER_VIEWPORT_INDEX_LAYER_EXTENSION_NAME)

@@ -216,6 +216,8 @@ Status VulkanResources::createSampler(const SceneSampler& scene) {
     const VkDevice device = context_.device();
     if (scene.maxAnisotropy > 0 && context_.features().samplerAnisotropy == VK_FALSE)
         return unsupported("the device lacks feature samplerAnisotropy");
+    const bool cubic = scene.magFilter == VK_FILTER_CUBIC_EXT || scene.minFilter == VK_FILTER_CUBIC_EXT;
+    if (cubic && !context_.extensions().cubicFilters) return unsupported("the device lacks cubic filters");
     VkSamplerCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
     info.magFilter = scene.magFilter;

@@ -66,10 +66,12 @@
     /* texturing.cpp */        \
     X(texture_nearest)         \
     X(texture_bilinear)        \
+    X(texture_cubic)           \
     X(texture_lod)             \
     X(texture_trilinear)       \
     X(copy_and_blit)           \
     X(blit_mirrored)           \
+    X(blit_cubic)              \
     /* texture_kinds.cpp */    \
     X(texture_anisotropic)     \
     X(cube_seams)              \

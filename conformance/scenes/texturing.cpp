@@ -78,6 +78,13 @@ Result<Scene> texture_bilinear() {
     return addressModes(std::move(record), texture, VK_FILTER_LINEAR, VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE);
 }
 
+Result<Scene> texture_cubic() {
+    SceneRecorder record("texture_cubic",
+                         "Random texels, 5 x 7, magnified with a cubic filter under the four address modes.");
+    const uint32_t texture = record.texture("noise", kRgba8, {5, 7}, {noisePicture({5, 7}, 11)});
+    return addressModes(std::move(record), texture, VK_FILTER_CUBIC_EXT, VK_BORDER_COLOR_FLOAT_OPAQUE_WHITE);
+}
+
 Result<Scene> texture_lod() {
     SceneRecorder record("texture_lod",
                          "Explicit levels of detail from -1 to 6 over levels of six colours: nearest level "
@@ -196,6 +203,19 @@ Result<Scene> blit_mirrored() {
     record.blit(spriteBlit(sprite, target, {0, 12}, {12, 0}, {129, 8}, {248, 121}, VK_FILTER_LINEAR));
     record.blit(spriteBlit(sprite, target, {0, 0}, {12, 12}, {121, 248}, {8, 129}, VK_FILTER_LINEAR));
     record.blit(spriteBlit(sprite, target, {11, 2}, {1, 12}, {248, 129}, {129, 248}, VK_FILTER_NEAREST));
+    record.output(target);
+    return record.finish();
+}
+
+Result<Scene> blit_cubic() {
+    SceneRecorder record("blit_cubic", "The picture blitted with a cubic filter: larger, turned over, and smaller.");
+    const uint32_t sprite = record.texture("sprite", kRgba8, kSpriteExtent, {spritePicture()});
+    const uint32_t target = record.colorTarget("color", kRgba8, kSceneExtent);
+    record.pass(kSceneExtent).color(target, {0.17f, 0.24f, 0.31f, 1});
+    record.blit(spriteBlit(sprite, target, {0, 0}, {12, 12}, {8, 8}, {121, 121}, VK_FILTER_CUBIC_EXT));
+    record.blit(spriteBlit(sprite, target, {12, 12}, {0, 0}, {129, 8}, {248, 121}, VK_FILTER_CUBIC_EXT));
+    record.blit(spriteBlit(sprite, target, {2, 1}, {9, 11}, {8, 129}, {121, 248}, VK_FILTER_CUBIC_EXT));
+    record.blit(spriteBlit(sprite, target, {0, 0}, {12, 12}, {160, 160}, {169, 169}, VK_FILTER_CUBIC_EXT));
     record.output(target);
     return record.finish();
 }

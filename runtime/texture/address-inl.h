@@ -143,6 +143,50 @@ HWY_INLINE void linearTaps(VF s, const Axis& axis, AxisTaps& taps) {
     taps.index[1] = wrapIndex<Wrap::any>(hn::Add(i, splatInt(1)), axis, taps.inside[1]);
 }
 
+/// The four texels of a cubic filter ("Texel Cubic Filtering"), and by how far the coordinate is beyond the second.
+struct CubicAxis {
+    VI index[4];
+    VI inside[4];
+    VF fraction;
+};
+
+HWY_INLINE void cubicTaps(VF s, const Axis& axis, CubicAxis& taps) {
+    const VF u = hn::Sub(texelCoordinate<Wrap::any>(s, axis), splatFloat(0.5f));
+    const VF whole = hn::Floor(u);
+    taps.fraction = hn::Sub(u, whole);
+    // Two steps outside: addresses are wrapped as those of offset texels are.
+    Axis reaching = axis;
+    reaching.offset = 1;
+    const VI first = hn::Add(hn::ConvertTo(I32(), whole), splatInt(axis.offset - 1));
+    for (int k = 0; k < 4; ++k)
+        taps.index[k] = wrapIndex<Wrap::any>(hn::Add(first, splatInt(k)), reaching, taps.inside[k]);
+}
+
+/// Weights of the first, third and fourth texel; the second has what is left of 1 (Catmull-Rom).
+struct CubicWeights {
+    VF before, next, after;
+};
+
+HWY_INLINE CubicWeights cubicWeights(VF fraction) {
+    const VF half = splatFloat(0.5f), a = fraction, a2 = hn::Mul(a, a), a3 = hn::Mul(a2, a);
+    CubicWeights weights;
+    weights.before = hn::Sub(hn::Sub(a2, hn::Mul(half, a)), hn::Mul(half, a3));
+    weights.next = hn::Sub(hn::Add(hn::Mul(half, a), hn::Add(a2, a2)), hn::Mul(splatFloat(1.5f), a3));
+    weights.after = hn::Mul(half, hn::Sub(a3, a2));
+    return weights;
+}
+
+/// Equal texels stay what they are, and one without weight counts for nothing, whatever it holds.
+HWY_INLINE VF mixCubic(const VF (&texels)[4], const CubicWeights& weights) {
+    const VF base = texels[1];
+    const auto term = [&](VF texel, VF weight) VERNIER_INLINE_LAMBDA {
+        const auto none = hn::Or(hn::Eq(weight, hn::Zero(F32())), hn::Eq(texel, base));
+        return hn::IfThenZeroElse(none, hn::Mul(weight, hn::Sub(texel, base)));
+    };
+    return hn::Add(base, hn::Add(hn::Add(term(texels[0], weights.before), term(texels[2], weights.next)),
+                                 term(texels[3], weights.after)));
+}
+
 // Out of line, for routines that are large anyway.
 [[maybe_unused]] HWY_NOINLINE static void sharedNearestTap(VF s, const Axis& axis, AxisTaps& taps) {
     nearestTap<Wrap::any>(s, axis, taps);

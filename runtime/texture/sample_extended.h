@@ -1,4 +1,4 @@
-// Sampling routines for what few samplers ask for: anisotropy, reduction modes, cubes with seams.
+// Sampling routines for what few samplers ask for: anisotropy, cubic filters, reduction modes, cubes with seams.
 #pragma once
 
 #include "runtime/texture/texture.h"
@@ -10,7 +10,8 @@ inline bool isExtended(const TextureView& view, const SamplerState& sampler) {
     const bool anisotropic = sampler.maxAnisotropy > 1.0f && view.ops.layout.type == ValueType::floating;
     const bool seams =
         sampler.nonSeamlessCube && (view.type == VK_IMAGE_VIEW_TYPE_CUBE || view.type == VK_IMAGE_VIEW_TYPE_CUBE_ARRAY);
-    return anisotropic || seams || sampler.reduction != VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
+    const bool cubic = sampler.magFilter == VK_FILTER_CUBIC_EXT || sampler.minFilter == VK_FILTER_CUBIC_EXT;
+    return anisotropic || cubic || seams || sampler.reduction != VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
 }
 
 SampleFn selectExtendedSampler(const TextureView& view, const SamplerState& sampler, Isa isa);

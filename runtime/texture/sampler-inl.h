@@ -218,6 +218,46 @@ class Sampler {
         }
     }
 
+    /// Sixteen texels, a row of four after the other; of flat images only.
+    HWY_NOINLINE void cubic(const TextureLevel& level, const Coordinates& at, Texel& result) const {
+        CubicAxis x, y;
+        cubicTaps(at.s, axis(0, level.width), x);
+        cubicTaps(at.t, axis(1, level.height), y);
+        const CubicWeights across = cubicWeights(x.fraction), down = cubicWeights(y.fraction);
+        Texel rows[4];
+        for (int j = 0; j < 4; ++j) {
+            TexelPosition position[4];
+            VI inside[4];
+            Texel texels[4];
+            for (int i = 0; i < 4; ++i) {
+                position[i] = {x.index[i], y.index[j], at.slice};
+                inside[i] = hn::And(x.inside[i], y.inside[j]);
+            }
+            load(level, position, inside, at.dref, texels);
+            for (size_t p = 0; p < Source::kPlanes; ++p) {
+                const VF row[4] = {floatOf(texels[0][p]), floatOf(texels[1][p]), floatOf(texels[2][p]),
+                                   floatOf(texels[3][p])};
+                rows[j][p] = bitsOf(mixCubic(row, across));
+            }
+        }
+        for (size_t p = 0; p < Source::kPlanes; ++p) {
+            const VF column[4] = {floatOf(rows[0][p]), floatOf(rows[1][p]), floatOf(rows[2][p]), floatOf(rows[3][p])};
+            result[p] = bitsOf(mixCubic(column, down));
+        }
+    }
+
+    /// By one filter, of those that extended samplers have.
+    HWY_INLINE void filtered(VkFilter filter, const TextureLevel& level, const Coordinates& at, Texel& result) const {
+        switch (filter) {
+            case VK_FILTER_CUBIC_EXT:
+                return cubic(level, at, result);
+            case VK_FILTER_LINEAR:
+                return linear(level, at, result);
+            default:
+                return nearest(level, at, result);
+        }
+    }
+
     HWY_INLINE void blendSquare(const Texel (&texels)[4], VF wx, VF wy, Texel& result) const {
         unrolled<Source::kPlanes>([&](auto p) VERNIER_INLINE_LAMBDA {
             const VU top = combine(texels[0][p], texels[1][p], wx);
@@ -248,6 +288,17 @@ class Sampler {
     // Not inlined: the levels of one vector share the code.
     HWY_NOINLINE void sampleLevel(const TextureLevel& level, const Coordinates& at, Mask magnified,
                                   Texel& result) const {
+        if constexpr (kExtended && kShape == Shape::flat) {
+            if (sampler_.magFilter == VK_FILTER_CUBIC_EXT || sampler_.minFilter == VK_FILTER_CUBIC_EXT) {
+                filtered(sampler_.minFilter, level, at, result);
+                if (sampler_.magFilter == sampler_.minFilter || hn::AllFalse(F32(), magnified)) return;
+                Texel other;
+                filtered(sampler_.magFilter, level, at, other);
+                const auto choose = hn::RebindMask(U32(), magnified);
+                for (size_t p = 0; p < Source::kPlanes; ++p) result[p] = hn::IfThenElse(choose, other[p], result[p]);
+                return;
+            }
+        }
         const bool magLinear = sampler_.magFilter == VK_FILTER_LINEAR,
                    minLinear = sampler_.minFilter == VK_FILTER_LINEAR;
         const bool mixed = magLinear != minLinear;  // otherwise `magnified` says nothing

@@ -145,9 +145,16 @@ Status checkSampling(const TextureView& view, const SamplerState& sampler) {
             fieldError("TextureView", "samples", view.samples, "only fetches read multisampled images"));
     }
     for (const VkFilter filter : {sampler.magFilter, sampler.minFilter}) {
-        if (filter == VK_FILTER_NEAREST || filter == VK_FILTER_LINEAR) continue;
+        if (filter == VK_FILTER_NEAREST || filter == VK_FILTER_LINEAR || filter == VK_FILTER_CUBIC_EXT) continue;
         return unsupported(fieldError("SamplerState", "magFilter/minFilter", static_cast<uint32_t>(filter),
-                                      "only nearest and linear filters exist"));
+                                      "only nearest, linear and cubic filters exist"));
+    }
+    const bool cubic = sampler.magFilter == VK_FILTER_CUBIC_EXT || sampler.minFilter == VK_FILTER_CUBIC_EXT;
+    if (cubic && ((view.type != VK_IMAGE_VIEW_TYPE_2D && view.type != VK_IMAGE_VIEW_TYPE_2D_ARRAY) ||
+                  (info.optimalTilingFeatures & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_CUBIC_BIT_EXT) == 0 ||
+                  sampler.maxAnisotropy > 1 || sampler.reduction != VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE)) {
+        return unsupported(std::string("SamplerState asks for a cubic filter of ") + info.name +
+                           ": only colours of 2D views have one, without anisotropy and reduction");
     }
     for (const VkSamplerAddressMode mode : sampler.addressMode) {
         if (mode <= VK_SAMPLER_ADDRESS_MODE_MIRROR_CLAMP_TO_EDGE) continue;

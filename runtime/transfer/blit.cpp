@@ -50,22 +50,34 @@ struct Axis {
 
     struct Taps {
         uint32_t first = 0, second = 0;
-        float weight = 0;  // of the second
+        float weight = 0;                // of the second; of a cubic filter how far beyond the first
+        uint32_t before = 0, after = 0;  // of a cubic filter
     };
     Taps at(uint32_t destination, VkFilter filter) const {
         const double u = (destination + 0.5 - destination0) * sourceSpan / destinationSpan + source0;
         const auto clamp = [&](double texel) {
             return static_cast<uint32_t>(std::clamp(texel, 0.0, static_cast<double>(sourceSize - 1)));
         };
-        if (filter == VK_FILTER_NEAREST) return {clamp(std::floor(u)), clamp(std::floor(u)), 0};
+        if (filter == VK_FILTER_NEAREST) return {clamp(std::floor(u)), clamp(std::floor(u)), 0, 0, 0};
         const double floor = std::floor(u - 0.5);
-        return {clamp(floor), clamp(floor + 1), static_cast<float>(u - 0.5 - floor)};
+        return {clamp(floor), clamp(floor + 1), static_cast<float>(u - 0.5 - floor), clamp(floor - 1),
+                clamp(floor + 2)};
     }
 };
 
 /// Equal values stay what they are, bit for bit; a weight of 0 keeps infinities of the other texel out.
 float mix(float a, float b, float weight) {
     return weight == 0 || a == b ? a : a + weight * (b - a);
+}
+
+/// Catmull-Rom ("Texel Cubic Filtering"); what mix() says of equal values and of infinities holds here.
+float mixCubic(const std::array<float, 4>& texels, float a) {
+    const float a2 = a * a, a3 = a2 * a, base = texels[1];
+    const auto term = [base](float texel, float weight) {
+        return weight == 0 || texel == base ? 0 : weight * (texel - base);
+    };
+    return base + ((term(texels[0], a2 - 0.5f * a - 0.5f * a3) + term(texels[2], 0.5f * a + (a2 + a2) - 1.5f * a3)) +
+                   term(texels[3], 0.5f * (a3 - a2)));
 }
 
 /// The values of a row of texels of a compressed level.
@@ -110,7 +122,7 @@ class Blitter {
     }
 
   private:
-    static constexpr size_t kKept = 4;  // two rows of two slices
+    static constexpr size_t kKept = 4;  // two rows of two slices, or four rows of a cubic filter
     struct Kept {
         uint64_t key = ~uint64_t{0};
         uint64_t used = 0;  // when last
@@ -120,6 +132,10 @@ class Blitter {
     PlaneRow& plane(const Axis::Taps& y, uint32_t z, PlaneRow& result) {
         PlaneRow& first = horizontal(y.first, z);
         if (y.weight == 0) return first;
+        if (source_.filter == VK_FILTER_CUBIC_EXT) {
+            return combineCubic({&horizontal(y.before, z), &first, &horizontal(y.second, z), &horizontal(y.after, z)},
+                                y.weight, result);
+        }
         return combine(first, horizontal(y.second, z), y.weight, result);
     }
 
@@ -128,6 +144,17 @@ class Blitter {
             const float *from = a.plane(c), *other = b.plane(c);
             float* to = result.plane(c);
             for (size_t i = 0; i < width_; ++i) to[i] = mix(from[i], other[i], weight);
+        }
+        return result;
+    }
+
+    PlaneRow& combineCubic(const std::array<PlaneRow*, 4>& rows, float fraction, PlaneRow& result) const {
+        for (size_t c = 0; c < 4; ++c) {
+            const std::array<const float*, 4> from{rows[0]->plane(c), rows[1]->plane(c), rows[2]->plane(c),
+                                                   rows[3]->plane(c)};
+            float* to = result.plane(c);
+            for (size_t i = 0; i < width_; ++i)
+                to[i] = mixCubic({from[0][i], from[1][i], from[2][i], from[3][i]}, fraction);
         }
         return result;
     }
@@ -153,6 +180,12 @@ class Blitter {
             if (source_.filter == VK_FILTER_NEAREST) {
                 // Integers travel as bits.
                 for (size_t i = 0; i < width_; ++i) std::memcpy(to + i, from + source_.taps[i].first, sizeof(float));
+            } else if (source_.filter == VK_FILTER_CUBIC_EXT) {
+                for (size_t i = 0; i < width_; ++i) {
+                    const Axis::Taps& tap = source_.taps[i];
+                    to[i] =
+                        mixCubic({from[tap.before], from[tap.first], from[tap.second], from[tap.after]}, tap.weight);
+                }
             } else {
                 for (size_t i = 0; i < width_; ++i) {
                     const Axis::Taps& tap = source_.taps[i];
@@ -223,7 +256,8 @@ void blitImage(const TransferContext& context, const Image& source, const Image&
     const Axis z(s[0].z, s[1].z, fromSize.depth, d[0].z, d[1].z, toSize.depth);
     const auto aspect = static_cast<VkImageAspectFlags>(from.aspectMask & -from.aspectMask);
     if (x.count == 0 || (aspect & source.format().aspects) == 0 || (aspect & destination.format().aspects) == 0) return;
-    if (destination.format().block != nullptr) return;  // nothing encodes blocks
+    if (destination.format().block != nullptr) return;                                    // nothing encodes blocks
+    if (filter == VK_FILTER_CUBIC_EXT && source.info().type != VK_IMAGE_TYPE_2D) return;  // invalid use
     const FormatOps pack = formatOps(destination.info().format, aspect, context.isa);
     BlitSource blit{source, from.mipLevel, formatOps(source.info().format, aspect, context.isa), filter, {}};
     blit.taps.reserve(x.count);
@@ -249,7 +283,7 @@ void blitImage(const TransferContext& context, const Image& source, const Image&
             const auto row = static_cast<uint32_t>(i % box.height), slice = static_cast<uint32_t>(i / box.height);
             const uint32_t target = toVolume ? z.begin + slice : to.baseArrayLayer + slice;
             const uint32_t layer = std::min(from.baseArrayLayer + slice, source.info().arrayLayers - 1);
-            const Axis::Taps depth = fromVolume ? z.at(target, filter) : Axis::Taps{layer, layer, 0};
+            const Axis::Taps depth = fromVolume ? z.at(target, filter) : Axis::Taps{layer, layer, 0, 0, 0};
             const Axis::Taps line = y.at(y.begin + row, filter);
             std::byte* texels = rowAddress(destination, to.mipLevel, y.begin + row, target, 0) +
                                 uint64_t{x.begin} * destination.format().bytesPerTexel;

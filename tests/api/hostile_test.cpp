@@ -62,7 +62,9 @@ TEST_F(Hostile, SamplerFieldsAreChecked) {
         EXPECT_EQ(made.id, 0u);
     };
     wrong([](VnSamplerDesc& d, float) { d.magFilter = static_cast<VkFilter>(77); }, "magFilter is 77");
-    wrong([](VnSamplerDesc& d, float) { d.minFilter = VK_FILTER_CUBIC_EXT; }, "minFilter is 1000015000");
+    wrong([](VnSamplerDesc& d, float) { d.minFilter = static_cast<VkFilter>(2); }, "minFilter is 2");
+    wrong([](VnSamplerDesc& d, float) { d.minFilter = VK_FILTER_CUBIC_EXT, d.maxAnisotropy = 2; },
+          "minFilter is cubic, which maxAnisotropy excludes");
     wrong([](VnSamplerDesc& d, float) { d.mipmapMode = static_cast<VkSamplerMipmapMode>(2); }, "mipmapMode is 2");
     wrong([](VnSamplerDesc& d, float) { d.addressW = static_cast<VkSamplerAddressMode>(-1); },
           "addressW is 4294967295");

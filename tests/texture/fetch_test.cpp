@@ -243,7 +243,7 @@ TEST(Checks, RefuseWithAReason) {
         },
         "slicePitch is 8");
     refused([](TextureView& v, SamplerState&) { v.type = VK_IMAGE_VIEW_TYPE_CUBE; }, "layerCount");
-    refused([](TextureView&, SamplerState& s) { s.magFilter = VK_FILTER_CUBIC_EXT; }, "Filter");
+    refused([](TextureView&, SamplerState& s) { s.magFilter = static_cast<VkFilter>(2); }, "Filter");
     refused([](TextureView&, SamplerState& s) { s.compareEnable = true; }, "compareEnable");
     refused(
         [](TextureView&, SamplerState& s) {

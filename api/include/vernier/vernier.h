@@ -214,7 +214,7 @@ VN_API VnResult vnGetImageView(VnDevice device, VnImage image, VnView* view);
 
 typedef struct VnSamplerDesc {
     uint32_t _start;
-    VkFilter magFilter, minFilter;                     /* 0: nearest */
+    VkFilter magFilter, minFilter;                     /* 0: nearest; cubic for colours of 2D views only */
     VkSamplerMipmapMode mipmapMode;                    /* 0: nearest */
     VkSamplerAddressMode addressU, addressV, addressW; /* 0: repeat */
     float lodBias;                                     /* levels; -15 .. 15 */
