@@ -28,6 +28,9 @@ constexpr UsageNeed kUsageNeeds[] = {
      VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT | VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT},
     {VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT,
      VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT | VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT},
+    // Mesa's Zink sets it without asking for its extension. An image needs nothing more for it.
+    {VK_IMAGE_USAGE_ATTACHMENT_FEEDBACK_LOOP_BIT_EXT,
+     VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT | VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT},
 };
 constexpr VkImageUsageFlags kKnownUsages = [] {
     VkImageUsageFlags all = 0;
@@ -35,7 +38,10 @@ constexpr VkImageUsageFlags kKnownUsages = [] {
     return all;
 }();
 
+// Aliases and changing sample locations ask for nothing: the same description always gives the same layout, and depths
+// are kept as they are.
 constexpr VkImageCreateFlags kKnownFlags =
+    VK_IMAGE_CREATE_ALIAS_BIT | VK_IMAGE_CREATE_SAMPLE_LOCATIONS_COMPATIBLE_DEPTH_BIT_EXT |
     VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT | VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT |
     VK_IMAGE_CREATE_BLOCK_TEXEL_VIEW_COMPATIBLE_BIT | VK_IMAGE_CREATE_EXTENDED_USAGE_BIT |
     VK_IMAGE_CREATE_2D_VIEW_COMPATIBLE_BIT_EXT;
