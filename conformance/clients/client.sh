@@ -61,3 +61,15 @@ picture() {
     shown=$seen
     [ "$seen" -ge "$colours" ]
 }
+
+# The web clients and what they need from npm, in a folder that may be written to; the working directory afterwards.
+use_web() {
+    need node npm
+    local home=${XDG_CACHE_HOME:-$HOME/.cache}/vernier-web
+    mkdir -p "$home"
+    cp "$clients"/web/* "$home"
+    cd "$home" || exit 1
+    # The package webgpu fetches nothing when it is installed; its script only checks the platform.
+    [ -d node_modules/webgpu ] && [ -d node_modules/three ] && [ -d node_modules/playwright-core ] ||
+        npm install --no-audit --no-fund >"$out/npm.log" 2>&1 || { echo "no packages from npm"; exit 77; }
+}
