@@ -33,7 +33,8 @@ namespace {
     X(CreateCommandPool) X(DestroyCommandPool) X(AllocateCommandBuffers) X(BeginCommandBuffer) X(EndCommandBuffer) \
     X(CmdBeginRenderPass) X(CmdBindPipeline) X(CmdBindDescriptorSets) X(CmdDraw) X(CmdEndRenderPass) \
     X(CmdCopyImageToBuffer) X(CmdFillBuffer) X(CreateFence) X(DestroyFence) X(QueueSubmit) X(WaitForFences) \
-    X(DeviceWaitIdle)
+    X(DeviceWaitIdle) X(CreateHeadlessSurfaceEXT) X(DestroySurfaceKHR) X(GetPhysicalDeviceSurfaceFormatsKHR) \
+    X(CreateSwapchainKHR) X(DestroySwapchainKHR) X(GetSwapchainImagesKHR) X(AcquireNextImageKHR) X(QueuePresentKHR)
 // clang-format on
 
 PFN_vkGetInstanceProcAddr getProc = nullptr;
@@ -102,7 +103,10 @@ class SmallProgram {
     if (const VkResult tried = (call); tried != VK_SUCCESS) return tried
     VkResult all() {
         const auto create = reinterpret_cast<PFN_vkCreateInstance>(getProc(nullptr, "vkCreateInstance"));
-        const auto info = make<VkInstanceCreateInfo>(VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO);
+        auto info = make<VkInstanceCreateInfo>(VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO);
+        const char* const surfaces[] = {VK_KHR_SURFACE_EXTENSION_NAME, VK_EXT_HEADLESS_SURFACE_EXTENSION_NAME};
+        info.enabledExtensionCount = 2;
+        info.ppEnabledExtensionNames = surfaces;
         TRY(create(&info, nullptr, &instance_));
         api_ = Api(instance_);
         uint32_t count = 1;
@@ -115,12 +119,16 @@ class SmallProgram {
         auto device = make<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
         device.queueCreateInfoCount = 1;
         device.pQueueCreateInfos = &queue;
+        const char* const swapchains[] = {VK_KHR_SWAPCHAIN_EXTENSION_NAME};
+        device.enabledExtensionCount = 1;
+        device.ppEnabledExtensionNames = swapchains;
         TRY(api_.CreateDevice(physical, &device, nullptr, &device_));
         api_.GetDeviceQueue(device_, 0, 0, &queue_);
         TRY(makeResources());
         TRY(makePass());
         TRY(makePipeline());
-        return draw();
+        TRY(draw());
+        return present(physical);
     }
 
     VkResult makeBuffer(VkDeviceSize size, VkBufferUsageFlags usage, VkBuffer* buffer, VkDeviceMemory* memory,
@@ -314,12 +322,44 @@ class SmallProgram {
         TRY(api_.QueueSubmit(queue_, 1, &submit, fence_));
         return api_.WaitForFences(device_, 1, &fence_, VK_TRUE, UINT64_MAX);
     }
+
+    /// Shows an image of a swapchain, as it is.
+    VkResult present(VkPhysicalDevice physical) {
+        const auto headless = make<VkHeadlessSurfaceCreateInfoEXT>(VK_STRUCTURE_TYPE_HEADLESS_SURFACE_CREATE_INFO_EXT);
+        TRY(api_.CreateHeadlessSurfaceEXT(instance_, &headless, nullptr, &surface_));
+        uint32_t count = 1;
+        VkSurfaceFormatKHR format{};
+        const VkResult listed = api_.GetPhysicalDeviceSurfaceFormatsKHR(physical, surface_, &count, &format);
+        if (listed != VK_SUCCESS && listed != VK_INCOMPLETE) return listed;
+        auto info = make<VkSwapchainCreateInfoKHR>(VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR);
+        info.surface = surface_;
+        info.minImageCount = 3;
+        info.imageFormat = format.format;
+        info.imageExtent = {kSize, kSize};
+        info.imageArrayLayers = 1;
+        info.imageUsage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+        info.preTransform = VK_SURFACE_TRANSFORM_IDENTITY_BIT_KHR;
+        info.compositeAlpha = VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR;
+        info.presentMode = VK_PRESENT_MODE_IMMEDIATE_KHR;
+        TRY(api_.CreateSwapchainKHR(device_, &info, nullptr, &swapchain_));
+        for (int frame = 0; frame < 4; ++frame) {
+            uint32_t index = 0;
+            TRY(api_.AcquireNextImageKHR(device_, swapchain_, UINT64_MAX, VK_NULL_HANDLE, VK_NULL_HANDLE, &index));
+            auto shown = make<VkPresentInfoKHR>(VK_STRUCTURE_TYPE_PRESENT_INFO_KHR);
+            shown.swapchainCount = 1;
+            shown.pSwapchains = &swapchain_;
+            shown.pImageIndices = &index;
+            TRY(api_.QueuePresentKHR(queue_, &shown));
+        }
+        return VK_SUCCESS;
+    }
 #undef TRY
 
     void destroy() {
         if (!instance_) return;
         if (device_) {
             api_.DeviceWaitIdle(device_);
+            api_.DestroySwapchainKHR(device_, swapchain_, nullptr);
             api_.DestroyFence(device_, fence_, nullptr);
             api_.DestroyCommandPool(device_, commands_, nullptr);
             api_.DestroyPipeline(device_, pipeline_, nullptr);
@@ -337,6 +377,7 @@ class SmallProgram {
                 api_.FreeMemory(device_, memory, nullptr);
             api_.DestroyDevice(device_, nullptr);
         }
+        api_.DestroySurfaceKHR(instance_, surface_, nullptr);
         api_.DestroyInstance(instance_, nullptr);
     }
 
@@ -360,6 +401,8 @@ class SmallProgram {
     VkPipeline pipeline_ = VK_NULL_HANDLE;
     VkCommandPool commands_ = VK_NULL_HANDLE;
     VkFence fence_ = VK_NULL_HANDLE;
+    VkSurfaceKHR surface_ = VK_NULL_HANDLE;
+    VkSwapchainKHR swapchain_ = VK_NULL_HANDLE;
     bool inShader_ = false;
 };
 
