@@ -302,7 +302,7 @@ void Assembler::assemble(const PreparedDraw& draw, uint32_t drawIndex, Chunk& ch
     if (vertexCount == 3 && draw.packsSmall && draw.state->polygonMode == VK_POLYGON_MODE_FILL &&
         !draw.state->depthBiasEnable && !draw.state->rasterizerDiscard && !isRouted() && vertices_.culled.empty())
         return assembleTriangles(draw, drawIndex, chunk);
-    const bool stippled = draw.state->stippledLine && vertexCount == 2;
+    const bool stippled = draw.stipples && vertexCount == 2;
     for (const LocalPrimitive& primitive : primitives_) {
         if (stippled && primitive.startsStrip) setup_.restartStipple();
         assemblePrimitive(draw, drawIndex, primitive, vertexCount, chunk);

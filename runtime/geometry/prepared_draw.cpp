@@ -92,6 +92,9 @@ PreparedDraw prepareDraw(const DrawCall& call, const VkRect2D& renderArea) {
     draw.subPixelBits = call.pipeline->accuracy().subPixelBits;
     draw.positions =
         draw.state->sampleLocations ? call.dynamic->sampleLocations.data() : samplePositions(draw.plan->samples);
+    constexpr uint16_t kNoGaps = 0xFFFF;
+    draw.stipples = draw.state->stippledLine &&
+                    (call.dynamic->lineStipplePattern != kNoGaps || !draw.plan->skips.has(Skip::idleState));
     draw.samplesAtCentre = draw.plan->samples == 1 && draw.positions[0].x16 == 8 && draw.positions[0].y16 == 8;
     draw.firstViewport = setUpViewport(draw, 0, renderArea);
     if (draw.plan->viewportIndexSlot != kNoSlot)

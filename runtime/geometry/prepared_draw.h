@@ -40,6 +40,7 @@ struct PreparedDraw {
     uint32_t viewIndex = 0;                     // multiview: the view, and the layer that the draw goes to
     uint32_t subPixelBits = 8;
     const SamplePosition* positions = nullptr;  // of all samples of a pixel
+    bool stipples = false;                      // lines, by a pattern that has gaps
     bool samplesAtCentre = true;                // one sample, in the middle
     bool packsSmall = false;                    // primitives of a few pixels are drawn many at a time
     std::vector<VertexRun> runs;

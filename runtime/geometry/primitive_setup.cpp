@@ -86,7 +86,7 @@ void PrimitiveSetup::addPolygon(const PreparedDraw& draw, const PrimitiveInfo& i
     }
     switch (draw.state->polygonMode) {
         case VK_POLYGON_MODE_LINE:
-            if (draw.state->stippledLine) restartStipple();
+            if (draw.stipples) restartStipple();
             for (size_t n = 0; n < polygon.size(); ++n)
                 if ((hiddenEdges >> n & 1) == 0)
                     addSegment(draw, info, style, polygon[n], polygon[(n + 1) % polygon.size()]);
@@ -180,7 +180,7 @@ void PrimitiveSetup::addSegment(const PreparedDraw& draw, const PrimitiveInfo& i
         pixels ? bresenhamShape(from, to, width, bits)
                : rectangleShape(from, to, width, bits, mode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT);
     shape.stippleStart = stipple_;
-    if (draw.state->stippledLine) stipple_ += pixels ? shape.count : segmentLength(shape, bits);
+    if (draw.stipples) stipple_ += pixels ? shape.count : segmentLength(shape, bits);
     if ((pixels && shape.count == 0) || from == to) return;
     addShape(draw, info, style, shape, a, b, nullptr);
 }

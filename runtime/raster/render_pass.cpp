@@ -367,7 +367,7 @@ void RenderPass::Impl::add(PreparedDraw draw) {
                       sameBindings(self.draws.back().call.fragmentResources, call.fragmentResources);
     draw.fragmentState = same ? self.draws.back().fragmentState : index;
     self.recordedPrimitives += draw.primitives();
-    self.stippled |= draw.state->stippledLine;
+    self.stippled |= draw.stipples;
     self.draws.push_back(std::move(draw));
     self.commands.push_back({index, nullptr, self.segment});
 }

@@ -136,7 +136,7 @@ uint32_t coverRectangle(const PreparedDraw& draw, const Window& window, const Sh
                         int32_t tileY, BlockCoverage* blocks) {
     const CoverTileFn cover = coverTileFunction(draw.call.pipeline->isa());
     const uint32_t count = cover(edgesOf(draw, window, rectangleSides(shape), tileX, tileY), blocks);
-    if (!draw.state->stippledLine) return count;
+    if (!draw.stipples) return count;
     const uint32_t samples = draw.plan->samples;
     const RectangleStipple stipple(draw, shape);
     uint32_t kept = 0;
@@ -167,8 +167,7 @@ uint32_t coverSmooth(const PreparedDraw& draw, const Window& window, const Shape
         for (uint64_t rest = windowMask(window, block); rest != 0; rest &= rest - 1) {
             const int bit = std::countr_zero(rest);
             const int32_t x = tileX + block.x + (bit & 7), y = tileY + block.y + (bit >> 3);
-            if (coveredArea(shape, x, y, draw.subPixelBits) > 0 &&
-                (!draw.state->stippledLine || stipple.draws(x + 0.5, y + 0.5)))
+            if (coveredArea(shape, x, y, draw.subPixelBits) > 0 && (!draw.stipples || stipple.draws(x + 0.5, y + 0.5)))
                 mask |= uint64_t{1} << bit;
         }
         return coverPixels(block, draw.plan->samples, mask);
@@ -184,7 +183,7 @@ uint32_t coverBresenham(const PreparedDraw& draw, const Window& window, const Sh
     for (int32_t at = low; at <= high; ++at) {
         const int32_t number = (majorOrigin + at - shape.first) * shape.step;
         if (number < 0 || number >= shape.count) continue;
-        if (draw.state->stippledLine &&
+        if (draw.stipples &&
             !stippleBit(*draw.call.dynamic, static_cast<uint64_t>(shape.stippleStart) + static_cast<uint64_t>(number)))
             continue;
         const int32_t minor = bresenhamMinor(shape, majorOrigin + at, draw.subPixelBits) - minorOrigin;
