@@ -36,11 +36,11 @@ class ExecutablesTest : public ComputeTest {
         EXPECT_NE(found, nullptr) << name;
         return found;
     }
-    VkPipeline graphics() {
+    VkPipeline graphics(const char* fragment = nullptr) {
         const TestImage color = makeImage(VK_FORMAT_R8G8B8A8_UNORM, {8, 8}, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
         PipelineDesc desc;
         desc.vertex = makeShader(VK_SHADER_STAGE_VERTEX_BIT, "#version 450\nvoid main() { gl_Position = vec4(0); }");
-        desc.fragment = constantColor("1, 1, 1, 1");
+        desc.fragment = fragment ? makeShader(VK_SHADER_STAGE_FRAGMENT_BIT, fragment) : constantColor("1, 1, 1, 1");
         desc.extent = {8, 8};
         desc.flags = VK_PIPELINE_CREATE_CAPTURE_INTERNAL_REPRESENTATIONS_BIT_KHR;
         return makePipeline(makePass(color).pass, desc);
@@ -104,6 +104,18 @@ TEST_F(ExecutablesTest, statisticsTellWhatRunsHowOften) {
     EXPECT_EQ(figures.at("lanes") % 16, 0u);
     EXPECT_GT(figures.at("cost, invocation"), 0u);
     EXPECT_GE(figures.at("operations, invocation"), 4u) << "a load, two operations, a root, a store";
+}
+
+TEST_F(ExecutablesTest, colorsWithoutAnAttachmentCostNothing) {
+    const auto instructions = [&](const char* more) {
+        const std::string fragment = std::string(
+                                         "#version 450\nlayout(location = 0) out vec4 color;\n"
+                                         "layout(location = 1) out vec4 other;\n"
+                                         "void main() { color = gl_FragCoord;") +
+                                     more + "}";
+        return statistics(graphics(fragment.c_str()), 1).at("instructions");
+    };
+    EXPECT_EQ(instructions(" other = sin(gl_FragCoord) * gl_FragCoord;"), instructions(""));
 }
 
 TEST_F(ExecutablesTest, representationsAreText) {
