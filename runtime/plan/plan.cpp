@@ -388,6 +388,9 @@ Plan makePlan(const GraphicsState& state, const ShaderProgram& program) {
             plan.coarse = accuracy.shading == ShadingRate::twoByTwo && canShadeCoarsely(plan, *fragment);
         }
     }
+    // Flat inputs have no arithmetic, and nobody else asks the planes.
+    if (plan.smoothCount + plan.linearCount == 0 && !plan.usesFragCoord && !plan.depth.any() && !plan.depth.write)
+        plan.preciseInterpolation = false;
     plan.packsSmall = packsSmall(plan);
     collectFacts(state, program, plan);
     return plan;

@@ -268,5 +268,17 @@ TEST_F(Interpolate, NoHelpersWithoutDerivatives) {
     EXPECT_EQ(statistics_.helperInvocations, 0u);
 }
 
+TEST(Interpolation, DoublesOnlyWhereSomethingIsInterpolated) {
+    PipelineOptions options;
+    options.accuracy.interpolation = InterpolationArithmetic::doubleFloat;
+    options.state = plainState(VK_FORMAT_R8G8B8A8_UNORM);
+    EXPECT_TRUE(makePipeline(options)->plan().preciseInterpolation);
+    options.fragment = "one_frag";
+    EXPECT_FALSE(makePipeline(options)->plan().preciseInterpolation);
+    options.state = plainState(VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_D32_SFLOAT);
+    options.state.depthTest = options.state.depthWrite = true;
+    EXPECT_TRUE(makePipeline(options)->plan().preciseInterpolation) << "depth is";
+}
+
 }  // namespace
 }  // namespace vernier::raster_test
