@@ -1,5 +1,8 @@
 #include "bench/accuracy/measure.h"
 
+#include <dlfcn.h>
+#include <vernier/vernier.h>
+
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -16,13 +19,19 @@ using Json = nlohmann::json;
 
 constexpr double kTimeoutSeconds = 120;
 
-/// Tells builds of this program apart: figures of one build say nothing about another.
+/// Tells builds of this program and of the library that draws apart: figures of one build say nothing about another.
 std::string programStamp() {
-    std::error_code error;
-    const std::filesystem::path self = "/proc/self/exe";
-    const auto size = std::filesystem::file_size(self, error);
-    const auto time = std::filesystem::last_write_time(std::filesystem::canonical(self, error), error);
-    return std::to_string(size) + "-" + std::to_string(time.time_since_epoch().count());
+    Dl_info library{};
+    ::dladdr(reinterpret_cast<const void*>(&vnCreateDevice), &library);
+    std::string stamp;
+    for (const std::filesystem::path file : {"/proc/self/exe", library.dli_fname != nullptr ? library.dli_fname : ""}) {
+        std::error_code error;
+        const std::filesystem::path real = std::filesystem::canonical(file, error);
+        const auto size = std::filesystem::file_size(real, error);
+        const auto time = std::filesystem::last_write_time(real, error);
+        stamp += std::to_string(size) + "-" + std::to_string(time.time_since_epoch().count()) + " ";
+    }
+    return stamp;
 }
 
 std::filesystem::path folderOf(const MeasureOptions& options, const AccuracyPosition& position) {

@@ -78,7 +78,8 @@ std::string effectsChart(std::span<const EffectRow> rows) {
         svg += svgLabel(kLeft - 6, y + 11, "end", row->effect->name);
         bar(Effect::kIdle, y + 2, kChartColors[0]);
         bar(Effect::kNeeded, y + 8, kChartColors[4]);
-        svg += svgLabel(kLeft + std::min(row->ratio(Effect::kNeeded), kMost) * kUnit + 5, y + 14, "start",
+        const double longest = std::max(row->ratio(Effect::kNeeded), row->ratio(Effect::kIdle));
+        svg += svgLabel(kLeft + std::min(longest, kMost) * kUnit + 5, y + 14, "start",
                         format("%.2f", row->ratio(Effect::kNeeded)));
         y += kRow;
     }
