@@ -41,6 +41,7 @@ foreach(language c cpp)
         message(FATAL_ERROR "the picture of the starter in ${language} has only ${bytes} bytes")
     endif()
 endforeach()
+
 # Programs start on the installed driver.
 if(EXISTS ${WORK}/prefix/bin/vernier)
     must(${WORK}/prefix/bin/vernier run sh -c "test -f \$VK_DRIVER_FILES")
