@@ -24,7 +24,7 @@ AppOptions options() {
 
 class Comparison {
   public:
-    explicit Comparison(const Map& map) : map_(map), app_(options()), renderer_(app_, map) {
+    explicit Comparison(const Map& map) : app_(options()), renderer_(app_, map) {
         numbers_ = app_.target(VK_FORMAT_R32_UINT);
     }
 
@@ -72,7 +72,6 @@ class Comparison {
         return false;
     }
 
-    const Map& map_;
     App app_;
     WalkerRenderer renderer_;
     Target numbers_;
