@@ -112,11 +112,14 @@ int App::runWindow(const std::function<void(const Frame&)>& frame) {
     std::fputs(keyHelp(options_.options).c_str(), stdout);
     const Clock::time_point start = Clock::now();
     Frame now{0, 0, {}};
+    std::string choice;  // what was switched last
+    double lastTitle = 0;
+    uint32_t framesSince = 0;
     while (window.poll(now.input)) {
         for (const int key : now.input.pressed) {
             if (key == kKeyF1) std::fputs(keyHelp(options_.options).c_str(), stdout);
             if (const std::string text = pressKey(options_.options, key); !text.empty())
-                window.setTitle(options_.title + " - " + text);
+                choice = " - " + text, lastTitle = 0;
         }
         const double seconds = options_.time + secondsBetween(start, Clock::now());
         now.elapsed = now.seconds > 0 ? seconds - now.seconds : 0;
@@ -124,6 +127,14 @@ int App::runWindow(const std::function<void(const Frame&)>& frame) {
         frame(now);
         readPixels();
         window.show(pixels_);
+        ++framesSince;
+        if (const double since = now.seconds - lastTitle; lastTitle == 0 || since > 0.5) {
+            char rate[32] = "";
+            if (lastTitle > 0) std::snprintf(rate, sizeof rate, " - %.0f frames/s", framesSince / since);
+            window.setTitle(options_.title + choice + rate);
+            lastTitle = now.seconds;
+            framesSince = 0;
+        }
     }
     return 0;
 }
