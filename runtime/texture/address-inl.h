@@ -150,7 +150,7 @@ struct CubicAxis {
     VF fraction;
 };
 
-HWY_INLINE void cubicTaps(VF s, const Axis& axis, CubicAxis& taps) {
+HWY_NOINLINE inline void cubicTaps(VF s, const Axis& axis, CubicAxis& taps) {
     const VF u = hn::Sub(texelCoordinate<Wrap::any>(s, axis), splatFloat(0.5f));
     const VF whole = hn::Floor(u);
     taps.fraction = hn::Sub(u, whole);
@@ -158,6 +158,7 @@ HWY_INLINE void cubicTaps(VF s, const Axis& axis, CubicAxis& taps) {
     Axis reaching = axis;
     reaching.offset = 1;
     const VI first = hn::Add(hn::ConvertTo(I32(), whole), splatInt(axis.offset - 1));
+#pragma GCC unroll 1
     for (int k = 0; k < 4; ++k)
         taps.index[k] = wrapIndex<Wrap::any>(hn::Add(first, splatInt(k)), reaching, taps.inside[k]);
 }

@@ -35,7 +35,7 @@ SampleFn byShape(VkImageViewType type) {
 }
 
 SampleFn selectExtendedRoutine(const TextureView& view, const SamplerState& sampler) {
-    const bool rgba8 = rgba8Kind(view, sampler) != Rgba8Kind::none;
+    const bool rgba8 = rgba8Kind(view, sampler) != Rgba8Kind::none && !isCubic(sampler);
     return rgba8 ? byShape<Rgba8Source>(view.type) : byShape<AnySource<4>>(view.type);
 }
 

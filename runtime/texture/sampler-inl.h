@@ -67,6 +67,8 @@ class Sampler {
 
   protected:
     using Mask = hn::Mask<F32>;
+    // Cubic filters are of flat images, and by the source that reads every format.
+    static constexpr bool kHasCubic = kExtended && kShape == Shape::flat && !Source::kFinite;
 
     /// `shift`: added to s, t, r; nullptr: nothing is.
     HWY_INLINE Coordinates coordinates(uint32_t first, uint32_t count, const VF* shift = nullptr) const {
@@ -225,6 +227,7 @@ class Sampler {
         cubicTaps(at.t, axis(1, level.height), y);
         const CubicWeights across = cubicWeights(x.fraction), down = cubicWeights(y.fraction);
         Texel rows[4];
+#pragma GCC unroll 1
         for (int j = 0; j < 4; ++j) {
             TexelPosition position[4];
             VI inside[4];
@@ -243,18 +246,6 @@ class Sampler {
         for (size_t p = 0; p < Source::kPlanes; ++p) {
             const VF column[4] = {floatOf(rows[0][p]), floatOf(rows[1][p]), floatOf(rows[2][p]), floatOf(rows[3][p])};
             result[p] = bitsOf(mixCubic(column, down));
-        }
-    }
-
-    /// By one filter, of those that extended samplers have.
-    HWY_INLINE void filtered(VkFilter filter, const TextureLevel& level, const Coordinates& at, Texel& result) const {
-        switch (filter) {
-            case VK_FILTER_CUBIC_EXT:
-                return cubic(level, at, result);
-            case VK_FILTER_LINEAR:
-                return linear(level, at, result);
-            default:
-                return nearest(level, at, result);
         }
     }
 
@@ -288,31 +279,36 @@ class Sampler {
     // Not inlined: the levels of one vector share the code.
     HWY_NOINLINE void sampleLevel(const TextureLevel& level, const Coordinates& at, Mask magnified,
                                   Texel& result) const {
-        if constexpr (kExtended && kShape == Shape::flat) {
-            if (sampler_.magFilter == VK_FILTER_CUBIC_EXT || sampler_.minFilter == VK_FILTER_CUBIC_EXT) {
-                filtered(sampler_.minFilter, level, at, result);
-                if (sampler_.magFilter == sampler_.minFilter || hn::AllFalse(F32(), magnified)) return;
-                Texel other;
-                filtered(sampler_.magFilter, level, at, other);
-                const auto choose = hn::RebindMask(U32(), magnified);
-                for (size_t p = 0; p < Source::kPlanes; ++p) result[p] = hn::IfThenElse(choose, other[p], result[p]);
-                return;
-            }
+        bool magLinear = sampler_.magFilter == VK_FILTER_LINEAR, minLinear = sampler_.minFilter == VK_FILTER_LINEAR;
+        bool magCubic = false, minCubic = false;
+        if constexpr (kHasCubic) {
+            magCubic = sampler_.magFilter == VK_FILTER_CUBIC_EXT;
+            minCubic = sampler_.minFilter == VK_FILTER_CUBIC_EXT;
+            if (magCubic && minCubic) return cubic(level, at, result);
+            // All lanes by the other filter, then those that are cubic.
+            if (magCubic) magLinear = minLinear;
+            if (minCubic) minLinear = magLinear;
         }
-        const bool magLinear = sampler_.magFilter == VK_FILTER_LINEAR,
-                   minLinear = sampler_.minFilter == VK_FILTER_LINEAR;
         const bool mixed = magLinear != minLinear;  // otherwise `magnified` says nothing
         const Mask isLinear = magLinear ? magnified : hn::Not(magnified);
         const bool anyLinear = mixed ? !hn::AllFalse(F32(), isLinear) : magLinear;
         const bool anyNearest = mixed ? !hn::AllTrue(F32(), isLinear) : !magLinear;
         if (anyLinear) linear(level, at, result);
-        if (!anyNearest) return;
-        Texel sharp;
-        nearest(level, at, sharp);
-        const auto choose = hn::RebindMask(U32(), isLinear);
-        unrolled<Source::kPlanes>([&](auto p) VERNIER_INLINE_LAMBDA {
-            result[p] = anyLinear ? hn::IfThenElse(choose, result[p], sharp[p]) : sharp[p];
-        });
+        if (anyNearest) {
+            Texel sharp;
+            nearest(level, at, sharp);
+            const auto choose = hn::RebindMask(U32(), isLinear);
+            unrolled<Source::kPlanes>([&](auto p) VERNIER_INLINE_LAMBDA {
+                result[p] = anyLinear ? hn::IfThenElse(choose, result[p], sharp[p]) : sharp[p];
+            });
+        }
+        if constexpr (kHasCubic) {
+            if (!magCubic && !minCubic) return;
+            Texel smooth;
+            cubic(level, at, smooth);
+            const auto choose = hn::RebindMask(U32(), magCubic ? magnified : hn::Not(magnified));
+            for (size_t p = 0; p < Source::kPlanes; ++p) result[p] = hn::IfThenElse(choose, smooth[p], result[p]);
+        }
     }
 
     /// Each lane from its own level: one pass per level that occurs, nearly always one or two.
