@@ -61,9 +61,9 @@ uint64_t bigEndian(std::span<const std::byte> bytes) {
 
 // Direct3D 11.3 Functional Specification, "Error Tolerance" of BC1 to BC5: an interpolated value may be off by a code
 // of eight bits and 3 % of the distance between the end points. The Khronos specification names no precision.
-Interval blended(double first, double second, double weight) {
+Interval blended(double first, double second, double weight, double code = 1.0 / 255) {
     const double value = first + (second - first) * weight;
-    const double slack = 1.0 / 255 + 0.03 * std::abs(second - first);
+    const double slack = code + 0.03 * std::abs(second - first);
     return {value, value - slack, value + slack};
 }
 
@@ -111,7 +111,7 @@ Interval bc4Value(uint64_t word, uint32_t texel, bool isSigned) {
     if (index < 2) return (index == 0 ? a : b) / scale;
     const bool six = isSigned ? static_cast<int8_t>(word & 255) > static_cast<int8_t>(word >> 8 & 255) : a > b;
     if (!six && index >= 6) return index == 6 ? lowest : 1.0;
-    return blended(a / scale, b / scale, static_cast<double>(index - 1) / (six ? 7 : 5));
+    return blended(a / scale, b / scale, static_cast<double>(index - 1) / (six ? 7 : 5), 1 / scale);
 }
 
 // ---- ETC2 and EAC ----

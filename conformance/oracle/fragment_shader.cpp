@@ -269,7 +269,7 @@ Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSou
     };
     resources.end = RangeEnd::nominal;
     resources.runs.clear();
-    resources.sawRange = false;
+    resources.sawRange = resources.sawZero = false;
     resources.flags = 0;
     const HomogeneousTriangle<double>& shape = source.triangle->homogeneous();
     const auto inputs = inputsAt(source, shape, x, y, place, 0, 0);
@@ -296,7 +296,8 @@ Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSou
             return s.error();
     }
     if (filtered) {
-        for (const RangeEnd end : {RangeEnd::low, RangeEnd::high}) {
+        for (const RangeEnd end : {RangeEnd::low, RangeEnd::high, RangeEnd::nearZero}) {
+            if (end == RangeEnd::nearZero && !resources.sawZero) continue;
             resources.end = end;
             if (Status s = add(runs.filtered, nominal_, inputs); !s) return s.error();
         }

@@ -5,7 +5,7 @@
 //     FragCoord.xy does not). Freedom coarser than a 256th of a pixel also turns and stretches triangles: then every
 //     coordinate of every vertex moves by itself, and the six deviations add up;
 //   - centroid inputs at each of the places they may choose;
-//   - every texture read at the lower, then at the upper end of its range;
+//   - every texture read at the lower, then at the upper end of its range, and at zero if that is inside;
 //   - derivatives per quad instead of per row and column (where the module takes derivatives);
 //   - every result rounded to float32; its deviation, times 8, stands for the float rounding of another
 //   implementation.

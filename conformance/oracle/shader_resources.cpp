@@ -93,7 +93,11 @@ reference::Texel<double> ShaderResources::deliver(const SampleResult& result, co
     for (size_t c = 0; c < 4; ++c) {
         const Interval& v = result.color[c];
         sawRange = sawRange || !v.isExact();
-        const double number = end == RangeEnd::nominal ? v.value : end == RangeEnd::low ? v.low : v.high;
+        sawZero = sawZero || (v.low < 0 && v.high > 0);
+        const double number = end == RangeEnd::nominal ? v.value
+                              : end == RangeEnd::low   ? v.low
+                              : end == RangeEnd::high  ? v.high
+                                                       : std::clamp(0.0, v.low, v.high);
         texel[c] = shape.floating
                        ? reference::Scalar<double>::ofNumber(number)
                        : reference::Scalar<double>::ofBits(static_cast<uint32_t>(static_cast<int64_t>(number)));

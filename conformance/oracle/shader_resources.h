@@ -1,7 +1,8 @@
 // The world outside a shader for the reference interpreter: a draw's buffers, push constants and textures.
 //
 // A texture read has a range of permitted values. A run of the shader sees one end of it: `end` selects
-// nominal values, all lower ends or all upper ends, and the caller compares the outcomes.
+// nominal values, all lower ends, all upper ends, or what is nearest to zero, where abs() turns; and the caller
+// compares the outcomes.
 #pragma once
 
 #include "conformance/oracle/memory.h"
@@ -15,7 +16,7 @@
 
 namespace vernier::conformance::exact {
 
-enum class RangeEnd : uint8_t { nominal, low, high };
+enum class RangeEnd : uint8_t { nominal, low, high, nearZero };
 
 /// A texel that one run of a shader stores.
 struct RunWrite {
@@ -31,6 +32,7 @@ class ShaderResources : public reference::Resources<double> {
 
     RangeEnd end = RangeEnd::nominal;
     bool sawRange = false;  // a texture read had more than one permitted value; sticky until reset by the caller
+    bool sawZero = false;   // zero was strictly inside of such a range; the same
     OracleFlags flags = 0;  // of OracleFlag, from the texels read; sticky
     bool wrote = false;     // a storage buffer was asked for, or a texel stored outside of runs; sticky
     std::vector<std::vector<RunWrite>> runs;  // what each run since the caller's last reset stored

@@ -1,5 +1,6 @@
 // The whole-scene oracle's rules beyond filled triangles of one sample: answers known by hand, and renderings with one
 // deliberate fault each, which must leave the permitted ranges.
+#include "conformance/scenes/shapes.h"
 #include "tests/oracle/small_scene.h"
 
 #include <gtest/gtest.h>
@@ -97,6 +98,31 @@ TEST(Stencils, StayOpenFromPassToPass) {
     EXPECT_EQ(judge(scene(8.501f), scene(8.495f)).outside, 0u);
     EXPECT_EQ(judge(scene(8.501f), scene(9.4f)).outside, 0u) << "no centre between";
     EXPECT_EQ(judge(scene(8.501f), scene(7.4f)).outside, 16u);
+}
+
+// A texel that may be a little above or below 0: its size may be 0.
+TEST(Ranges, ReachZeroWhereAShaderTurnsThem) {
+    SceneRecorder record("size", "");
+    // End points 10 and -12 of 127, all texels three sevenths of the way.
+    Bytes block;
+    for (const int byte : {0x0a, 0xf4, 0x24, 0x49, 0x92, 0x24, 0x49, 0x92})
+        block.push_back(static_cast<std::byte>(byte));
+    const uint32_t texture = record.texture("block", VK_FORMAT_BC4_SNORM_BLOCK, {4, 4}, {block});
+    const uint32_t target = record.colorTarget("color", VK_FORMAT_R32G32B32A32_SFLOAT, kExtent);
+    const uint32_t pipeline = record.pipeline(record.vertex(kCoverVertexGlsl), record.fragment(R"(#version 450
+layout(binding = 0) uniform sampler2D block;
+layout(location = 0) out vec4 color;
+void main() { color = abs(texelFetch(block, ivec2(0), 0)); }
+)"));
+    record.pass(kExtent).color(target, {0, 0, 0, 0});
+    record.draw(pipeline, 3).texture(0, texture, record.sampler(VK_FILTER_NEAREST));
+    record.output(target);
+    const auto scene = record.finish();
+    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    const OraclePixel pixel = at(render(*scene), 3, 3);
+    EXPECT_NEAR(pixel.value[0], (10 - 22 * 3.0 / 7) / 127, 1e-9);
+    EXPECT_LE(pixel.low[0], 0);
+    EXPECT_GT(pixel.high[0], 1.0 / 127);
 }
 
 TEST(LogicOperations, OnStoredCodes) {
