@@ -42,7 +42,8 @@ class ExecutablesTest : public ComputeTest {
         desc.vertex = makeShader(VK_SHADER_STAGE_VERTEX_BIT, "#version 450\nvoid main() { gl_Position = vec4(0); }");
         desc.fragment = fragment ? makeShader(VK_SHADER_STAGE_FRAGMENT_BIT, fragment) : constantColor("1, 1, 1, 1");
         desc.extent = {8, 8};
-        desc.flags = VK_PIPELINE_CREATE_CAPTURE_INTERNAL_REPRESENTATIONS_BIT_KHR;
+        desc.flags =
+            VK_PIPELINE_CREATE_CAPTURE_INTERNAL_REPRESENTATIONS_BIT_KHR | VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR;
         return makePipeline(makePass(color).pass, desc);
     }
     std::vector<VkPipelineExecutablePropertiesKHR> executables(VkPipeline pipeline) {
