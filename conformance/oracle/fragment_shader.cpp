@@ -237,14 +237,13 @@ Status FragmentShader::addMoved(const FragmentSource& source, uint32_t x, uint32
     };
     constexpr double kFine = 0x1p-7;  // a 256th of a pixel and what rounding adds to it
     const bool isTriangle = source.vertices[2] != source.vertices[0];
-    if (d < kFine || !isTriangle) {
-        for (const double dx : {-d, d}) {
-            for (const double dy : {-d, d}) {
-                if (Status s = add(runs.shifted, inputsAt(source, shape, x, y, place, dx, dy)); !s) return s;
-            }
+    for (const double dx : {-d, d}) {
+        for (const double dy : {-d, d}) {
+            if (Status s = add(runs.shifted, inputsAt(source, shape, x, y, place, dx, dy)); !s) return s;
         }
-        return {};
     }
+    if (d < kFine || !isTriangle) return {};
+    // What a test decides may take all vertices together; what derivatives are, each by itself.
     for (size_t coordinate = 0; coordinate < runs.moved.size(); ++coordinate) {
         for (const double by : {-d, d}) {
             std::array<WindowVertex<double>, 3> vertices = shape.vertex;
