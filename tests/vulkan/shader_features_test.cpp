@@ -372,12 +372,7 @@ void main() {
     o = vec4(slope / 255.0, helperInvocationEXT() ? 1 : 0, 1, 1);
 })");
     const VkPipeline pipeline = makePipeline(pass.pass, desc);
-    const VkCommandBuffer commands = begin();
-    beginPass(commands, pass);
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
-    vkCmdDraw(commands, 3, 1, 0, 0);
-    vkCmdEndRenderPass(commands);
-    submit(commands);
+    drawTriangle(pass, pipeline);
     const auto texels = readImage(color, VK_IMAGE_ASPECT_COLOR_BIT, 4);
     for (uint32_t y = 0; y < kExtent.height; ++y) {
         for (uint32_t x = 0; x < kExtent.width; ++x) {

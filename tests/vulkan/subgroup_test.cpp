@@ -203,12 +203,7 @@ void main() {
 })");
     desc.extent = kExtent;
     const VkPipeline pipeline = makePipeline(pass.pass, desc);
-    const VkCommandBuffer commands = begin();
-    beginPass(commands, pass);
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
-    vkCmdDraw(commands, 3, 1, 0, 0);
-    vkCmdEndRenderPass(commands);
-    submit(commands);
+    drawTriangle(pass, pipeline);
     const std::vector<uint8_t> texels = readImage(image, VK_IMAGE_ASPECT_COLOR_BIT, 4);
     for (uint32_t y = 0; y < kExtent.height; ++y)
         for (uint32_t x = 0; x < kExtent.width; ++x)

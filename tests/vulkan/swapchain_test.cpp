@@ -267,12 +267,7 @@ TEST_F(SwapchainTest, mutableFormatsAreSeenAsOthers) {
     desc.fragment = constantColor("0.5, 0, 0, 1");
     desc.extent = kSwapchainExtent;
     const VkPipeline pipeline = makePipeline(pass.pass, desc);
-    const VkCommandBuffer commands = begin();
-    beginPass(commands, pass);
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
-    vkCmdDraw(commands, 3, 1, 0, 0);
-    vkCmdEndRenderPass(commands);
-    submit(commands);
+    drawTriangle(pass, pipeline);
     EXPECT_EQ(pixelAt(readImage(image, VK_IMAGE_ASPECT_COLOR_BIT, 4), image, 40, 40), 0xFFBC0000u);
     vkDestroyImageView(device, image.view, nullptr);
 }

@@ -160,6 +160,15 @@ void DrawTest::beginPass(VkCommandBuffer commands, const Pass& pass, VkSubpassCo
     vkCmdBeginRenderPass(commands, &info, contents);
 }
 
+void DrawTest::drawTriangle(const Pass& pass, VkPipeline pipeline) {
+    const VkCommandBuffer commands = begin();
+    beginPass(commands, pass);
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+    vkCmdDraw(commands, 3, 1, 0, 0);
+    vkCmdEndRenderPass(commands);
+    submit(commands);
+}
+
 VkShaderModule DrawTest::fullScreen(const std::string& z) {
     return makeShader(VK_SHADER_STAGE_VERTEX_BIT, R"(#version 450
 void main() {

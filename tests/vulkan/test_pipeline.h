@@ -52,6 +52,8 @@ class DrawTest : public VulkanTest {
     VkPipelineLayout makeLayout(const std::vector<VkDescriptorSetLayout>& sets, uint32_t pushBytes);
 
     void beginPass(VkCommandBuffer commands, const Pass& pass, VkSubpassContents contents = VK_SUBPASS_CONTENTS_INLINE);
+    /// A submission of one pass that draws three vertices; nothing is bound but the pipeline.
+    void drawTriangle(const Pass& pass, VkPipeline pipeline);
 
     /// A full-screen triangle without vertex buffers: gl_Position from gl_VertexIndex, at depth `z`.
     VkShaderModule fullScreen(const std::string& z = "0.5");
