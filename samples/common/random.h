@@ -5,6 +5,8 @@
 
 namespace samples {
 
+/// Numbers drawn in one expression come in an order that C++ leaves to the compiler: draw them into variables, or
+/// between braces, which go from left to right.
 class Random {
   public:
     explicit Random(uint64_t seed) : state_(seed) {}

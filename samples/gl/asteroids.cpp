@@ -74,13 +74,13 @@ std::vector<Instance> ring(uint32_t count) {
     samples::Random random(7);
     for (uint32_t i = 0; i < count; ++i) {
         // The sum of three is thickest in the middle of the ring.
-        const float across = random.between(-1, 1) + random.between(-1, 1) + random.between(-1, 1);
+        float across = 0;
+        for (int part = 0; part < 3; ++part) across += random.between(-1, 1);
         Instance one;
         one.orbit = {8.5f + across * 1.3f, random.between(0, 6.2831853f), random.between(-0.35f, 0.35f), 0};
         one.orbit.w = 0.6f / one.orbit.x;
-        one.spin =
-            glm::vec4(glm::normalize(glm::vec3(random.between(-1, 1), random.between(0.1f, 1), random.between(-1, 1))),
-                      random.between(0.04f, 0.16f));
+        const glm::vec3 axis{random.between(-1, 1), random.between(0.1f, 1), random.between(-1, 1)};
+        one.spin = glm::vec4(glm::normalize(axis), random.between(0.04f, 0.16f));
         instances.push_back(one);
     }
     return instances;

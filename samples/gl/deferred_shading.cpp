@@ -85,7 +85,8 @@ std::vector<Light> lightsAt(double seconds) {
     std::vector<Light> lights;
     samples::Random random(3);
     for (uint32_t i = 0; i < kLights; ++i) {
-        const double angle = random.between(0, 6.28f) + seconds * random.between(-0.8f, 0.8f);
+        const float start = random.between(0, 6.28f), speed = random.between(-0.8f, 0.8f);
+        const double angle = start + seconds * speed;
         const float radius = random.between(0.5f, 8), height = random.between(0.4f, 1.7f);
         const float hue = random.between(0, 6.28f);
         const glm::vec3 color =

@@ -64,12 +64,13 @@ int main(int argc, char** argv) {
     samples::Random random(5);
     for (int i = 0; i < 75; ++i) {
         const glm::vec3 place(i % 5 - 2, i / 5 % 5 - 2, i / 25 - 1);
-        objects.push_back(
-            {&meshes[random.below(3)],
-             glm::translate(glm::mat4(1), place * 2.6f) *
-                 samples::rotation(random.between(0, 6), {random.between(-1, 1), 1, random.between(-1, 1)}) *
-                 glm::scale(glm::mat4(1), glm::vec3(0.65f)),
-             {random.between(0.2f, 0.9f), random.between(0.2f, 0.9f), random.between(0.2f, 0.9f)}});
+        const uint32_t mesh = random.below(3);
+        const float angle = random.between(0, 6);
+        const glm::vec3 axis{random.between(-1, 1), 1, random.between(-1, 1)};
+        objects.push_back({&meshes[mesh],
+                           glm::translate(glm::mat4(1), place * 2.6f) * samples::rotation(angle, axis) *
+                               glm::scale(glm::mat4(1), glm::vec3(0.65f)),
+                           {random.between(0.2f, 0.9f), random.between(0.2f, 0.9f), random.between(0.2f, 0.9f)}});
     }
     const VnProgram draw = app.program(kVertex, kFragment), number = app.program(kVertex, kNumber);
     const VnVertexLayout layout = app.meshLayout();
