@@ -1,4 +1,4 @@
-// Draws, clears inside a render pass, and secondary command buffers.
+// Draws and what they depend on, clears inside a render pass, and secondary command buffers.
 #include <vector>
 
 #include "api/vulkan/command_buffer.h"
@@ -98,6 +98,19 @@ VKAPI_ATTR void VKAPI_CALL CmdDrawMultiIndexedEXT(VkCommandBuffer commandBuffer,
             commandBuffer, "vkCmdDrawMultiIndexedEXT",
             command::Draw{true, draw.indexCount, instanceCount, draw.firstIndex, firstInstance, vertexOffset, i});
     }
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdBeginConditionalRenderingEXT(
+    VkCommandBuffer commandBuffer, const VkConditionalRenderingBeginInfoEXT* pConditionalRenderingBegin) {
+    const VkConditionalRenderingBeginInfoEXT& info = *pConditionalRenderingBegin;
+    recording(commandBuffer, [&](CommandBuffer& buffer) {
+        const bool inverted = (info.flags & VK_CONDITIONAL_RENDERING_INVERTED_BIT_EXT) != 0;
+        buffer.stream.record(command::BeginConditionalRendering{{object(info.buffer), info.offset}, inverted});
+    });
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdEndConditionalRenderingEXT(VkCommandBuffer commandBuffer) {
+    recording(commandBuffer, [](CommandBuffer& buffer) { buffer.stream.record(command::EndConditionalRendering{}); });
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdClearAttachments(VkCommandBuffer commandBuffer, uint32_t attachmentCount,

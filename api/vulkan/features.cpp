@@ -99,6 +99,8 @@ namespace {
     X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderSharedFloat64Atomics, true)                    \
     X(VkPhysicalDeviceShaderAtomicFloatFeaturesEXT, shaderSharedFloat64AtomicAdd, true)                  \
     X(VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR, pipelineExecutableInfo, true)             \
+    X(VkPhysicalDeviceConditionalRenderingFeaturesEXT, conditionalRendering, true)                       \
+    X(VkPhysicalDeviceConditionalRenderingFeaturesEXT, inheritedConditionalRendering, true)              \
     X(VkPhysicalDeviceCustomBorderColorFeaturesEXT, customBorderColors, true)                            \
     X(VkPhysicalDeviceCustomBorderColorFeaturesEXT, customBorderColorWithoutFormat, true)                \
     X(VkPhysicalDeviceBorderColorSwizzleFeaturesEXT, borderColorSwizzle, true)                           \

@@ -124,6 +124,13 @@ struct SetStencil {
 struct SetSampleLocations {
     std::array<SamplePosition, kMaxSamples> locations{};
 };
+/// Draws, dispatches and clears of attachments up to the end are left out while the 32 bits of the predicate are 0, or,
+/// inverted, while they are not. They are read here, once; a predicate outside its buffer is 0.
+struct BeginConditionalRendering {
+    BufferRange predicate;
+    bool inverted = false;
+};
+struct EndConditionalRendering {};
 struct Draw {
     bool indexed = false;
     uint32_t count = 0, instances = 1, first = 0, firstInstance = 0;

@@ -88,6 +88,7 @@ void Executor::run(const CommandBuffer& commands) {
     computeBindings_ = {};
     vertexStreams_ = {};
     indices_ = {};
+    leavesOut_ = false;
     runAll(commands);
     if (pass_ != nullptr) run(command::EndRendering{});
     queries_.abandon();
@@ -246,7 +247,7 @@ void Executor::addStreams() {
 }
 
 void Executor::draw(const command::Draw& command) {
-    if (!pipeline_ || pass_ == nullptr || command.count == 0 || command.instances == 0) return;
+    if (leavesOut_ || !pipeline_ || pass_ == nullptr || command.count == 0 || command.instances == 0) return;
     if (command.indexed && !indices_.data) return;
     refreshDrawBindings();
     addStreams();
@@ -274,14 +275,29 @@ void Executor::run(const command::Draw& command) {
     draw(command);
 }
 
-void Executor::run(const command::DrawIndirect& command) {
+void Executor::waitForWriters(std::initializer_list<command::BufferRange> ranges) {
     AccessSet& arguments = scheduler_.nextAccesses();
-    for (const command::BufferRange& range : {command.arguments, command.countBuffer}) {
+    for (const command::BufferRange& range : ranges) {
         const VertexStream stream = streamOf(range);
         arguments.read(stream.data, stream.size);
     }
     arguments.finish();
     scheduler_.waitFor(scheduler_.conflicting(arguments));
+}
+
+void Executor::run(const command::BeginConditionalRendering& command) {
+    waitForWriters({command.predicate});
+    const bool passes = argumentsAt<uint32_t>(command.predicate, 0).value_or(0) != 0;
+    leavesOut_ = passes == command.inverted;
+}
+
+void Executor::run(const command::EndConditionalRendering&) {
+    leavesOut_ = false;
+}
+
+void Executor::run(const command::DrawIndirect& command) {
+    if (leavesOut_) return;
+    waitForWriters({command.arguments, command.countBuffer});
     uint32_t count = command.drawCount;
     if (command.countBuffer.buffer) {
         const auto available = argumentsAt<uint32_t>(command.countBuffer, 0);
@@ -302,7 +318,7 @@ void Executor::run(const command::DrawIndirect& command) {
 }
 
 void Executor::dispatch(const DispatchWork& work) {
-    if (!computePipeline_ || pass_ != nullptr || lost_) return;
+    if (leavesOut_ || !computePipeline_ || pass_ != nullptr || lost_) return;
     ++commandsRun_.dispatches;
     if (dispatchArena_.used() > kDispatchBytes) {
         scheduler_.finish();

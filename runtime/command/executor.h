@@ -7,6 +7,7 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <initializer_list>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -68,6 +69,8 @@ class Executor {
     void catchUp();
     void addStreams();
 
+    /// Waits for what writes the bytes that the host is about to read.
+    void waitForWriters(std::initializer_list<command::BufferRange> ranges);
     void draw(const command::Draw& command);
     void refreshDrawBindings();
     void dispatch(const DispatchWork& work);
@@ -103,6 +106,8 @@ class Executor {
         return point == command::BindPoint::compute ? computeBindings_ : drawBindings_;
     }
     Bindings drawBindings_, computeBindings_;
+
+    bool leavesOut_ = false;  // by conditional rendering
 
     const GraphicsPipeline* pipeline_ = nullptr;
     DynamicState dynamic_;

@@ -160,7 +160,7 @@ void Executor::run(const command::Flush&) {
 }
 
 void Executor::run(const command::ClearAttachments& command) {
-    if (pass_ == nullptr) return;
+    if (leavesOut_ || pass_ == nullptr) return;
     for (const VkClearAttachment& attachment : command.attachments)
         for (const VkClearRect& rect : command.rects)
             pass_->pass.clear(attachment.aspectMask, attachment.colorAttachment, attachment.clearValue, rect);
