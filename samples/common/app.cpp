@@ -2,6 +2,7 @@
 
 #include <vernier/vernier_glsl.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -18,25 +19,6 @@ void printMessage(void*, VnSeverity, const char* text) {
     std::fprintf(stderr, "%s\n", text);
 }
 
-VnShader compile(VnDevice device, VkShaderStageFlagBits stage, const std::string& source) {
-    VnGlslDesc glsl{};
-    glsl.stage = stage;
-    glsl.source = source.c_str();
-    VnGlslOutput* output = nullptr;
-    if (vnCompileGlsl(&glsl, &output) != VN_GLSL_SUCCESS) {
-        std::fprintf(stderr, "%s\n", output ? output->log : "GLSL: out of memory");
-        std::exit(1);
-    }
-    VnShaderDesc desc{};
-    desc.stage = stage;
-    desc.words = output->words;
-    desc.wordCount = output->wordCount;
-    VnShader shader{};
-    must(vnCreateShader(device, &desc, &shader));
-    vnFreeGlslOutput(output);
-    return shader;
-}
-
 double secondsBetween(Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double>(to - from).count();
 }
@@ -51,11 +33,12 @@ App::App(const AppOptions& options) : options_(options) {
     vnRetainGlslCompiler();  // samples compile several shaders: its tables need not be built for each
     VnDeviceDesc desc{};
     desc.message = printMessage;
+    desc.threads = options.threads;
+    if (!options.isa.empty()) desc.maxIsa = options.isa.c_str();
     must(vnCreateDevice(&desc, &device_));
     must(vnCreateContext(device_, nullptr, &context_));
-    color_ = target(VK_FORMAT_R8G8B8A8_SRGB);
-    depth_ = target(VK_FORMAT_D32_SFLOAT);
-    pixels_.resize(size_t{options.width} * options.height);
+    color_ = &windowTarget(VK_FORMAT_R8G8B8A8_SRGB);
+    depth_ = &windowTarget(VK_FORMAT_D32_SFLOAT);
 }
 
 App::~App() {
@@ -77,7 +60,13 @@ int App::run(const glm::vec4& background, const std::function<void(const Frame&)
 }
 
 void App::readPixels() {
-    must(vnReadImage(context_, color_.image, nullptr, pixels_.data(), pixels_.size() * 4));
+    pixels_.resize(size_t{options_.width} * options_.height);
+    must(vnReadImage(context_, color_->image, nullptr, pixels_.data(), pixels_.size() * 4));
+}
+
+bool App::save(const std::string& path) {
+    readPixels();
+    return writePixels(path);
 }
 
 bool App::writePixels(const std::string& path) {
@@ -113,7 +102,7 @@ int App::runWindow(const std::function<void(const Frame&)>& frame) {
     const Clock::time_point start = Clock::now();
     Frame now{0, 0, {}};
     std::string choice;  // what was switched last
-    double lastTitle = 0;
+    double last = 0, lastTitle = 0;
     uint32_t framesSince = 0;
     while (window.poll(now.input)) {
         for (const int key : now.input.pressed) {
@@ -121,26 +110,44 @@ int App::runWindow(const std::function<void(const Frame&)>& frame) {
             if (const std::string text = pressKey(options_.options, key); !text.empty())
                 choice = " - " + text, lastTitle = 0;
         }
-        const double seconds = options_.time + secondsBetween(start, Clock::now());
-        now.elapsed = now.seconds > 0 ? seconds - now.seconds : 0;
-        now.seconds = seconds;
+        if (window.width() != options_.width || window.height() != options_.height)
+            resize(window.width(), window.height());
+        const double seconds = secondsBetween(start, Clock::now());
+        now.elapsed = last > 0 ? seconds - last : 0;
+        last = seconds;
+        now.seconds = options_.time + (options_.still ? 0 : seconds);
+        now.pixelRatio = window.pixelRatio();
         frame(now);
         readPixels();
-        window.show(pixels_);
+        window.show(pixels_, options_.width, options_.height);
         ++framesSince;
-        if (const double since = now.seconds - lastTitle; lastTitle == 0 || since > 0.5) {
+        if (const double since = seconds - lastTitle; lastTitle == 0 || since > 0.5) {
             char rate[32] = "";
             if (lastTitle > 0) std::snprintf(rate, sizeof rate, " - %.0f frames/s", framesSince / since);
             window.setTitle(options_.title + choice + rate);
-            lastTitle = now.seconds;
+            lastTitle = seconds;
             framesSince = 0;
         }
     }
     return 0;
 }
 
+void App::resize(uint32_t width, uint32_t height) {
+    VnDeviceInfo info{};
+    must(vnGetDeviceInfo(device_, &info));
+    options_.width = std::min(width, info.maxImageSize);
+    options_.height = std::min(height, info.maxImageSize);
+    for (WindowTarget& target : windowTargets_) make(target);
+}
+
+void App::make(WindowTarget& target) {
+    if (target.target.image.id) must(vnDestroyImage(device_, target.target.image));
+    const VkExtent2D window{options_.width, options_.height}, size = target.sizeOf ? target.sizeOf(window) : window;
+    target.target = this->target(target.format, size.width, size.height);
+}
+
 void App::beginPass(const glm::vec4& background) {
-    beginPass({color_}, depth_, background);
+    beginPass({*color_}, *depth_, background);
 }
 
 void App::beginPass(const std::vector<Target>& colors, const Target& depth, const glm::vec4& background) {
@@ -163,10 +170,29 @@ void App::endPass() {
     must(vnEndPass(context_));
 }
 
+VnShader App::shader(VkShaderStageFlagBits stage, const std::string& source) {
+    VnGlslDesc glsl{};
+    glsl.stage = stage;
+    glsl.source = source.c_str();
+    VnGlslOutput* output = nullptr;
+    if (vnCompileGlsl(&glsl, &output) != VN_GLSL_SUCCESS) {
+        std::fprintf(stderr, "%s\n", output ? output->log : "GLSL: out of memory");
+        std::exit(1);
+    }
+    VnShaderDesc desc{};
+    desc.stage = stage;
+    desc.words = output->words;
+    desc.wordCount = output->wordCount;
+    VnShader shader{};
+    must(vnCreateShader(device_, &desc, &shader));
+    vnFreeGlslOutput(output);
+    return shader;
+}
+
 VnProgram App::program(const std::string& vertexGlsl, const std::string& fragmentGlsl) {
     VnProgramDesc desc{};
-    desc.vertex = compile(device_, VK_SHADER_STAGE_VERTEX_BIT, vertexGlsl);
-    if (!fragmentGlsl.empty()) desc.fragment = compile(device_, VK_SHADER_STAGE_FRAGMENT_BIT, fragmentGlsl);
+    desc.vertex = shader(VK_SHADER_STAGE_VERTEX_BIT, vertexGlsl);
+    if (!fragmentGlsl.empty()) desc.fragment = shader(VK_SHADER_STAGE_FRAGMENT_BIT, fragmentGlsl);
     VnProgram program{};
     must(vnCreateProgram(device_, &desc, &program));
     return program;
@@ -174,7 +200,7 @@ VnProgram App::program(const std::string& vertexGlsl, const std::string& fragmen
 
 VnProgram App::computeProgram(const std::string& glsl) {
     VnProgramDesc desc{};
-    desc.compute = compile(device_, VK_SHADER_STAGE_COMPUTE_BIT, glsl);
+    desc.compute = shader(VK_SHADER_STAGE_COMPUTE_BIT, glsl);
     VnProgram program{};
     must(vnCreateProgram(device_, &desc, &program));
     return program;
@@ -208,11 +234,17 @@ Target App::target(VkFormat format, uint32_t width, uint32_t height) {
     Target target;
     VnImageDesc desc{};
     desc.format = format;
-    target.width = desc.width = width ? width : options_.width;
-    target.height = desc.height = height ? height : options_.height;
+    target.width = desc.width = width;
+    target.height = desc.height = height;
     must(vnCreateImage(device_, &desc, &target.image));
     must(vnGetImageView(device_, target.image, &target.view));
     return target;
+}
+
+const Target& App::windowTarget(VkFormat format, std::function<VkExtent2D(VkExtent2D)> sizeOf) {
+    windowTargets_.push_back({format, std::move(sizeOf), {}});
+    make(windowTargets_.back());
+    return windowTargets_.back().target;
 }
 
 VnSampler App::sampler(VkFilter filter, VkSamplerAddressMode address) {

@@ -4,6 +4,7 @@
 
 #include <vernier/vernier.h>
 
+#include <deque>
 #include <functional>
 #include <string>
 #include <vector>
@@ -17,8 +18,9 @@ namespace samples {
 
 struct Frame {
     double seconds;  // since the start; without a window as the command line says
-    double elapsed;  // since the last frame; 0 for the first
+    double elapsed;  // since the last frame, even where time stands still; 0 for the first
     Input input;
+    float pixelRatio = 1;  // of the window: 2 on many screens of high density
 };
 
 /// An image to draw to and read from.
@@ -50,10 +52,14 @@ class App {
     uint32_t width() const { return options_.width; }
     uint32_t height() const { return options_.height; }
     float aspect() const { return static_cast<float>(options_.width) / static_cast<float>(options_.height); }
+    const AppOptions& options() const { return options_; }
     bool hasWindow() const { return options_.window(); }
-    /// The picture that is shown or written: RGBA8, sRGB. And a depth image of 32-bit floats beside it.
-    const Target& color() const { return color_; }
-    const Target& depth() const { return depth_; }
+    /// The picture that is shown or written: RGBA8, sRGB. And a depth image of 32-bit floats beside it. They, and what
+    /// width() and height() say, change from one frame to the next when the window is resized.
+    const Target& color() const { return *color_; }
+    const Target& depth() const { return *depth_; }
+    /// Writes color() to a file, in the format by the end of its name; says so when it cannot.
+    bool save(const std::string& path);
 
     /// Draws frames until the window is closed, or those that the command line asks for. `frame` draws to color() in
     /// passes of its own. Returns the exit status for main().
@@ -68,6 +74,7 @@ class App {
     void endPass();
 
     // Creation in one line each.
+    VnShader shader(VkShaderStageFlagBits stage, const std::string& glsl);
     VnProgram program(const std::string& vertexGlsl, const std::string& fragmentGlsl);
     VnProgram computeProgram(const std::string& glsl);
     VnBuffer buffer(const void* data, size_t bytes);
@@ -77,8 +84,10 @@ class App {
     }
     /// RGBA8 texels, sRGB, with all mip levels.
     VnView texture(uint32_t width, uint32_t height, const std::vector<uint32_t>& texels);
-    /// Without sizes: as big as color().
-    Target target(VkFormat format, uint32_t width = 0, uint32_t height = 0);
+    Target target(VkFormat format, uint32_t width, uint32_t height);
+    /// As big as color(), or what `sizeOf` makes of that; made anew, with a view of its own, when the window is
+    /// resized.
+    const Target& windowTarget(VkFormat format, std::function<VkExtent2D(VkExtent2D)> sizeOf = {});
     /// Filtered in a level, and between levels where the filter is linear.
     VnSampler sampler(VkFilter filter, VkSamplerAddressMode address = VK_SAMPLER_ADDRESS_MODE_REPEAT);
     VnVertexLayout layout(const std::vector<VnVertexAttribute>& attributes,
@@ -108,10 +117,19 @@ class App {
     int runFrames(const std::function<void(const Frame&)>& frame);
     int runWindow(const std::function<void(const Frame&)>& frame);
 
+    struct WindowTarget {
+        VkFormat format;
+        std::function<VkExtent2D(VkExtent2D)> sizeOf;
+        Target target;
+    };
+    void make(WindowTarget& target);
+    void resize(uint32_t width, uint32_t height);
+
     AppOptions options_;
     VnDevice device_ = nullptr;
     VnContext context_ = nullptr;
-    Target color_, depth_;
+    std::deque<WindowTarget> windowTargets_;  // which does not move them
+    const Target *color_ = nullptr, *depth_ = nullptr;
     std::vector<uint32_t> pixels_;
 };
 

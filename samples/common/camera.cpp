@@ -7,7 +7,7 @@
 namespace samples {
 namespace {
 
-constexpr double kRadiansPerPixel = 0.006, kSteepest = 1.55;
+constexpr double kRadiansPerPixel = 0.006, kRadiansPerFrame = 0.03, kSteepest = 1.55;
 
 glm::vec3 directionOf(double yaw, double pitch) {
     const float across = cosineF(pitch);
@@ -17,6 +17,8 @@ glm::vec3 directionOf(double yaw, double pitch) {
 }  // namespace
 
 void OrbitCamera::update(const Input& input) {
+    yaw_ -= input.axis(kKeyLeft, kKeyRight) * kRadiansPerFrame;
+    pitch_ = std::clamp(pitch_ + input.axis(kKeyDown, kKeyUp) * kRadiansPerFrame, -kSteepest, kSteepest);
     if (input.dragging) {
         yaw_ -= input.mouseMove.x * kRadiansPerPixel;
         pitch_ = std::clamp(pitch_ - input.mouseMove.y * kRadiansPerPixel, -kSteepest, kSteepest);

@@ -6,7 +6,7 @@
 
 namespace samples {
 
-/// Drag with the left button turns, the wheel comes nearer.
+/// Dragging with the left button and the arrows turn, the wheel comes nearer.
 class OrbitCamera {
   public:
     OrbitCamera(const glm::vec3& target, float distance, double yaw, double pitch)

@@ -37,8 +37,11 @@ AppOptions parseOptions(int argc, char** argv, const std::string& title, const s
     cli.add_option("--headless", result.headless, "write one picture (.png, .bmp, .tga) instead of opening a window");
     cli.add_option("--size", size, "WIDTHxHEIGHT in pixels (800x600)");
     cli.add_option("--time", result.time, "seconds at which the picture is taken (0)");
+    cli.add_flag("--still", result.still, "time stands still");
     cli.add_option("--frames", result.frames, "draw this many frames, 25 a second, and print the time that one takes");
     cli.add_option("--out", result.out, "folder that gets the frames as 0000.png, 0001.png, ...");
+    cli.add_option("--threads", result.threads, "threads that draw (0: one per CPU)");
+    cli.add_option("--isa", result.isa, "instruction set, at most: sse4, avx2, avx512 (the best there is)");
     for (const Option& option : options) add(cli, option);
     try {
         cli.parse(argc, argv);

@@ -32,6 +32,10 @@ int keyOf(SDL_Keycode code) {
             return kKeyControl;
         case SDLK_F1:
             return kKeyF1;
+        case SDLK_F11:
+            return kKeyF11;
+        case SDLK_F12:
+            return kKeyF12;
         default:
             return code < 128 ? code : 0;
     }
@@ -39,11 +43,23 @@ int keyOf(SDL_Keycode code) {
 
 }  // namespace
 
-Window::Window(const std::string& title, uint32_t width, uint32_t height) : width_(width), height_(height) {
+Window::Window(const std::string& title, uint32_t width, uint32_t height) {
     if (SDL_Init(SDL_INIT_VIDEO) != 0) stop();
+    // The pixels lie in memory: textures of another renderer on the way would be a copy more.
+    SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
     window_ = SDL_CreateWindow(title.c_str(), SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED, static_cast<int>(width),
-                               static_cast<int>(height), 0);
+                               static_cast<int>(height), SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI);
     if (!window_) stop();
+    measure();
+}
+
+void Window::measure() {
+    int unitsWide = 1, unitsHigh = 1, pixelsWide = 1, pixelsHigh = 1;
+    SDL_GetWindowSize(window_, &unitsWide, &unitsHigh);
+    SDL_GetWindowSizeInPixels(window_, &pixelsWide, &pixelsHigh);
+    width_ = static_cast<uint32_t>(SDL_max(pixelsWide, 1));
+    height_ = static_cast<uint32_t>(SDL_max(pixelsHigh, 1));
+    pixelRatio_ = static_cast<float>(width_) / static_cast<float>(SDL_max(unitsWide, 1));
 }
 
 Window::~Window() {
@@ -55,6 +71,7 @@ bool Window::poll(Input& input) {
     input.pressed.clear();
     input.mouseMove = glm::vec2(0);
     input.wheel = 0;
+    input.dropped.clear();
     bool open = true;
     for (SDL_Event event; SDL_PollEvent(&event);) {
         switch (event.type) {
@@ -72,8 +89,8 @@ bool Window::poll(Input& input) {
                 input.held.erase(keyOf(event.key.keysym.sym));
                 break;
             case SDL_MOUSEMOTION:
-                input.mouse = glm::vec2(event.motion.x, event.motion.y);
-                input.mouseMove += glm::vec2(event.motion.xrel, event.motion.yrel);
+                input.mouse = glm::vec2(event.motion.x, event.motion.y) * pixelRatio_;
+                input.mouseMove += glm::vec2(event.motion.xrel, event.motion.yrel) * pixelRatio_;
                 break;
             case SDL_MOUSEBUTTONDOWN:
             case SDL_MOUSEBUTTONUP:
@@ -81,6 +98,10 @@ bool Window::poll(Input& input) {
                 break;
             case SDL_MOUSEWHEEL:
                 input.wheel += static_cast<float>(event.wheel.y);
+                break;
+            case SDL_DROPFILE:
+                input.dropped.emplace_back(event.drop.file);
+                SDL_free(event.drop.file);
                 break;
             // A key that goes up elsewhere is not told.
             case SDL_WINDOWEVENT:
@@ -90,13 +111,14 @@ bool Window::poll(Input& input) {
                 break;
         }
     }
+    measure();
     return open;
 }
 
-void Window::show(std::vector<uint32_t>& pixels) {
+void Window::show(std::vector<uint32_t>& pixels, uint32_t width, uint32_t height) {
     SDL_Surface* image =
-        SDL_CreateRGBSurfaceWithFormatFrom(pixels.data(), static_cast<int>(width_), static_cast<int>(height_), 32,
-                                           static_cast<int>(width_ * 4), SDL_PIXELFORMAT_RGBA32);
+        SDL_CreateRGBSurfaceWithFormatFrom(pixels.data(), static_cast<int>(width), static_cast<int>(height), 32,
+                                           static_cast<int>(width * 4), SDL_PIXELFORMAT_RGBA32);
     if (!image) stop();
     SDL_BlitSurface(image, nullptr, SDL_GetWindowSurface(window_), nullptr);
     SDL_UpdateWindowSurface(window_);

@@ -11,7 +11,7 @@ struct SDL_Window;
 
 namespace samples {
 
-/// Ends the program with a message when no window can be opened.
+/// The user may resize it. Ends the program with a message when no window can be opened.
 class Window {
   public:
     Window(const std::string& title, uint32_t width, uint32_t height);
@@ -21,13 +21,21 @@ class Window {
 
     /// Brings `input` up to date; false once the window was closed or Escape pressed.
     bool poll(Input& input);
-    /// width x height RGBA8 pixels, row by row from the top.
-    void show(std::vector<uint32_t>& pixels);
+    /// In pixels, which may be smaller than the units that windows and mice are measured in.
+    uint32_t width() const { return width_; }
+    uint32_t height() const { return height_; }
+    /// Pixels per such unit: 2 on many screens of high density.
+    float pixelRatio() const { return pixelRatio_; }
+    /// RGBA8 pixels, width x height, row by row from the top.
+    void show(std::vector<uint32_t>& pixels, uint32_t width, uint32_t height);
     void setTitle(const std::string& title);
 
   private:
+    void measure();
+
     SDL_Window* window_ = nullptr;
-    uint32_t width_, height_;
+    uint32_t width_ = 1, height_ = 1;
+    float pixelRatio_ = 1;
 };
 
 }  // namespace samples

@@ -85,9 +85,10 @@ int main(int argc, char** argv) {
     const VnVertexLayout layout = app.meshLayout();
     const VnDepthStencilState depth = app.depthState();
     const VkFormat half = VK_FORMAT_R16G16B16A16_SFLOAT;
-    const samples::Target light = app.target(half);
-    const uint32_t width = (app.width() + 1) / 2, height = (app.height() + 1) / 2;
-    const samples::Target ping = app.target(half, width, height), pong = app.target(half, width, height);
+    const auto halfSize = [](VkExtent2D size) { return VkExtent2D{(size.width + 1) / 2, (size.height + 1) / 2}; };
+    const samples::Target& light = app.windowTarget(half);
+    const samples::Target& ping = app.windowTarget(half, halfSize);
+    const samples::Target& pong = app.windowTarget(half, halfSize);
     const VnSampler linear = app.sampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
     samples::OrbitCamera camera({0, 1.2f, 0}, 9, 0.3, -0.25);
 
@@ -139,9 +140,9 @@ int main(int argc, char** argv) {
         vnBindDepthStencilState(context, VnDepthStencilState{});
         filter(bright, light, ping);
         for (int round = 0; round < 2; ++round) {
-            app.push(glm::vec2(1 / static_cast<float>(width), 0));
+            app.push(glm::vec2(1 / static_cast<float>(ping.width), 0));
             filter(blur, ping, pong);
-            app.push(glm::vec2(0, 1 / static_cast<float>(height)));
+            app.push(glm::vec2(0, 1 / static_cast<float>(ping.height)));
             filter(blur, pong, ping);
         }
         vnBindTexture(context, 0, 1, 0, ping.view, linear);

@@ -117,9 +117,9 @@ int main(int argc, char** argv) {
     const VnProgram lighting = app.program(samples::kFullScreenVertex, kLightFragment);
     const VnVertexLayout layout = app.meshLayout();
     const VnDepthStencilState depth = app.depthState();
-    const samples::Target albedo = app.target(VK_FORMAT_R8G8B8A8_UNORM);
-    const samples::Target normal = app.target(VK_FORMAT_R16G16B16A16_SFLOAT);
-    const samples::Target position = app.target(VK_FORMAT_R32G32B32A32_SFLOAT);
+    const samples::Target& albedo = app.windowTarget(VK_FORMAT_R8G8B8A8_UNORM);
+    const samples::Target& normal = app.windowTarget(VK_FORMAT_R16G16B16A16_SFLOAT);
+    const samples::Target& position = app.windowTarget(VK_FORMAT_R32G32B32A32_SFLOAT);
     const VnBuffer lights = app.buffer(lightsAt(0));
     const VnSampler nearest = app.sampler(VK_FILTER_NEAREST);
     samples::OrbitCamera camera({0, 0, 0}, 13, 0.4, -0.5);

@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
     const VnProgram draw = app.program(kVertex, kFragment), number = app.program(kVertex, kNumber);
     const VnVertexLayout layout = app.meshLayout();
     const VnDepthStencilState depth = app.depthState();
-    const samples::Target numbers = app.target(VK_FORMAT_R32_UINT);
+    const samples::Target& numbers = app.windowTarget(VK_FORMAT_R32_UINT);
     samples::OrbitCamera camera({0, 0, 0}, 19, 0.5, -0.3);
     glm::vec2 mouse(static_cast<float>(app.width()) / 2, static_cast<float>(app.height()) / 2);
     if (!pointer.empty() && std::sscanf(pointer.c_str(), "%f,%f", &mouse.x, &mouse.y) != 2) {

@@ -110,8 +110,9 @@ int main(int argc, char** argv) {
     const VnSampler linear = app.sampler(VK_FILTER_LINEAR);
     const VnDepthStencilState depth = app.depthState();
     const VnBuffer buffer = app.buffer(std::vector<Triangle>(std::max(modelTriangles.size(), size_t{64})));
-    const samples::Target row = app.target(VK_FORMAT_R8G8B8A8_SRGB, app.width(), 1);
-    const samples::Target rowDepth = app.target(VK_FORMAT_D32_SFLOAT, app.width(), 1);
+    const auto oneRow = [](VkExtent2D size) { return VkExtent2D{size.width, 1}; };
+    const samples::Target& row = app.windowTarget(VK_FORMAT_R8G8B8A8_SRGB, oneRow);
+    const samples::Target& rowDepth = app.windowTarget(VK_FORMAT_D32_SFLOAT, oneRow);
     struct {
         glm::mat4 transform;
         glm::vec4 options;

@@ -202,8 +202,9 @@ int main(int argc, char** argv) {
     VnRasterStateDesc lineDesc{};
     lineDesc.lineMode = VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT;
     vnCreateRasterState(app.device(), &lineDesc, &bresenham);
-    const uint32_t smallWidth = app.width() / 10 + 1, smallHeight = app.height() / 10 + 1;
-    const samples::Target coarse = app.target(VK_FORMAT_R8G8B8A8_SRGB, smallWidth, smallHeight);
+    const samples::Target& coarse = app.windowTarget(VK_FORMAT_R8G8B8A8_SRGB, [](VkExtent2D size) {
+        return VkExtent2D{size.width / 10 + 1, size.height / 10 + 1};
+    });
     const std::vector<Box> world = boxes();
     const VnBuffer buffer = app.buffer(std::vector<Vertex>(world.size() * 80 + 4096));
 
@@ -217,9 +218,11 @@ int main(int argc, char** argv) {
         vnSetTopology(context, VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST, 0);
     };
     // Pixels of the coarse picture, y down, to clip space.
-    const glm::mat4 pixels = glm::translate(glm::mat4(1), glm::vec3(-1, -1, 0)) *
-                             glm::scale(glm::mat4(1), glm::vec3(2.0f / static_cast<float>(smallWidth),
-                                                                2.0f / static_cast<float>(smallHeight), 1));
+    const auto pixelsToClip = [&] {
+        return glm::translate(glm::mat4(1), glm::vec3(-1, -1, 0)) *
+               glm::scale(glm::mat4(1), glm::vec3(2.0f / static_cast<float>(coarse.width),
+                                                  2.0f / static_cast<float>(coarse.height), 1));
+    };
     const auto enlarge = [&] {
         VnRegion from{}, to{};
         from.width = app.width() / 10;
@@ -231,11 +234,12 @@ int main(int argc, char** argv) {
 
     const auto drawLines = [&](double seconds) {
         std::vector<Vertex> list;
-        const glm::vec2 middle(static_cast<float>(smallWidth / 2) + 0.5f, static_cast<float>(smallHeight / 2) + 0.5f);
+        const glm::vec2 middle(static_cast<float>(coarse.width / 2) + 0.5f,
+                               static_cast<float>(coarse.height / 2) + 0.5f);
         for (int i = 0; i < 24; ++i) {
             const double angle = i * samples::kPi / 12 + seconds * 0.1 + 0.03;
             const glm::vec2 way(samples::cosineF(angle), samples::sineF(angle));
-            const float length = static_cast<float>(smallHeight) * 0.45f;
+            const float length = static_cast<float>(coarse.height) * 0.45f;
             const glm::vec3 tint(0.5f + 0.5f * way.x, 0.5f + 0.5f * way.y, i % 2 ? 1.0f : 0.3f);
             // End points on pixel centres, as the integer algorithm has them.
             for (const float from : {0.25f, 1.0f})
@@ -244,7 +248,7 @@ int main(int argc, char** argv) {
         bind(color, list);
         vnBindRasterState(context, bresenham);
         vnSetTopology(context, VK_PRIMITIVE_TOPOLOGY_LINE_LIST, 0);
-        app.push(Push{pixels, {}, {}});
+        app.push(Push{pixelsToClip(), {}, {}});
         app.beginPass({coarse}, {}, {0.01f, 0.01f, 0.02f, 1});
         vnDraw(context, static_cast<uint32_t>(list.size()), 1, 0, 0);
         app.endPass();
@@ -252,7 +256,7 @@ int main(int argc, char** argv) {
     };
 
     const auto drawSpans = [&] {
-        const int w = static_cast<int>(smallWidth), h = static_cast<int>(smallHeight);
+        const int w = static_cast<int>(coarse.width), h = static_cast<int>(coarse.height);
         const glm::ivec2 corners[3] = {{w / 8, h / 6}, {w * 7 / 8, h / 3}, {w / 3, h * 9 / 10}};
         // First the triangle in red, then the spans over it: red that is left would be a pixel that the spans lack.
         std::vector<Vertex> list;
@@ -264,7 +268,7 @@ int main(int argc, char** argv) {
                 list.push_back({{static_cast<float>(x), static_cast<float>(span.z) + 0.5f, 0}, tint});
         }
         bind(color, list);
-        app.push(Push{pixels, {}, {}});
+        app.push(Push{pixelsToClip(), {}, {}});
         app.beginPass({coarse}, {}, {0.01f, 0.01f, 0.02f, 1});
         vnDraw(context, 3, 1, 0, 0);
         vnSetTopology(context, VK_PRIMITIVE_TOPOLOGY_LINE_LIST, 0);

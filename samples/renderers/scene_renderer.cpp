@@ -180,8 +180,8 @@ int main(int argc, char** argv) {
     VnRasterState edgeRaster{};
     vnCreateRasterState(app.device(), &edgeDesc, &edgeRaster);
     const VnBlendState over = app.blendState(VK_BLEND_FACTOR_SRC_ALPHA, VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA);
-    const samples::Target albedo = app.target(VK_FORMAT_R8G8B8A8_UNORM),
-                          normal = app.target(VK_FORMAT_R16G16B16A16_SFLOAT);
+    const samples::Target& albedo = app.windowTarget(VK_FORMAT_R8G8B8A8_UNORM);
+    const samples::Target& normal = app.windowTarget(VK_FORMAT_R16G16B16A16_SFLOAT);
     const VnBuffer polygonBuffer = app.buffer(std::vector<glm::vec3>(64));
     samples::FlyCamera camera({0, 2.2f, 7}, 0, -0.22);
 

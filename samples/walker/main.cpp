@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
     samples::Guide guide(map);
     uint64_t steps = 0;
     // The left half of one version beside the right half of the other.
-    const samples::Target other = app.target(VK_FORMAT_R8G8B8A8_SRGB);
+    const samples::Target& other = app.windowTarget(VK_FORMAT_R8G8B8A8_SRGB);
 
     return app.run([&](const samples::Frame& frame) {
         // Steps of one length, so that the picture of a moment does not depend on the frames before.

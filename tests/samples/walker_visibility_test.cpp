@@ -25,7 +25,7 @@ AppOptions options() {
 class Comparison {
   public:
     explicit Comparison(const Map& map) : app_(options()), renderer_(app_, map) {
-        numbers_ = app_.target(VK_FORMAT_R32_UINT);
+        numbers_ = app_.target(VK_FORMAT_R32_UINT, kWidth, kHeight);
     }
 
     void compare(const Player& player, double shear) {
