@@ -149,6 +149,14 @@ Result<SceneCounts> SceneRun::readQueries() const {
     return counts;
 }
 
+/// Whether shaders of a pass may see what those of an earlier one have stored into buffers.
+bool bindsBuffers(const ScenePass& scene) {
+    return std::any_of(scene.draws.begin(), scene.draws.end(), [](const SceneDraw& draw) {
+        return std::any_of(draw.bindings.begin(), draw.bindings.end(),
+                           [](const SceneBinding& each) { return each.buffer != kNone; });
+    });
+}
+
 void SceneRun::recordPass(const ScenePass& scene, const VulkanPass& pass) {
     for (const SceneDraw& draw : scene.draws) {
         for (const SceneBinding& each : draw.bindings) {
@@ -171,6 +179,14 @@ void SceneRun::recordPass(const ScenePass& scene, const VulkanPass& pass) {
         if (depth.resolveImage != kNone) {
             resources_.use(frame_, depth.resolveImage, ImageUse::depthAttachment, 0, 1, 0, depth.layerCount);
         }
+    }
+    if (bindsBuffers(scene)) {
+        VkMemoryBarrier stores{};
+        stores.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+        stores.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT;
+        stores.dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
+        vkCmdPipelineBarrier(frame_, VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT, VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT, 0, 1,
+                             &stores, 0, nullptr, 0, nullptr);
     }
     VkRenderPassBeginInfo begin{};
     begin.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;

@@ -103,8 +103,13 @@ Result<ShadedVertex> shadeVertex(const Interpreter& shader, Values inputs, uint3
     set(spv::BuiltInBaseInstance, draw.firstInstance);
     set(spv::BuiltInDrawIndex, 0);
     set(spv::BuiltInViewIndex, viewIndex);
+    resources.resetRuns();
+    resources.startRun();
     const auto outcome = shader.run(inputs, resources);
     if (!outcome) return outcome.error();
+    for (const WordWrite& write : combineWords(resources.wordRuns, 0, 0, resources.flags))
+        resources.wordWrites.push_back(write);
+    resources.flags = 0;
     ShadedVertex vertex;
     const auto& builtins = outcome->outputs.builtins;
     if (const auto position = builtins.find(spv::BuiltInPosition); position != builtins.end()) {
@@ -223,6 +228,8 @@ Result<DrawGeometry> assembleDraw(const Scene& scene, const SceneDraw& draw, Sha
     if (!module) return module.error();
     const auto shader = Interpreter::create(*module, spv::ExecutionModelVertex);
     if (!shader) return shader.error();
+    if (usesAtomicResults(scene.shaders[pipeline.vertexShader].spirv))
+        return unsupported("oracle: what atomic operations return");
 
     const VertexFetcher fetcher{scene, draw, pipeline};
     const auto order = vertexOrder(scene, draw, pipeline);

@@ -1,5 +1,6 @@
 #include "conformance/oracle/block_decode.h"
 
+#include "conformance/oracle/astc_decode.h"
 #include "conformance/oracle/bptc_decode.h"
 #include "conformance/oracle/quantise.h"
 
@@ -11,7 +12,7 @@ namespace vernier::conformance::exact {
 namespace {
 
 /// What a format's blocks are made of, from the first byte on.
-enum class Layout : uint8_t { bc1, bc1Alpha, bc2, bc3, bc4, bc5, etc2, etc2Punch, etc2Eac, eac, eac2, bc6h, bc7 };
+enum class Layout : uint8_t { bc1, bc1Alpha, bc2, bc3, bc4, bc5, etc2, etc2Punch, etc2Eac, eac, eac2, bc6h, bc7, astc };
 
 struct BlockFormat {
     VkFormat format;
@@ -40,7 +41,18 @@ constexpr BlockFormat kFormats[] = {
     {VK_FORMAT_EAC_R11G11_UNORM_BLOCK, Layout::eac2},
 };
 
+/// Vulkan numbers the footprints of ASTC from small to large, each without sRGB and with it.
+constexpr BlockFormat kAstc[] = {{VK_FORMAT_ASTC_4x4_UNORM_BLOCK, Layout::astc},
+                                 {VK_FORMAT_ASTC_4x4_SRGB_BLOCK, Layout::astc, false, true}};
+constexpr VkExtent2D kAstcExtents[] = {{4, 4}, {5, 4},  {5, 5},  {6, 5},  {6, 6},   {8, 5},   {8, 6},
+                                       {8, 8}, {10, 5}, {10, 6}, {10, 8}, {10, 10}, {12, 10}, {12, 12}};
+
+bool isAstc(VkFormat format) {
+    return format >= VK_FORMAT_ASTC_4x4_UNORM_BLOCK && format <= VK_FORMAT_ASTC_12x12_SRGB_BLOCK;
+}
+
 const BlockFormat* find(VkFormat format) {
+    if (isAstc(format)) return &kAstc[(format - VK_FORMAT_ASTC_4x4_UNORM_BLOCK) % 2];
     const auto found = std::ranges::find(kFormats, format, &BlockFormat::format);
     return found == std::end(kFormats) ? nullptr : found;
 }
@@ -249,10 +261,15 @@ uint32_t blockBytes(VkFormat format) {
         case Layout::eac2:
         case Layout::bc6h:
         case Layout::bc7:
+        case Layout::astc:
             return 16;
         default:
             return 8;
     }
+}
+
+VkExtent2D blockExtent(VkFormat format) {
+    return isAstc(format) ? kAstcExtents[(format - VK_FORMAT_ASTC_4x4_UNORM_BLOCK) / 2] : VkExtent2D{4, 4};
 }
 
 Color decodeBlockTexel(VkFormat format, std::span<const std::byte> block, uint32_t x, uint32_t y) {
@@ -301,6 +318,13 @@ Color decodeBlockTexel(VkFormat format, std::span<const std::byte> block, uint32
         case Layout::bc7:
             color = bc7Texel(block, texel);
             break;
+        case Layout::astc: {
+            const VkExtent2D extent = blockExtent(format);
+            const auto codes = astcTexel(block, extent.width, extent.height, x, y, how.srgb);
+            // "Weight Application": with sRGB the upper eight bits of R, G and B.
+            for (size_t c = 0; c < 4; ++c) color[c] = how.srgb && c < 3 ? (codes[c] >> 8) / 255.0 : astcHalf(codes[c]);
+            break;
+        }
     }
     const double low = how.isSigned ? -1 : 0;
     for (Interval& c : color) c = c.clamped(low, 1);

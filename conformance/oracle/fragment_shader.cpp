@@ -97,6 +97,7 @@ Result<FragmentShader> FragmentShader::create(const Scene& scene, const ScenePip
     result.viewIndex_ = viewIndex;
 
     const ModuleTraits traits = scan(shader.spirv);
+    if (usesAtomicResults(shader.spirv)) return unsupported("oracle: what atomic operations return");
     result.imprecision_ = traits.imprecision;
     result.mayShadeCoarsely_ = !traits.ofPixels;
     if (traits.derivatives) {
@@ -121,14 +122,24 @@ Result<FragmentShader> FragmentShader::create(const Scene& scene, const ScenePip
                 (multisampled && (v.sample || (v.isBuiltin && (v.builtin == spv::BuiltInSampleId ||
                                                                v.builtin == spv::BuiltInSamplePosition))));
             result.hasCentroids_ = result.hasCentroids_ || (multisampled && v.centroid);
-            const bool interpolated = v.isBuiltin
-                                          ? v.builtin == spv::BuiltInFragCoord || v.builtin == spv::BuiltInPointCoord
-                                          : !v.flat && !isIntegerVariable(v);
+            const bool barycentric =
+                v.isBuiltin && (v.builtin == spv::BuiltInBaryCoordKHR || v.builtin == spv::BuiltInBaryCoordNoPerspKHR);
+            result.knowsVertices_ = result.knowsVertices_ || barycentric || v.perVertex;
+            const bool interpolated =
+                v.isBuiltin ? barycentric || v.builtin == spv::BuiltInFragCoord || v.builtin == spv::BuiltInPointCoord
+                            : !v.flat && !v.perVertex && !isIntegerVariable(v);
             result.variesWithPosition_ = result.variesWithPosition_ || interpolated;
             result.inputs_.push_back(v);
         }
     }
     return result;
+}
+
+void FragmentSource::number(uint32_t count, bool provokingLast) {
+    corners = count;
+    const auto first = std::find(vertices.begin(), vertices.begin() + count, provoking) - vertices.begin();
+    for (uint32_t n = 0; n < count; ++n)
+        numbered[n] = (static_cast<uint32_t>(first) + (provokingLast ? 1 : 0) + n) % count;
 }
 
 void FragmentShader::setVariable(const InterfaceVariable& variable, const FragmentSource& source,
@@ -141,8 +152,16 @@ void FragmentShader::setVariable(const InterfaceVariable& variable, const Fragme
             const auto found = source.vertices[i]->varyings.find(location);
             if (found != source.vertices[i]->varyings.end()) at[i] = found->second;
         }
-        reference::Texel<double>& texel = values.locations[location];
+        reference::Texel<double>& texel =
+            values.locations[reference::Location(variable.location + k, variable.perVertex ? variable.index : 0)];
         for (size_t c = variable.component; c < std::min<size_t>(4, variable.component + variable.components); ++c) {
+            if (variable.perVertex) {
+                if (variable.index >= source.corners) continue;
+                const auto& varyings = source.vertices[source.numbered[variable.index]]->varyings;
+                const auto found = varyings.find(reference::Location(variable.location + k));
+                if (found != varyings.end()) texel[c] = found->second[c];
+                continue;
+            }
             if (variable.flat || isIntegerVariable(variable)) {
                 const auto found = source.provoking->varyings.find(location);
                 if (found != source.provoking->varyings.end()) texel[c] = found->second[c];
@@ -189,6 +208,20 @@ std::array<FragmentShader::Values, 4> FragmentShader::inputsAt(const FragmentSou
                 case spv::BuiltInPrimitiveId:
                     values.setInt(v.builtin, static_cast<int32_t>(source.primitiveId));
                     break;
+                case spv::BuiltInBaryCoordKHR:
+                case spv::BuiltInBaryCoordNoPerspKHR: {
+                    const auto& at = v.centroid ? centroidWeights : centred && !v.sample ? centreWeights : weights;
+                    const bool linear = v.builtin == spv::BuiltInBaryCoordNoPerspKHR;
+                    std::array<double, 3> share{};
+                    for (uint32_t n = 0; n < source.corners; ++n) {
+                        std::array<double, 3> one{};
+                        for (size_t i = 0; i < 3; ++i)
+                            one[i] = source.vertices[i] == source.vertices[source.numbered[n]] ? 1 : 0;
+                        share[n] = linear ? shape.linear(at, one) : shape.perspective(at, one);
+                    }
+                    values.setFloat(v.builtin, {share[0], share[1], share[2]});
+                    break;
+                }
                 case spv::BuiltInPointCoord:
                     if (source.point != nullptr) {
                         const auto [u, w] = source.point->coordinate(px + shiftX, py + shiftY);
@@ -221,7 +254,7 @@ std::array<FragmentShader::Values, 4> FragmentShader::inputsAt(const FragmentSou
 Result<FragmentShader::Outcomes> FragmentShader::runQuad(const Interpreter& shader, const std::array<Values, 4>& inputs,
                                                          const std::array<bool, 4>& helper,
                                                          ShaderResources& resources) {
-    resources.runs.emplace_back();
+    resources.startRun();
     return shader.runQuad(inputs, helper, resources);
 }
 
@@ -267,7 +300,7 @@ Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSou
         return runQuad(shader, inputs, helper, resources);
     };
     resources.end = RangeEnd::nominal;
-    resources.runs.clear();
+    resources.resetRuns();
     resources.sawRange = resources.sawZero = false;
     resources.flags = 0;
     const HomogeneousTriangle<double>& shape = source.triangle->homogeneous();
@@ -306,7 +339,7 @@ Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSou
         if (Status s = add(runs.coarse, *coarse_, inputs); !s) return s.error();
     }
     if (Status s = add(runs.rounded, rounded_, inputs); !s) return s.error();
-    if (resources.wrote) return unsupported("oracle: the fragment shader uses storage buffers");
+    if (!resources.refusal.empty()) return unsupported("oracle: " + resources.refusal);
 
     std::array<FragmentResult, 4> results;
     for (size_t lane = 0; lane < 4; ++lane) {
@@ -314,6 +347,8 @@ Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSou
         for (OracleFlags& flags : results[lane].colorFlags) flags |= resources.flags;
         results[lane].writes = combineWrites(resources.runs, static_cast<uint32_t>(lane), resources.sceneMemory(),
                                              imprecision_, resources.flags);
+        results[lane].wordWrites =
+            combineWords(resources.wordRuns, static_cast<uint32_t>(lane), imprecision_, resources.flags);
     }
     return results;
 }

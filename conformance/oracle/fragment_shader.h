@@ -40,6 +40,13 @@ struct FragmentSource {
     const PointShape* point = nullptr;  // of points
     bool frontFacing = false;
     uint32_t primitiveId = 0;
+    // Barycentric inputs: which of `vertices` has which number; none for edges and corners of polygons.
+    uint32_t corners = 0;
+    std::array<uint32_t, 3> numbered{};
+
+    /// Vulkan, Barycentric Interpolation, numbers vertices so that the provoking one is the first or, where it is the
+    /// last one of a primitive, the last, in the order of the topology. `count` of `vertices` are the primitive's.
+    void number(uint32_t count, bool provokingLast);
 };
 
 /// Where in its pixel each of a quad's fragments is shaded.
@@ -68,6 +75,8 @@ class FragmentShader {
     /// Whether it runs for each sample because of what it reads.
     bool perSample() const { return perSample_; }
     bool hasCentroids() const { return hasCentroids_; }
+    /// Whether it knows the primitive's vertices by number.
+    bool knowsVertices() const { return knowsVertices_; }
     /// Whether it neither knows single pixels nor decides about them: fragments may then stand for several.
     bool mayShadeCoarsely() const { return mayShadeCoarsely_; }
 
@@ -100,7 +109,7 @@ class FragmentShader {
     std::shared_ptr<const Interpreter> coarse_;  // only if the module takes derivatives
     std::vector<reference::InterfaceVariable> inputs_, outputs_;
     bool variesWithPosition_ = false;  // reads something interpolated
-    bool perSample_ = false, hasCentroids_ = false, mayShadeCoarsely_ = true;
+    bool perSample_ = false, hasCentroids_ = false, mayShadeCoarsely_ = true, knowsVertices_ = false;
     uint32_t viewIndex_ = 0;
     double imprecision_ = 0;  // relative error of the built-in functions used
 };

@@ -20,6 +20,10 @@ StoredTexel decodeStored(const PixelFormat& format, const std::byte* bytes) {
 
 /// The format whose channels and precision stand for a block-compressed one.
 const PixelFormat* decodedFormat(VkFormat format) {
+    if (format >= VK_FORMAT_ASTC_4x4_UNORM_BLOCK && format <= VK_FORMAT_ASTC_12x12_SRGB_BLOCK) {
+        const bool srgb = (format - VK_FORMAT_ASTC_4x4_UNORM_BLOCK) % 2 != 0;
+        return findPixelFormat(srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R16G16B16A16_SFLOAT);
+    }
     switch (format) {
         case VK_FORMAT_BC6H_UFLOAT_BLOCK:
         case VK_FORMAT_BC6H_SFLOAT_BLOCK:
@@ -44,16 +48,27 @@ const PixelFormat* decodedFormat(VkFormat format) {
     }
 }
 
+size_t levelBytes(VkFormat format, const PixelFormat& texel, VkExtent2D extent) {
+    if (isDecodedBlockFormat(format)) {
+        const VkExtent2D of = blockExtent(format);
+        return size_t{(extent.width + of.width - 1) / of.width} * ((extent.height + of.height - 1) / of.height) *
+               blockBytes(format);
+    }
+    return size_t{extent.width} * extent.height * texel.bytes;
+}
+
 /// Fills a level from its bytes, `first` bytes on; false when there are too few.
 bool fillLevel(ImageLevel& level, VkFormat format, const PixelFormat& texel, const Bytes& data, size_t first) {
     const VkExtent2D extent = level.extent;
     if (isDecodedBlockFormat(format)) {
-        const size_t columns = (extent.width + 3) / 4, rows = (extent.height + 3) / 4, bytes = blockBytes(format);
-        if (data.size() < first + columns * rows * bytes) return false;
+        const VkExtent2D of = blockExtent(format);
+        const size_t columns = (extent.width + of.width - 1) / of.width, bytes = blockBytes(format);
+        if (data.size() < first + levelBytes(format, texel, extent)) return false;
         for (uint32_t y = 0; y < extent.height; ++y) {
             for (uint32_t x = 0; x < extent.width; ++x) {
-                const size_t block = first + (y / 4 * columns + x / 4) * bytes;
-                level.at(x, y).channels = decodeBlockTexel(format, std::span(data).subspan(block, bytes), x % 4, y % 4);
+                const size_t block = first + (y / of.height * columns + x / of.width) * bytes;
+                level.at(x, y).channels =
+                    decodeBlockTexel(format, std::span(data).subspan(block, bytes), x % of.width, y % of.height);
             }
         }
         return true;
@@ -63,12 +78,6 @@ bool fillLevel(ImageLevel& level, VkFormat format, const PixelFormat& texel, con
     for (size_t i = 0; i < level.texels.size(); ++i)
         level.texels[i] = decodeStored(texel, data.data() + first + i / level.samples * texel.bytes);
     return true;
-}
-
-size_t levelBytes(VkFormat format, const PixelFormat& texel, VkExtent2D extent) {
-    if (isDecodedBlockFormat(format))
-        return size_t{(extent.width + 3) / 4} * ((extent.height + 3) / 4) * blockBytes(format);
-    return size_t{extent.width} * extent.height * texel.bytes;
 }
 
 }  // namespace

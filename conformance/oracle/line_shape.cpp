@@ -9,6 +9,8 @@ namespace {
 
 // Ends move by up to a sub-unit in x and y, and corners computed from them by as much again.
 constexpr int64_t kOutlineSlack = 3;
+// Of the count along a rectangular line, in pixels: what the slack of its ends does to it, and rounding.
+constexpr double kCountSlack = 0x1p-10;
 // A point's borders: its centre or its corners may have been snapped.
 constexpr int64_t kBorderSlack = 1;
 
@@ -65,15 +67,44 @@ SampleVerdict LineShape::classifyRectangle(const GridPoint& sample) const {
     if (distance > setup_.width + 2) return {};
     if (setup_.mode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT) {
         // Filters of implementations differ in their reach; a pixel and a half beside the line is generous.
-        return verdictOf(distance < setup_.width / 2 + 1.5 ? Coverage::may : Coverage::mustNot,
-                         smoothCoverage(sample).value_or(0) > 0);
+        const bool reaches = distance < setup_.width / 2 + 1.5 && stippleAt(sample).possible;
+        return verdictOf(reaches ? Coverage::may : Coverage::mustNot, smoothCoverage(sample).value_or(0) > 0);
     }
-    return verdictOf(classifyLine(grid_, sample, kOutlineSlack), lineCovers(grid_, sample));
+    const Coverage coverage = classifyLine(grid_, sample, kOutlineSlack);
+    const bool nominal = lineCovers(grid_, sample);
+    if (setup_.stippleFactor == 0 || coverage == Coverage::mustNot) return verdictOf(coverage, nominal);
+    const Stippled stipple = stippleAt(sample);
+    if (!stipple.possible) return {};
+    return verdictOf(stipple.certain ? coverage : Coverage::may, nominal && stipple.nominal);
 }
 
-bool LineShape::stipplePasses(int64_t fragment) const {
+LineShape::Stippled LineShape::stippleAt(const GridPoint& sample) const {
+    const auto dx = static_cast<double>(grid_.b.x - grid_.a.x), dy = static_cast<double>(grid_.b.y - grid_.a.y);
+    const double length = std::hypot(dx, dy), unit = std::ldexp(1.0, -setup_.subPixelBits);
+    if (length == 0) return {};
+    const double along =
+        (static_cast<double>(sample.x - grid_.a.x) * dx + static_cast<double>(sample.y - grid_.a.y) * dy) / length *
+        unit;
+    const double count = setup_.stippleStart + std::clamp(along, 0.0, length * unit);
+    const double reach = static_cast<double>(setup_.stippleFreedom) + kOutlineSlack * unit + kCountSlack;
+    Stippled result{stipplePasses(static_cast<int64_t>(count)), false, true};
+    for (double at = std::floor(std::max(0.0, count - reach)); at <= count + reach; ++at) {
+        const bool drawn = stipplePasses(static_cast<int64_t>(at));
+        result.possible = result.possible || drawn;
+        result.certain = result.certain && drawn;
+    }
+    return result;
+}
+
+double LineShape::stippleCount() const {
+    if (setup_.mode == VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT) return static_cast<double>(pixels_.size());
+    return std::hypot(static_cast<double>(grid_.b.x - grid_.a.x), static_cast<double>(grid_.b.y - grid_.a.y)) *
+           std::ldexp(1.0, -setup_.subPixelBits);
+}
+
+bool LineShape::stipplePasses(int64_t count) const {
     if (setup_.stippleFactor == 0) return true;
-    const int64_t bit = (fragment / setup_.stippleFactor % 16 + 16) % 16;
+    const int64_t bit = (count / setup_.stippleFactor % 16 + 16) % 16;
     return (setup_.stipplePattern >> bit & 1) != 0;
 }
 
@@ -83,7 +114,7 @@ SampleVerdict LineShape::classifyPixels(const GridPoint& sample) const {
     for (size_t i = 0; i < pixels_.size(); ++i) {
         // "May not deviate by more than one unit in either x or y"; ends may have one fragment more or less.
         if (std::abs(pixel.x - pixels_[i].x) > 1 || std::abs(pixel.y - pixels_[i].y) > 1) continue;
-        const auto fragment = static_cast<int64_t>(i) + setup_.stippleStart;
+        const int64_t fragment = static_cast<int64_t>(i) + static_cast<int64_t>(setup_.stippleStart);
         for (int64_t shift = -setup_.stippleFreedom; shift <= setup_.stippleFreedom; ++shift) {
             possible = possible || stipplePasses(fragment + shift);
         }

@@ -3,8 +3,10 @@
 // Rectangular lines (Vulkan, Basic Line Segment Rasterization, strict lines): the rectangle's outline may move by what
 // snapping moves ends and corners. Bresenham lines (Vulkan, Bresenham Line Segment Rasterization): an implementation's
 // fragments may be one pixel beside those of the diamond-exit rule. Smooth lines: coverage is "a value", no more.
-// Stipples count fragments of Bresenham lines from the start of a list's segment or of a strip; where an implementation
-// may have produced one fragment more or less, the pattern may be shifted by it.
+// Stipples (Vulkan, Line Stipple) count fragments of Bresenham lines, and pieces of unit length of rectangular ones,
+// from the start of a list's segment or of a strip; where an implementation may have counted one more or less, the
+// pattern may be shifted by it. Whether the shorter piece at the end of a segment counts as one for the next is left
+// open.
 #pragma once
 
 #include "conformance/oracle/lines.h"
@@ -25,7 +27,7 @@ class LineShape {
         VkLineRasterizationModeEXT mode = VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT;
         uint32_t stippleFactor = 0;  // 0: not stippled
         uint16_t stipplePattern = 0;
-        int64_t stippleStart = 0;    // fragments of the strip before this segment
+        double stippleStart = 0;     // the count of the strip before this segment
         int64_t stippleFreedom = 0;  // by how many an implementation's count may differ there
         int subPixelBits = 8;
     };
@@ -38,14 +40,19 @@ class LineShape {
 
     /// Of smooth lines: the share of a pixel that is covered, anything from 0 to 1 being legal.
     std::optional<double> smoothCoverage(const GridPoint& sample) const;
-    /// Fragments of a Bresenham line.
-    int64_t fragments() const { return static_cast<int64_t>(pixels_.size()); }
+    /// By how much the line takes the stipple's count on: fragments, or pixels of length.
+    double stippleCount() const;
 
   private:
     SampleVerdict classifyRectangle(const GridPoint& sample) const;
     SampleVerdict classifyPixels(const GridPoint& sample) const;
     double distanceInPixels(const GridPoint& sample) const;
-    bool stipplePasses(int64_t fragment) const;
+    bool stipplePasses(int64_t count) const;
+    /// Whether the pattern draws a rectangular line where the sample is: by the declared rule, and by any.
+    struct Stippled {
+        bool nominal = true, possible = true, certain = true;
+    };
+    Stippled stippleAt(const GridPoint& sample) const;
 
     Setup setup_;
     GridLine grid_;

@@ -3,6 +3,8 @@
 #include "conformance/oracle/quantise.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <set>
 
 namespace vernier::conformance::exact {
@@ -36,6 +38,20 @@ Result<StoredTexel*> placeOf(const Scene& scene, const TexelWrite& write, Memory
 }
 
 }  // namespace
+
+uint32_t wordOf(WordKind kind, double number) {
+    if (kind == WordKind::floating) return std::bit_cast<uint32_t>(static_cast<float>(number));
+    if (std::isnan(number)) return 0;
+    if (kind == WordKind::signedInteger)
+        return static_cast<uint32_t>(static_cast<int32_t>(std::clamp(std::nearbyint(number), -0x1p31, 0x1p31 - 1)));
+    return static_cast<uint32_t>(std::clamp(std::nearbyint(number), 0.0, 0x1p32 - 1));
+}
+
+double numberOf(WordKind kind, uint32_t word) {
+    return kind == WordKind::floating        ? static_cast<double>(std::bit_cast<float>(word))
+           : kind == WordKind::signedInteger ? static_cast<double>(static_cast<int32_t>(word))
+                                             : static_cast<double>(word);
+}
 
 TexelBuffer TexelBuffer::of(const SceneBinding& binding, const Bytes& bytes) {
     TexelBuffer buffer{findPixelFormat(binding.texelFormat), binding.offset, {}};

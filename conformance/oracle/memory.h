@@ -1,4 +1,4 @@
-// What a scene's commands read and write: its images, and the texels that shaders have stored into buffers.
+// What a scene's commands read and write: its images, and what shaders have stored into buffers.
 #pragma once
 
 #include "conformance/oracle/image_store.h"
@@ -31,9 +31,29 @@ struct TexelWrite {
     bool open = false;  // the fragment may not be there
 };
 
+enum class WordKind : uint8_t { unsignedInteger, signedInteger, floating };
+
+/// A word of 32 bits that may hold several values.
+struct OpenWord {
+    WordKind kind = WordKind::unsignedInteger;
+    Interval value;
+    OracleFlags flags = 0;
+};
+
+/// A buffer that shaders have stored into. `bytes` are the declared values, those of open words the nearest ones.
+struct StoredBuffer {
+    Bytes bytes;
+    std::map<uint64_t, OpenWord> open;  // by offset
+};
+
+/// A number as a word of a kind: rounded, and at the end of the kind's range when it is beyond.
+uint32_t wordOf(WordKind kind, double number);
+double numberOf(WordKind kind, uint32_t word);
+
 struct Memory {
     std::vector<ImageStore> images;
     std::map<uint32_t, TexelBuffer> texelBuffers;  // by number of SceneBuffer: those that shaders have written
+    std::map<uint32_t, StoredBuffer> buffers;      // the same of storage buffers
 };
 
 /// Stores what the fragments of one draw have left. Vulkan orders nothing among them (Shader Memory Access Ordering):

@@ -2,6 +2,7 @@
 
 #include "conformance/oracle/assembly.h"
 #include "conformance/oracle/fragment_shader.h"
+#include "conformance/oracle/pass_samples.h"
 #include "conformance/oracle/prepare.h"
 #include "conformance/oracle/quantise.h"
 #include "conformance/oracle/sample_locations.h"
@@ -9,14 +10,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <thread>
+#include <utility>
 
 namespace vernier::conformance::exact {
 
 namespace {
+
+/// In pixels: numbers of vertices that differ by less than this are snapped as one, but for ties.
+constexpr double kLeastSnap = 0x1p-16;
 
 class PassRenderer {
   public:
@@ -27,133 +34,46 @@ class PassRenderer {
           pass_(pass),
           rules_(rules),
           memory_(memory),
-          images_(memory.images),
+          target_(pass, memory.images, layer),
           layer_(layer),
           view_(view) {}
 
     Status run() {
-        if (Status s = load(); !s) return s;
+        if (Status s = target_.load(); !s) return s;
+        width_ = target_.width();
+        height_ = target_.height();
+        samples_ = target_.samples();
         for (const SceneDraw& draw : pass_.draws) {
             if (Status s = this->draw(draw); !s) return s;
         }
-        store();
-        resolve();
+        target_.store();
+        target_.resolve();
         return {};
     }
 
   private:
-    ImageLevel* attachment(const SceneAttachment& a) {
-        return a.image < images_.size() ? &images_[a.image].level(a.mipLevel, a.layer + layer_) : nullptr;
-    }
-
-    Status load() {
-        if (pass_.colors.size() > kMaxColorAttachments) {
-            return unsupported("oracle: a pass with " + std::to_string(pass_.colors.size()) + " colour attachments");
-        }
-        width_ = pass_.extent.width;
-        height_ = pass_.extent.height;
-        output_.colorCount = pass_.colors.size();
-        const ImageLevel* depth = attachment(pass_.depthStencil);
-        for (size_t i = 0; i < pass_.colors.size(); ++i) {
-            if (const ImageLevel* color = attachment(pass_.colors[i])) {
-                samples_ = color->samples;
-                output_.colorFormats[i] = &images_[pass_.colors[i].image].format();
-            }
-        }
-        if (depth) {
-            samples_ = depth->samples;
-            output_.depthFormat = &images_[pass_.depthStencil.image].format();
-        }
-        positions_ = standardSampleLocations(samples_);
-        if (positions_.empty()) return unsupported("oracle: " + std::to_string(samples_) + " samples");
-        state_.resize(static_cast<size_t>(width_) * height_ * samples_);
-        for (uint32_t y = 0; y < height_; ++y) {
-            for (uint32_t x = 0; x < width_; ++x) {
-                for (uint32_t s = 0; s < samples_; ++s) at(x, y, s) = loadStates(x, y, s);
-            }
-        }
-        return {};
-    }
-
-    /// A loaded stencil that may hold several codes is each of them in turn; the operations on it are on codes.
-    Sample loadStates(uint32_t x, uint32_t y, uint32_t s) {
-        Sample states{loadSample(x, y, s)};
-        const SceneAttachment& a = pass_.depthStencil;
-        if (!output_.depthFormat || !output_.depthFormat->stencil || a.loadOp != VK_ATTACHMENT_LOAD_OP_LOAD)
-            return states;
-        const StoredTexel& texel = attachment(a)->at(x, y, s);
-        constexpr OracleFlags kReasons = kOracleTie | kOracleSnap | kOracleOrder | kOraclePattern | kOracleSequence;
-        for (double code = texel.channels[1].low; code <= texel.channels[1].high; ++code) {
-            SampleState other = states[0];
-            other.stencil = static_cast<uint8_t>(code);
-            addAlternatives(states, {other}, texel.flags & kReasons);
-        }
-        return states;
-    }
-
-    SampleState loadSample(uint32_t x, uint32_t y, uint32_t s) {
-        SampleState state;
-        for (size_t i = 0; i < pass_.colors.size(); ++i) {
-            const SceneAttachment& a = pass_.colors[i];
-            if (!output_.colorFormats[i]) continue;
-            const PixelFormat& format = *output_.colorFormats[i];
-            if (a.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR) {
-                Color clear;
-                for (size_t c = 0; c < 4; ++c) {
-                    const bool isSigned = format.components[0].encoding == Encoding::sint;
-                    clear[c] = !format.isInteger() ? static_cast<double>(a.clear.color.float32[c])
-                               : isSigned          ? static_cast<double>(a.clear.color.int32[c])
-                                                   : static_cast<double>(a.clear.color.uint32[c]);
-                }
-                state.colors[i] = quantiseColor(format, clear);
-            } else {
-                const StoredTexel& texel = attachment(a)->at(x, y, s);
-                state.colors[i] = texel.channels;
-                state.flags[i] = a.loadOp == VK_ATTACHMENT_LOAD_OP_LOAD ? texel.flags : OracleFlags{kOracleUnknown};
-            }
-        }
-        if (output_.depthFormat) {
-            const SceneAttachment& a = pass_.depthStencil;
-            if (a.loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR) {
-                state.depth = static_cast<double>(a.clear.depthStencil.depth);
-                if (output_.depthFormat->depth) state.depth = quantise(output_.depthFormat->components[0], state.depth);
-                state.stencil = static_cast<uint8_t>(a.clear.depthStencil.stencil);
-            } else {
-                const StoredTexel& texel = attachment(a)->at(x, y, s);
-                state.depth = texel.channels[0];
-                state.stencil = static_cast<uint8_t>(texel.channels[1].value);
-                state.flags[kDepthFlags] =
-                    a.loadOp == VK_ATTACHMENT_LOAD_OP_LOAD ? texel.flags : OracleFlags{kOracleUnknown};
-            }
-        }
-        return state;
-    }
-
-    Sample& at(uint32_t x, uint32_t y, uint32_t s) {
-        return state_[(static_cast<size_t>(y) * width_ + x) * samples_ + s];
-    }
-
     Status draw(const SceneDraw& draw) {
         const ScenePipeline& pipeline = scene_.pipelines[draw.pipeline];
-        if (Status s = checkModelled(pipeline); !s) return s;
-        OutputState output = output_;
+        OutputState output = target_.output();
         output.pipeline = &pipeline;
         ShaderResources vertexResources(scene_, memory_, draw, rules_);
         const uint32_t viewIndex = view_ ? layer_ : 0;
         auto geometry = assembleDraw(scene_, draw, vertexResources, viewIndex);
         if (!geometry) return geometry.error();
-        if (vertexResources.wrote) return unsupported("oracle: the vertex shader uses storage buffers or images");
+        if (Status s = checkVertexStage(vertexResources); !s) return s;
         std::optional<FragmentShader> shader;
         if (pipeline.fragmentShader != kNone) {
             auto created = FragmentShader::create(scene_, pipeline, viewIndex);
             if (!created) return created.error();
             shader = std::move(*created);
         }
+        if (shader && shader->knowsVertices() && pipeline.polygonMode != VK_POLYGON_MODE_FILL)
+            return unsupported("oracle: barycentric inputs of polygons drawn as lines or points");
         const PrepareContext context{draw,
                                      pipeline,
                                      {width_, height_},
                                      rules_.subPixelBits,
-                                     output_.depthFormat,
+                                     output.depthFormat,
                                      view_ ? std::nullopt : std::optional(layer_),
                                      rules_.majorAxisLines,
                                      rules_.planesBehindEye};
@@ -168,6 +88,8 @@ class PassRenderer {
         const uint32_t threads = std::clamp(std::thread::hardware_concurrency(), 1u, 16u);
         std::vector<Status> status(threads);
         std::vector<std::vector<TexelWrite>> writes(threads);
+        WordTraffic words{vertexResources.wordWrites, vertexResources.loadedWords};
+        std::mutex wordsInUse;
         std::vector<std::thread> workers;
         for (uint32_t t = 0; t < threads; ++t) {
             workers.emplace_back([&, t] {
@@ -175,7 +97,10 @@ class PassRenderer {
                 for (uint32_t row = t * rows(); row < height_ && status[t].ok(); row += threads * rows())
                     status[t] = shadeRows(*primitives, row, shader ? &*shader : nullptr, output, resources);
                 writes[t] = std::move(resources.writes);
-                if (status[t].ok() && !writes[t].empty()) status[t] = checkStores(pipeline, resources);
+                if (status[t].ok()) status[t] = checkStores(pipeline, resources, writes[t]);
+                const std::lock_guard lock(wordsInUse);
+                words.writes.insert(words.writes.end(), resources.wordWrites.begin(), resources.wordWrites.end());
+                words.loads.merge(resources.loadedWords);
             });
         }
         for (std::thread& worker : workers) worker.join();
@@ -185,14 +110,43 @@ class PassRenderer {
         for (const std::vector<TexelWrite>& each : writes) {
             if (Status s = applyWrites(scene_, each, memory_); !s) return s;
         }
+        for (const WordWrite& write : words.writes) {
+            if (words.loads.contains({write.buffer, write.offset}))
+                return unsupported("oracle: a draw that loads words of a buffer that it stores to");
+        }
+        return applyWords(scene_, words.writes, memory_);
+    }
+
+    struct WordTraffic {
+        std::vector<WordWrite> writes;
+        std::set<std::pair<uint32_t, uint64_t>> loads;
+    };
+
+    /// Vertex shaders run at least once for a vertex, and their inputs have no range.
+    Status checkVertexStage(const ShaderResources& resources) const {
+        if (!resources.refusal.empty()) return unsupported("oracle: " + resources.refusal);
+        for (const WordWrite& write : resources.wordWrites) {
+            if (!isIdempotent(write.op)) return unsupported("oracle: vertex shaders that count how often they run");
+        }
+        for (const auto& [buffer, offset] : resources.loadedWords) {
+            const auto stored = memory_.buffers.find(buffer);
+            if (stored == memory_.buffers.end()) continue;
+            const auto open = stored->second.open.find(offset);
+            if (open == stored->second.open.end()) continue;
+            const Interval& value = open->second.value;
+            if (open->second.flags != 0 || value.high - value.low > kLeastSnap)
+                return unsupported("oracle: vertex shaders that load open words of a buffer");
+        }
         return {};
     }
 
     /// Stores are modelled where every fragment makes them, and where nothing in the draw depends on their order.
-    static Status checkStores(const ScenePipeline& pipeline, const ShaderResources& resources) {
+    static Status checkStores(const ScenePipeline& pipeline, const ShaderResources& resources,
+                              const std::vector<TexelWrite>& writes) {
+        if (writes.empty() && resources.wordWrites.empty()) return {};
         if (pipeline.depthTest || pipeline.stencilTest || pipeline.depthBoundsTest)
             return unsupported("oracle: stores of fragments that tests may have dropped");
-        for (const TexelWrite& write : resources.writes) {
+        for (const TexelWrite& write : writes) {
             for (const SceneBinding* read : resources.loads) {
                 if (read->type == write.binding->type && read->image == write.binding->image &&
                     read->buffer == write.binding->buffer)
@@ -202,13 +156,10 @@ class PassRenderer {
         return {};
     }
 
-    Status checkModelled(const ScenePipeline& pipeline) const {
-        // Vulkan, Sample Shading: at least ceil(least * samples) fragments are shaded; all or one are modelled.
+    /// Vulkan, Sample Shading: at least ceil(least * samples) fragments are shaded. Whether fewer than all may be.
+    bool sharesFragments(const ScenePipeline& pipeline, const FragmentShader& shader) const {
         const float asked = pipeline.minSampleShading * static_cast<float>(samples_);
-        if (pipeline.sampleShading && asked > 1 && asked <= static_cast<float>(samples_ - 1)) {
-            return unsupported("oracle: shading of some samples");
-        }
-        return {};
+        return !shader.perSample() && asked <= static_cast<float>(samples_ - 1);
     }
 
     bool shadesSamples(const ScenePipeline& pipeline, const FragmentShader* shader) const {
@@ -270,21 +221,21 @@ class PassRenderer {
         if (order.size() < 2) return shadeAll();
         const size_t begin = static_cast<size_t>(row) * width_ * samples_;
         const size_t count = static_cast<size_t>(std::min(rows(), height_ - row)) * width_ * samples_;
-        const std::vector<Sample> before(state_.begin() + static_cast<ptrdiff_t>(begin),
-                                         state_.begin() + static_cast<ptrdiff_t>(begin + count));
+        const std::span<Sample> rows = std::span(target_.all()).subspan(begin, count);
+        const std::vector<Sample> before(rows.begin(), rows.end());
         std::vector<Sample> declared;
         do {
-            std::copy(before.begin(), before.end(), state_.begin() + static_cast<ptrdiff_t>(begin));
+            std::ranges::copy(before, rows.begin());
             if (Status s = shadeAll(); !s) return s;
             for (size_t i = 0; i < count; ++i) {
                 if (declared.size() < count) {
-                    declared.push_back(state_[begin + i]);
+                    declared.push_back(rows[i]);
                 } else {
-                    addAlternatives(declared[i], state_[begin + i], kOracleSequence);
+                    addAlternatives(declared[i], rows[i], kOracleSequence);
                 }
             }
         } while (std::ranges::next_permutation(order).found);
-        std::ranges::move(declared, state_.begin() + static_cast<ptrdiff_t>(begin));
+        std::ranges::move(declared, rows.begin());
         return {};
     }
 
@@ -334,40 +285,70 @@ class PassRenderer {
                      const std::vector<SampleVerdict>& verdicts, const FragmentShader* shader,
                      const OutputState& output, ShaderResources& resources) {
         const bool perSample = shadesSamples(*output.pipeline, shader);
-        for (uint32_t run = 0; run < (perSample ? samples_ : 1); ++run) {
-            std::array<FragmentResult, 4> fragments{};
-            if (shader) {
-                ShadingPlace place;
-                place.pixels = pixels_;
-                if (pixels_ > 1) place.offset = {1, 1};
-                if (perSample) {
-                    place.sample = run;
-                    place.perSample = true;
-                    place.offset = {static_cast<double>(positions_[run].x) / 16,
-                                    static_cast<double>(positions_[run].y) / 16};
-                } else if (shader->hasCentroids()) {
-                    for (size_t lane = 0; lane < 4; ++lane) {
-                        place.centroids[lane] =
-                            centroidPlaces(t, qx + static_cast<int32_t>(lane % 2), qy + static_cast<int32_t>(lane / 2),
-                                           std::span(verdicts).subspan(lane * samples_, samples_));
-                    }
-                }
-                auto shaded = shader->evaluate(t.source, static_cast<uint32_t>(qx), static_cast<uint32_t>(qy), covered,
-                                               output, resources, place);
-                if (!shaded) return shaded.error();
-                fragments = std::move(*shaded);
-                for (size_t lane = 0; lane < 4; ++lane)
-                    keepWrites(fragments[lane], std::span(verdicts).subspan(lane * samples_, samples_), resources);
-            } else {
+        std::vector<std::array<FragmentResult, 4>> runs(perSample ? samples_ : 1);
+        for (uint32_t run = 0; run < runs.size(); ++run) {
+            std::array<FragmentResult, 4>& fragments = runs[run];
+            if (!shader) {
                 for (FragmentResult& fragment : fragments) fragment.colorFlags.fill(kOracleUnknown);
+                continue;
             }
-            for (uint32_t lane = 0; lane < 4; ++lane) {
-                for (uint32_t pixel = 0; pixel < pixelsOfFragment(); ++pixel) {
-                    const auto [x, y] = pixelOf(qx, qy, lane, pixel);
-                    for (uint32_t s = 0; s < samples_; ++s) {
-                        if (perSample && s != run) continue;
-                        applySample(t, x, y, s, verdicts[verdictIndex(lane, pixel, s)], fragments[lane], output);
-                    }
+            const ShadingPlace place = placeOf(t, qx, qy, verdicts, *shader, perSample, run);
+            auto shaded = shader->evaluate(t.source, static_cast<uint32_t>(qx), static_cast<uint32_t>(qy), covered,
+                                           output, resources, place);
+            if (!shaded) return shaded.error();
+            fragments = std::move(*shaded);
+            for (size_t lane = 0; lane < 4; ++lane) {
+                const auto all =
+                    std::span(verdicts).subspan(lane * pixelsOfFragment() * samples_, pixelsOfFragment() * samples_);
+                keepWrites(fragments[lane], perSample ? all.subspan(run, 1) : all, resources);
+            }
+        }
+        if (perSample && sharesFragments(*output.pipeline, *shader)) {
+            if (Status s = uniteRuns(runs); !s) return s;
+        }
+        for (uint32_t lane = 0; lane < 4; ++lane) {
+            for (uint32_t pixel = 0; pixel < pixelsOfFragment(); ++pixel) {
+                const auto [x, y] = pixelOf(qx, qy, lane, pixel);
+                for (uint32_t s = 0; s < samples_; ++s) {
+                    applySample(t, x, y, s, verdicts[verdictIndex(lane, pixel, s)], runs[perSample ? s : 0][lane],
+                                output);
+                }
+            }
+        }
+        return {};
+    }
+
+    ShadingPlace placeOf(const PreparedPrimitive& t, int32_t qx, int32_t qy, const std::vector<SampleVerdict>& verdicts,
+                         const FragmentShader& shader, bool perSample, uint32_t sample) const {
+        ShadingPlace place;
+        place.pixels = pixels_;
+        if (pixels_ > 1) place.offset = {1, 1};
+        if (perSample) {
+            place.sample = sample;
+            place.perSample = true;
+            place.offset = {static_cast<double>(positions_[sample].x) / 16,
+                            static_cast<double>(positions_[sample].y) / 16};
+        } else if (shader.hasCentroids()) {
+            for (size_t lane = 0; lane < 4; ++lane) {
+                place.centroids[lane] =
+                    centroidPlaces(t, qx + static_cast<int32_t>(lane % 2), qy + static_cast<int32_t>(lane / 2),
+                                   std::span(verdicts).subspan(lane * samples_, samples_));
+            }
+        }
+        return place;
+    }
+
+    /// What any sample of the pixel has is permitted at each: a fragment may stand for several, and its inputs and
+    /// SampleId are those of any of them.
+    static Status uniteRuns(std::vector<std::array<FragmentResult, 4>>& runs) {
+        const std::vector<std::array<FragmentResult, 4>> each = runs;
+        for (size_t s = 0; s < runs.size(); ++s) {
+            for (size_t other = 0; other < runs.size(); ++other) {
+                for (size_t lane = 0; lane < 4; ++lane) {
+                    const FragmentResult& there = each[other][lane];
+                    if (!there.writes.empty() || !there.wordWrites.empty())
+                        return unsupported("oracle: stores of fragments that may stand for several samples");
+                    if (s != other) runs[s][lane].unite(there);
                 }
             }
         }
@@ -376,9 +357,15 @@ class PassRenderer {
 
     static void keepWrites(const FragmentResult& fragment, std::span<const SampleVerdict> verdicts,
                            ShaderResources& resources) {
+        const bool open = std::ranges::none_of(verdicts, &SampleVerdict::isCertain);
         for (TexelWrite write : fragment.writes) {
-            write.open = std::ranges::none_of(verdicts, [](const SampleVerdict& v) { return v.isCertain(); });
+            write.open = open;
             resources.writes.push_back(write);
+        }
+        for (WordWrite write : fragment.wordWrites) {
+            write.open = open;
+            write.nominal = std::ranges::any_of(verdicts, &SampleVerdict::isNominal);
+            resources.wordWrites.push_back(write);
         }
     }
 
@@ -437,79 +424,19 @@ class PassRenderer {
         input.depthOrigin = t.depthOrigin;
         input.frontFacing = t.source.frontFacing;
         input.viewport = t.viewport;
-        applyTriangle(output, input, at(static_cast<uint32_t>(x), static_cast<uint32_t>(y), s));
-    }
-
-    void store() {
-        for (uint32_t y = 0; y < height_; ++y) {
-            for (uint32_t x = 0; x < width_; ++x) {
-                for (uint32_t s = 0; s < samples_; ++s) storeSample(x, y, s);
-            }
-        }
-    }
-
-    void storeSample(uint32_t x, uint32_t y, uint32_t s) {
-        const Sample& states = at(x, y, s);
-        for (size_t i = 0; i < pass_.colors.size(); ++i) {
-            ImageLevel* target = attachment(pass_.colors[i]);
-            if (!target) continue;
-            StoredTexel texel{states[0].colors[i], states[0].flags[i]};
-            for (const SampleState& state : states) {
-                texel.flags |= state.flags[i];
-                if (state.colors[i] != states[0].colors[i]) texel.flags |= kOracleEdge;
-                for (size_t c = 0; c < 4; ++c) texel.channels[c] = texel.channels[c].united(state.colors[i][c]);
-            }
-            target->at(x, y, s) = texel;
-        }
-        if (ImageLevel* target = attachment(pass_.depthStencil)) {
-            StoredTexel texel{{states[0].depth, static_cast<double>(states[0].stencil), 0.0, 1.0},
-                              states[0].flags[kDepthFlags]};
-            for (const SampleState& state : states) {
-                texel.flags |= state.flags[kDepthFlags];
-                const Interval stencil(state.stencil);
-                if (state.depth != states[0].depth || state.stencil != states[0].stencil) texel.flags |= kOracleEdge;
-                texel.channels[0] = texel.channels[0].united(state.depth);
-                texel.channels[1] = texel.channels[1].united(stencil);
-            }
-            target->at(x, y, s) = texel;
-        }
-    }
-
-    void resolve() {
-        for (const SceneAttachment& a : pass_.colors) {
-            if (a.resolveImage >= images_.size()) continue;
-            const ImageLevel& source = images_[a.image].level(a.mipLevel, a.layer + layer_);
-            ImageLevel& target = images_[a.resolveImage].level(0, layer_);
-            for (uint32_t y = 0; y < height_; ++y) {
-                for (uint32_t x = 0; x < width_; ++x) {
-                    target.at(x, y) = resolveSamples(images_[a.image].format(), source, x, y);
-                }
-            }
-        }
-        const SceneAttachment& depth = pass_.depthStencil;
-        if (depth.image >= images_.size() || depth.resolveImage >= images_.size()) return;
-        const ImageLevel& source = images_[depth.image].level(depth.mipLevel, depth.layer + layer_);
-        ImageLevel& target = images_[depth.resolveImage].level(0, layer_);
-        for (uint32_t y = 0; y < height_; ++y) {
-            for (uint32_t x = 0; x < width_; ++x) {
-                target.at(x, y) = resolveDepthStencil(images_[depth.image].format(), source, x, y, depth.depthResolve,
-                                                      depth.stencilResolve);
-            }
-        }
+        applyTriangle(output, input, target_.at(static_cast<uint32_t>(x), static_cast<uint32_t>(y), s));
     }
 
     const Scene& scene_;
     const ScenePass& pass_;
     const OracleRules& rules_;
     Memory& memory_;
-    std::vector<ImageStore>& images_;
+    PassSamples target_;
     const uint32_t layer_;
     const bool view_;
     uint32_t width_ = 0, height_ = 0, samples_ = 1;
-    OutputState output_;  // attachments only
     std::vector<GridPoint> positions_;
     uint32_t pixels_ = 1;  // on a side of a fragment of the draw
-    std::vector<Sample> state_;
 };
 
 }  // namespace

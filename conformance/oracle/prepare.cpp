@@ -97,6 +97,7 @@ class Preparer {
     Status addTriangle(const std::array<const ShadedVertex*, 3>& vertices, FragmentSource source) {
         const ScenePipeline& pipeline = context_.pipeline;
         source.vertices = vertices;
+        if (pipeline.polygonMode == VK_POLYGON_MODE_FILL) source.number(3, pipeline.provokingVertexLast);
         auto triangle = Triangle::create(setupOf(vertices));
         if (!triangle) return {};
         source.frontFacing = isFrontFacing(triangle->orientation(), pipeline.frontFace);
@@ -150,7 +151,6 @@ class Preparer {
         const bool bresenham = pipeline.lineMode == VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT;
         if (!(a.position[3] > 0) || !(b.position[3] > 0)) return unsupported("oracle: lines behind the eye");
         if (bresenham && pipeline.lineWidth != 1) return unsupported("oracle: wide Bresenham lines");
-        if (!bresenham && pipeline.stippleFactor != 0) return unsupported("oracle: stippled rectangles");
         LineShape::Setup setup;
         setup.ends = {windowOf(a), windowOf(b)};
         setup.width = static_cast<double>(pipeline.lineWidth);
@@ -163,10 +163,13 @@ class Preparer {
             stippleFreedom_ = 0;
         }
         setup.stippleStart = stippleStart_;
-        setup.stippleFreedom = ++stippleFreedom_;  // every segment may have one fragment more or less
+        // Every segment may have one fragment more or less; a rectangle's pieces begin where it does, so that only
+        // those before it matter.
+        setup.stippleFreedom = bresenham ? ++stippleFreedom_ : stippleFreedom_++;
         LineShape line(setup);
-        stippleStart_ += line.fragments();
+        stippleStart_ += line.stippleCount();
         source.vertices = {&a, &b, &a};
+        if (pipeline.polygonMode == VK_POLYGON_MODE_FILL) source.number(2, pipeline.provokingVertexLast);
         const PixelBounds bounds = line.bounds(limits_);
         return addShape(source, bounds, std::move(line), std::nullopt);
     }
@@ -175,6 +178,7 @@ class Preparer {
         if (!(vertex.position[3] > 0)) return {};
         PointShape point({windowOf(vertex), size, context_.subPixelBits});
         source.vertices = {&vertex, &vertex, &vertex};
+        if (context_.pipeline.polygonMode == VK_POLYGON_MODE_FILL) source.number(1, false);
         const PixelBounds bounds = point.bounds(limits_);
         return addShape(source, bounds, std::nullopt, std::move(point));
     }
@@ -196,7 +200,8 @@ class Preparer {
     VkViewport viewport_{};
     PixelBounds limits_;
     uint64_t viewHash_ = 0;  // vertices with equal clip coordinates snap alike in one view
-    int64_t stippleStart_ = 0, stippleFreedom_ = 0;
+    double stippleStart_ = 0;
+    int64_t stippleFreedom_ = 0;
     uint64_t outlines_ = 0;
     std::vector<PreparedPrimitive> result_;
 };

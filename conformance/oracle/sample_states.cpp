@@ -410,6 +410,21 @@ class Splitter {
 
 }  // namespace
 
+void FragmentResult::unite(const FragmentResult& other) {
+    const bool had = !discarded || discardOpen;  // else there are no outputs
+    discardOpen = discardOpen || other.discardOpen || discarded != other.discarded;
+    if (other.discarded && !other.discardOpen) return;
+    for (size_t i = 0; i < colors.size(); ++i) {
+        for (size_t c = 0; c < 4; ++c)
+            colors[i][c] = had ? colors[i][c].united(other.colors[i][c]) : other.colors[i][c];
+        colorFlags[i] |= other.colorFlags[i];
+    }
+    if (source1 && other.source1) {
+        for (size_t c = 0; c < 4; ++c) (*source1)[c] = (*source1)[c].united((*other.source1)[c]);
+    }
+    if (depth && other.depth) depth = depth->united(*other.depth);
+}
+
 bool SampleState::sameContents(const SampleState& other) const {
     return stencil == other.stencil && depth == other.depth && depthOrigin == other.depthOrigin &&
            flags == other.flags && colors == other.colors;

@@ -8,6 +8,7 @@
 #include "conformance/oracle/image_store.h"
 #include "conformance/oracle/memory.h"
 #include "conformance/oracle/triangle.h"
+#include "conformance/oracle/word_writes.h"
 #include "conformance/scene/scene.h"
 
 #include <array>
@@ -47,7 +48,11 @@ struct FragmentResult {
     std::optional<Color> source1;                                // dual-source blending
     std::optional<Interval> depth;                               // FragDepth
     std::vector<TexelWrite> writes;                              // in the order of the shader
+    std::vector<WordWrite> wordWrites;
     bool discarded = false, discardOpen = false;
+
+    /// Lets it be what another one is, too.
+    void unite(const FragmentResult& other);
 };
 
 /// State of a pass and a pipeline that per-sample operations need.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <iterator>
 
 namespace vernier::conformance::exact {
 
@@ -25,19 +27,26 @@ ShaderResources::ShaderResources(const Scene& scene, const Memory& memory, const
                                  const OracleRules& rules)
     : scene_(scene), memory_(memory), draw_(draw), rules_(rules), pushConstants_(draw.pushConstants) {
     for (const SceneBinding& binding : draw.bindings) {
-        Bytes bytes;
+        Bound bound;
         const bool texels = binding.type == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER ||
                             binding.type == VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
         if (texels && binding.buffer < scene.buffers.size())
             texelBuffers_.emplace(&binding, TexelBuffer::of(binding, scene.buffers[binding.buffer].data));
         if (!texels && binding.buffer < scene.buffers.size()) {
-            const Bytes& data = scene.buffers[binding.buffer].data;
+            const auto stored = memory.buffers.find(binding.buffer);
+            const bool isStored = stored != memory.buffers.end();
+            const Bytes& data = isStored ? stored->second.bytes : scene.buffers[binding.buffer].data;
+            if (isStored) bound.stored = &stored->second;
+            if (isStored && binding.type != VK_DESCRIPTOR_TYPE_STORAGE_BUFFER && !stored->second.open.empty())
+                refusal = "a uniform buffer that shaders have stored to";
             const size_t begin = std::min<size_t>(binding.offset, data.size());
             const size_t length = std::min<size_t>(binding.range, data.size() - begin);
-            bytes.assign(data.begin() + static_cast<ptrdiff_t>(begin),
-                         data.begin() + static_cast<ptrdiff_t>(begin + length));
+            bound.bytes.assign(data.begin() + static_cast<ptrdiff_t>(begin),
+                               data.begin() + static_cast<ptrdiff_t>(begin + length));
         }
-        buffers_.push_back(std::move(bytes));
+        if (texels && memory.buffers.contains(binding.buffer))
+            refusal = "texels of a buffer that shaders have stored words to";
+        buffers_.push_back(std::move(bound));
     }
 }
 
@@ -81,10 +90,100 @@ const SceneSampler* ShaderResources::samplerOf(const reference::Descriptor& desc
 
 std::span<std::byte> ShaderResources::buffer(reference::BufferKind kind, const reference::Descriptor& descriptor) {
     if (kind == reference::BufferKind::pushConstants) return pushConstants_;
-    if (kind == reference::BufferKind::storage) wrote = true;
     const SceneBinding* binding = find(descriptor);
     if (!binding) return {};
-    return buffers_[static_cast<size_t>(binding - draw_.bindings.data())];
+    return buffers_[static_cast<size_t>(binding - draw_.bindings.data())].bytes;
+}
+
+void ShaderResources::resetRuns() {
+    runs.clear();
+    wordRuns.clear();
+}
+
+void ShaderResources::startRun() {
+    runs.emplace_back();
+    wordRuns.emplace_back();
+    // Backwards: of a word that has changed twice the oldest value is the last one put back.
+    for (auto change = changed_.rbegin(); change != changed_.rend(); ++change)
+        std::memcpy(change->first, &change->second, sizeof change->second);
+    changed_.clear();
+    if (shown_ == end) return;
+    shown_ = end;
+    for (size_t i = 0; i < buffers_.size(); ++i) {
+        Bound& bound = buffers_[i];
+        if (bound.stored == nullptr) continue;
+        const uint64_t first = draw_.bindings[i].offset;
+        for (const auto& [offset, word] : bound.stored->open) {
+            if (offset < first || offset - first + 4 > bound.bytes.size()) continue;
+            const uint32_t bits = wordOf(word.kind, atEnd(word.value));
+            std::memcpy(bound.bytes.data() + (offset - first), &bits, sizeof bits);
+        }
+    }
+}
+
+std::optional<ShaderResources::Word> ShaderResources::wordAt(const reference::BufferAccess& access) {
+    const SceneBinding* binding = find(access.buffer);
+    if (binding == nullptr) return std::nullopt;
+    Bound& bound = buffers_[static_cast<size_t>(binding - draw_.bindings.data())];
+    if (access.offset > bound.bytes.size() || bound.bytes.size() - access.offset < access.bytes) return std::nullopt;
+    return Word{bound, binding->buffer, binding->offset + access.offset};
+}
+
+void ShaderResources::loaded(const reference::BufferAccess& access) {
+    const auto word = wordAt(access);
+    if (!word) return;
+    const auto own = [&](const RunWord& w) {
+        return w.invocation == access.invocation && w.buffer == word->buffer && w.offset == word->offset;
+    };
+    if (!wordRuns.empty() && std::ranges::any_of(wordRuns.back(), own)) return;
+    for (uint64_t at = word->offset / 4; at <= (word->offset + access.bytes - 1) / 4; ++at)
+        loadedWords.insert({word->buffer, at * 4});
+    if (word->bound.stored == nullptr) return;
+    const auto& open = word->bound.stored->open;
+    const auto found = open.upper_bound(word->offset + access.bytes - 1);
+    if (found == open.begin() || std::prev(found)->first + 4 <= word->offset) return;
+    const auto& [offset, value] = *std::prev(found);
+    if (offset != word->offset || access.bytes != 4 || access.floating != (value.kind == WordKind::floating)) {
+        refusal = "an open word of a buffer that is read in parts or as another type";
+        return;
+    }
+    sawRange = sawRange || !value.value.isExact();
+    sawZero = sawZero || (value.value.low < 0 && value.value.high > 0);
+    flags |= value.flags;
+}
+
+void ShaderResources::note(const reference::BufferAccess& access, spv::Op op, const reference::Scalar<double>& value) {
+    const auto word = wordAt(access);
+    if (!word) return;
+    if (access.bytes != 4 || word->offset % 4 != 0 || wordRuns.empty()) {
+        refusal = "stores to buffers of other sizes than 32 bits";
+        return;
+    }
+    const WordKind kind = access.floating   ? WordKind::floating
+                          : access.isSigned ? WordKind::signedInteger
+                                            : WordKind::unsignedInteger;
+    const double number = access.floating ? value.number : numberOf(kind, static_cast<uint32_t>(value.bits));
+    wordRuns.back().push_back({word->buffer, word->offset, kind, op, access.invocation, number});
+    std::byte* const bytes = word->bound.bytes.data() + access.offset;
+    uint32_t before = 0;
+    std::memcpy(&before, bytes, sizeof before);
+    changed_.emplace_back(bytes, before);
+}
+
+void ShaderResources::stored(const reference::BufferAccess& access, const reference::Scalar<double>& value) {
+    note(access, spv::OpStore, value);
+}
+
+void ShaderResources::combined(const reference::BufferAccess& access, spv::Op op,
+                               const reference::Scalar<double>& value) {
+    note(access, op, value);
+}
+
+double ShaderResources::atEnd(const Interval& v) const {
+    return end == RangeEnd::nominal ? v.value
+           : end == RangeEnd::low   ? v.low
+           : end == RangeEnd::high  ? v.high
+                                    : std::clamp(0.0, v.low, v.high);
 }
 
 reference::Texel<double> ShaderResources::deliver(const SampleResult& result, const reference::ImageShape& shape) {
@@ -94,10 +193,7 @@ reference::Texel<double> ShaderResources::deliver(const SampleResult& result, co
         const Interval& v = result.color[c];
         sawRange = sawRange || !v.isExact();
         sawZero = sawZero || (v.low < 0 && v.high > 0);
-        const double number = end == RangeEnd::nominal ? v.value
-                              : end == RangeEnd::low   ? v.low
-                              : end == RangeEnd::high  ? v.high
-                                                       : std::clamp(0.0, v.low, v.high);
+        const double number = atEnd(v);
         texel[c] = shape.floating
                        ? reference::Scalar<double>::ofNumber(number)
                        : reference::Scalar<double>::ofBits(static_cast<uint32_t>(static_cast<int64_t>(number)));
@@ -140,7 +236,7 @@ SampleResult ShaderResources::fetchTexelBuffer(const SceneBinding& binding, int6
 void ShaderResources::write(const reference::ImageRequest<double>& request, const reference::Texel<double>& value) {
     const SceneBinding* binding = find(request.image);
     if (runs.empty() || binding == nullptr) {
-        wrote = true;
+        refusal = "texels that vertex shaders store";
         return;
     }
     // One coordinate of buffers, two or three of images; a 1D array's layer is its second.

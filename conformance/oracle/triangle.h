@@ -39,6 +39,12 @@ struct SampleVerdict {
 
     /// Covered by every legal implementation.
     bool isCertain() const { return possible && !openAsWhole && edgeCount == 0 && !cutOpen; }
+    /// Covered by the declared rules.
+    bool isNominal() const {
+        bool inside = possible && (!openAsWhole || nominalAsWhole) && (!cutOpen || cutNominal);
+        for (uint32_t i = 0; i < edgeCount; ++i) inside = inside && edges[i].nominalInside;
+        return inside;
+    }
 };
 
 /// A point in sub-units.

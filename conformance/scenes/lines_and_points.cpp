@@ -138,6 +138,25 @@ Result<Scene> lines_stippled() {
     return record.finish();
 }
 
+Result<Scene> lines_stippled_wide() {
+    SceneRecorder record(
+        "lines_stippled_wide",
+        "Stippled rectangles: rays one pixel wide and four, cut into pieces of unit length, and an open "
+        "polygon through whose corners the pattern runs on.");
+    const uint32_t target = record.colorTarget("color", kRgba8, kExtent);
+    record.pass(kExtent).color(target, kDark);
+    const auto draw = [&](VkPrimitiveTopology topology, const std::vector<ColorVertex>& vertices, float width,
+                          uint32_t factor, uint16_t pattern) {
+        const uint32_t pipeline = linePipeline(record, topology).lineWidth(width).stipple(factor, pattern);
+        record.draw(pipeline, static_cast<uint32_t>(vertices.size())).vertices(record.vertexBuffer("lines", vertices));
+    };
+    draw(VK_PRIMITIVE_TOPOLOGY_LINE_LIST, rays(16, {-0.42f, -0.4f}, 0.12, 0.52), 1, 2, 0x3f1d);
+    draw(VK_PRIMITIVE_TOPOLOGY_LINE_LIST, rays(9, {0.5f, -0.42f}, 0.15, 0.44), 4, 3, 0x5f07);
+    draw(VK_PRIMITIVE_TOPOLOGY_LINE_STRIP, star({0.05f, 0.55f}, 0.4, 3, 1), 2.5f, 8, 0x33cd);
+    record.output(target);
+    return record.finish();
+}
+
 Result<Scene> points() {
     SceneRecorder record("points",
                          "Points of one pixel to 41, on and off the grid, partly outside of the target; their colour "

@@ -83,13 +83,10 @@ Result<Scene> sample_locations() {
     });
 }
 
-Result<Scene> sample_shading() {
-    SceneRecorder record(
-        "sample_shading",
-        "Blades whose colour has stripes finer than a pixel: the fragment shader runs for each of four "
-        "samples.");
-    return resolvedBlades(
-        record, kFour, 9, [](PipelineRecorder& state) { state.sampleShading(1); }, R"(#version 450
+namespace {
+
+/// Blades whose colour has stripes finer than a pixel.
+constexpr const char* kStripesVertexGlsl = R"(#version 450
 layout(location = 0) in vec2 position;
 layout(location = 1) in vec3 color;
 layout(location = 0) out vec3 vColor;
@@ -99,7 +96,23 @@ void main() {
     vColor = color;
     vStripe = position.x * 90.0 + position.y * 37.0;
 }
-)",
+)";
+constexpr const char* kStripesFragmentGlsl = R"(#version 450
+layout(location = 0) in vec3 vColor;
+layout(location = 1) in float vStripe;
+layout(location = 0) out vec4 color;
+void main() { color = vec4(vColor * (0.35 + abs(fract(vStripe) - 0.5)), 1.0); }
+)";
+
+}  // namespace
+
+Result<Scene> sample_shading() {
+    SceneRecorder record(
+        "sample_shading",
+        "Blades whose colour has stripes finer than a pixel: the fragment shader runs for each of four "
+        "samples.");
+    return resolvedBlades(
+        record, kFour, 9, [](PipelineRecorder& state) { state.sampleShading(1); }, kStripesVertexGlsl,
         R"(#version 450
 layout(location = 0) in vec3 vColor;
 layout(location = 1) in float vStripe;
@@ -110,6 +123,14 @@ void main() {
     color = vec4(vColor * (0.35 + stripe) * mark, 1.0);
 }
 )");
+}
+
+Result<Scene> sample_shading_partial() {
+    SceneRecorder record("sample_shading_partial",
+                         "The same stripes, half of four samples asked for: two fragments a pixel, three or four.");
+    return resolvedBlades(
+        record, kFour, 9, [](PipelineRecorder& state) { state.sampleShading(0.5f); }, kStripesVertexGlsl,
+        kStripesFragmentGlsl);
 }
 
 Result<Scene> centroid_inputs() {

@@ -30,6 +30,7 @@
     X(lines_wide)              \
     X(lines_smooth)            \
     X(lines_stippled)          \
+    X(lines_stippled_wide)     \
     X(points)                  \
     X(polygon_modes)           \
     /* primitives.cpp */       \
@@ -49,6 +50,7 @@
     X(sample_counts)           \
     X(sample_locations)        \
     X(sample_shading)          \
+    X(sample_shading_partial)  \
     X(depth_stencil_resolve)   \
     X(depth_resolve_modes)     \
     X(centroid_inputs)         \
@@ -59,6 +61,7 @@
     X(dual_source)             \
     X(storage_images)          \
     X(texel_buffers)           \
+    X(storage_buffers)         \
     /* color_output.cpp */     \
     X(blend_modes)             \
     X(srgb)                    \

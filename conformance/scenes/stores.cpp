@@ -5,6 +5,8 @@
 #include "conformance/scenes/shapes.h"
 
 #include <array>
+#include <string>
+#include <vector>
 
 namespace vernier::conformance::scenes {
 namespace {
@@ -156,6 +158,92 @@ void main() {
     record.draw(read, 3).texelBuffer(0, floats, VK_FORMAT_R32_SFLOAT, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER);
     record.output(target);
     record.output(stored);
+    return record.finish();
+}
+
+Result<Scene> storage_buffers() {
+    SceneRecorder record("storage_buffers",
+                         "Vertex shaders load and store records; fragment shaders store words and numbers by pixel and "
+                         "count, join and compare by atomic operations; a second pass shows it all.");
+    constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+    const uint32_t target = record.colorTarget("color", kRgba8, kExtent);
+    const uint32_t results = record.colorTarget("results", kRgba8, kExtent);
+    const std::vector<float> places{-1, -1, 3, -1, -1, 3};
+    const uint32_t corners = record.buffer("corners", kStorage, places);
+    const uint32_t records = record.buffer("records", kStorage, std::vector<float>(3 * 4));
+    const uint32_t pixels = record.buffer("pixels", kStorage, std::vector<uint32_t>(2 * 128 * 128));
+    // Eight counters, then: the least, the largest, a sum below zero, bits joined, bits left, bits flipped.
+    std::vector<uint32_t> numbers(16);
+    numbers[8] = 1000;
+    numbers[12] = 0xffffffff;
+    const uint32_t counters = record.buffer("counters", kStorage, numbers);
+    constexpr const char* kBlocks = R"(
+layout(std430, binding = 2) buffer Pixels { uint packed[16384]; float share[16384]; };
+layout(std430, binding = 3) buffer Counters { uint histogram[8]; int least; uint most; int sum; uint any; uint all; uint odd; };
+)";
+    const std::string vertexGlsl = R"(#version 450
+layout(std430, binding = 0) readonly buffer Corners { vec2 corners[3]; };
+layout(std430, binding = 1) buffer Records { vec4 records[3]; };
+void main() {
+    vec2 corner = corners[gl_VertexIndex];
+    records[gl_VertexIndex] = vec4(corner * 0.25 + 0.25, float(gl_VertexIndex) * 0.25, 1.0);
+    gl_Position = vec4(corner, 0.0, 1.0);
+}
+)";
+    const std::string storeGlsl = std::string("#version 450\n") + kBlocks + R"(
+layout(location = 0) out vec4 color;
+void main() {
+    uvec2 p = uvec2(gl_FragCoord.xy);
+    uint at = p.y * 128u + p.x;
+    color = vec4(p.x / 255.0, p.y / 255.0, float((p.x ^ p.y) & 31u) / 31.0, 1.0);
+    packed[at] = packUnorm4x8(color.bgra);
+    share[at] = gl_FragCoord.x * 0.0049 + gl_FragCoord.y * 0.0028;
+    atomicAdd(histogram[(p.x * 3u + p.y) % 8u], 1u + p.x % 2u);
+    atomicMin(least, int(p.x) - int(p.y));
+    atomicMax(most, p.x * p.y);
+    atomicAdd(sum, int(p.y % 3u) - 1);
+    atomicOr(any, 1u << (p.x % 11u));
+    atomicAnd(all, ~(1u << (p.y % 17u)));
+    atomicXor(odd, p.x * 2654435761u ^ p.y);
+}
+)";
+    const std::string countGlsl = std::string("#version 450\n") + kBlocks + R"(
+layout(location = 0) out vec4 color;
+void main() {
+    atomicAdd(histogram[7], 5u);
+    color = vec4(0.9, 0.6, 0.2, 1.0);
+}
+)";
+    const std::string showGlsl = std::string("#version 450\n") + kBlocks + R"(
+layout(std430, binding = 1) readonly buffer Records { vec4 records[3]; };
+layout(location = 0) out vec4 color;
+void main() {
+    uvec2 p = uvec2(gl_FragCoord.xy);
+    uint words[6] = uint[](uint(least + 200), most, uint(sum + 30000), any, all, odd);
+    if (p.y < 16u) color = unpackUnorm4x8(histogram[p.x / 16u]);
+    else if (p.y < 32u) color = unpackUnorm4x8(words[p.x / 22u]);
+    else if (p.y < 48u) color = records[p.x / 43u];
+    else if (p.y < 88u) color = unpackUnorm4x8(packed[p.x * 128u + p.y]);
+    else color = vec4(share[p.x * 128u + p.y], share[p.y * 128u + p.x], 0.5, 1.0);
+}
+)";
+    const uint32_t vertex = record.vertex(vertexGlsl);
+    const auto draw = [&](uint32_t pipeline) {
+        return record.draw(pipeline, 3)
+            .storageBuffer(0, corners)
+            .storageBuffer(1, records)
+            .storageBuffer(2, pixels)
+            .storageBuffer(3, counters);
+    };
+    record.pass(kExtent).color(target, {0, 0, 0, 1});
+    draw(record.pipeline(vertex, record.fragment(storeGlsl)));
+    draw(record.pipeline(vertex, record.fragment(countGlsl))).scissor(20, 31, 57, 40);
+    record.pass(kExtent).color(results, {0, 0, 0, 1});
+    record.draw(record.pipeline(record.vertex(kCoverVertexGlsl), record.fragment(showGlsl)), 3)
+        .storageBuffer(1, records)
+        .storageBuffer(2, pixels)
+        .storageBuffer(3, counters);
+    for (const uint32_t image : {results, target}) record.output(image);
     return record.finish();
 }
 

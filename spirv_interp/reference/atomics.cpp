@@ -6,9 +6,30 @@
 
 namespace vernier::reference {
 
-/// One invocation runs at a time, so an atomic is a load and a store. Helpers read but do not write.
 template <class Number>
 bool Machine<Number>::executeAtomic(const Instruction& i) {
+    const bool integers = i.op >= spv::OpAtomicExchange && i.op <= spv::OpAtomicXor;
+    combining_ =
+        integers || i.op == spv::OpAtomicFAddEXT || i.op == spv::OpAtomicFMinEXT || i.op == spv::OpAtomicFMaxEXT;
+    if (combining_ && !helper_) tellCombined(i);
+    const bool known = executeKnownAtomic(i);
+    combining_ = false;
+    return known;
+}
+
+template <class Number>
+void Machine<Number>::tellCombined(const Instruction& i) {
+    const Pointer<Number>& p = pointer(i.operand(0));
+    if (!p.isBuffer || p.isPhysical || p.outside || p.atDescriptors) return;
+    const bool counts = i.op == spv::OpAtomicIIncrement || i.op == spv::OpAtomicIDecrement;
+    resources_.combined(
+        accessOf(p, module_.types[p.type], p.offset), i.op,
+        counts ? Scalar<Number>::ofBits(1) : scalar(i.operand(i.op == spv::OpAtomicCompareExchange ? 4 : 3)));
+}
+
+/// One invocation runs at a time, so an atomic is a load and a store. Helpers read but do not write.
+template <class Number>
+bool Machine<Number>::executeKnownAtomic(const Instruction& i) {
     const auto modify = [&](auto combine) {
         const Pointer<Number> p = pointer(i.operand(0));
         const Type& type = module_.types[p.type];

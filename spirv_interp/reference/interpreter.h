@@ -92,13 +92,15 @@ struct InterfaceVariable {
     spv::BuiltIn builtin = spv::BuiltInMax;  // isBuiltin
     uint32_t location = 0;                   // !isBuiltin
     uint32_t component = 0;                  // first component
-    uint32_t index = 0;                      // dual-source blending
+    uint32_t index = 0;                      // dual-source blending; perVertex
     ScalarKind kind = ScalarKind::float32;
     uint32_t components = 1;  // of a vector, or of a column
     uint32_t columns = 1;     // of a matrix
     uint32_t elements = 1;    // of all array dimensions together
     bool isArray = false;
     bool flat = false, noPerspective = false, centroid = false, sample = false;
+    /// Of what PerVertexKHR declares, the value of one vertex: `index` is the vertex's number.
+    bool perVertex = false;
     uint32_t locations = 1;  // taken up
 
     uint32_t scalars() const { return components * columns * elements; }

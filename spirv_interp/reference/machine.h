@@ -185,6 +185,8 @@ class Machine {
     // memory.cpp, atomics.cpp
     bool executeMemory(const Instruction& i);
     bool executeAtomic(const Instruction& i);
+    bool executeKnownAtomic(const Instruction& i);
+    void tellCombined(const Instruction& i);
     // subgroups.cpp
     bool executeSubgroup(const Instruction& i);
     bool executeVote(const Instruction& i, size_t first);
@@ -197,6 +199,7 @@ class Machine {
     Pointer<Number> index(Pointer<Number> pointer, Id index) const;
     Value<Number> load(const Pointer<Number>& pointer);
     Scalars<Number> loadScalars(const Pointer<Number>& pointer);
+    BufferAccess accessOf(const Pointer<Number>& pointer, const Type& scalar, uint64_t offset) const;
     void store(const Pointer<Number>& pointer, const Scalars<Number>& scalars);
     template <class Visit>
     void forEachScalar(const Type& type, uint64_t offset, MatrixLayout matrix, uint32_t componentStride,
@@ -248,6 +251,7 @@ class Machine {
     uint32_t invocation_;
     bool helper_;
     bool discarded_ = false;
+    bool combining_ = false;  // inside of an atomic instruction that reads and writes
     Status status_ = Status::running;
     uint64_t steps_ = 0;
     std::vector<Frame> frames_;

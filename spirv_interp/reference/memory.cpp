@@ -261,6 +261,11 @@ void Machine<Number>::forEachScalar(const Type& type, uint64_t offset, MatrixLay
 }
 
 template <class Number>
+BufferAccess Machine<Number>::accessOf(const Pointer<Number>& p, const Type& scalar, uint64_t offset) const {
+    return {p.descriptor, offset, scalar.width / 8, scalar.kind == TypeKind::floating, scalar.isSigned, invocation_};
+}
+
+template <class Number>
 Scalars<Number> Machine<Number>::loadScalars(const Pointer<Number>& p) {
     const Type& type = module_.types[p.type];
     const uint64_t count = module_.valueScalars(type);
@@ -274,7 +279,9 @@ Scalars<Number> Machine<Number>::loadScalars(const Pointer<Number>& p) {
         const auto begin = p.object->cells.begin() + static_cast<ptrdiff_t>(p.offset);
         result.assign(begin, begin + static_cast<ptrdiff_t>(count));
     } else if (p.isBuffer && !p.atDescriptors) {
+        const bool told = p.kind == BufferKind::storage && !p.isPhysical && !combining_;
         forEachScalar(type, p.offset, p.matrix, p.componentStride, [&](const Type& scalar, uint64_t offset) {
+            if (told) resources_.loaded(accessOf(p, scalar, offset));
             const std::span<const std::byte> bytes = bytesOf(p, offset, scalar.width / 8);
             result.push_back(readScalar<Number>(bytes, offset, scalar));
         });
@@ -327,7 +334,9 @@ void Machine<Number>::store(const Pointer<Number>& p, const Scalars<Number>& sca
         fail("a store to type " + name(type.id) + " in read-only memory");
     if (helper_) return;
     size_t next = 0;
+    const bool told = !p.isPhysical && !combining_;
     forEachScalar(type, p.offset, p.matrix, p.componentStride, [&](const Type& scalar, uint64_t offset) {
+        if (told) resources_.stored(accessOf(p, scalar, offset), scalars[next]);
         const std::span<std::byte> bytes = bytesOf(p, offset, scalar.width / 8);
         writeScalar(bytes, offset, scalar, scalars[next++]);
     });
@@ -424,13 +433,14 @@ bool Machine<Number>::executeMemory(const Instruction& i) {
     }
 }
 
-#define VERNIER_INSTANTIATE(Number)                                                       \
-    template Pointer<Number> Machine<Number>::variablePointer(const Variable&);           \
-    template Scalar<Number> Machine<Number>::pointerScalar(const Pointer<Number>&) const; \
-    template Pointer<Number> Machine<Number>::scalarPointer(const Type&, uint64_t) const; \
-    template const Pointer<Number>& Machine<Number>::pointer(Id);                         \
-    template Scalars<Number> Machine<Number>::loadScalars(const Pointer<Number>&);        \
-    template void Machine<Number>::store(const Pointer<Number>&, const Scalars<Number>&); \
+#define VERNIER_INSTANTIATE(Number)                                                                       \
+    template Pointer<Number> Machine<Number>::variablePointer(const Variable&);                           \
+    template Scalar<Number> Machine<Number>::pointerScalar(const Pointer<Number>&) const;                 \
+    template Pointer<Number> Machine<Number>::scalarPointer(const Type&, uint64_t) const;                 \
+    template const Pointer<Number>& Machine<Number>::pointer(Id);                                         \
+    template BufferAccess Machine<Number>::accessOf(const Pointer<Number>&, const Type&, uint64_t) const; \
+    template Scalars<Number> Machine<Number>::loadScalars(const Pointer<Number>&);                        \
+    template void Machine<Number>::store(const Pointer<Number>&, const Scalars<Number>&);                 \
     template bool Machine<Number>::executeMemory(const Instruction&);
 VERNIER_INSTANTIATE(float)
 VERNIER_INSTANTIATE(double)

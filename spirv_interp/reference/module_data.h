@@ -35,7 +35,7 @@ inline constexpr uint32_t kMaxTypeDepth = 64;
 struct Decorations {
     std::optional<uint32_t> location, component, index, builtin, specId, arrayStride, matrixStride, offset, binding,
         set, inputAttachmentIndex;
-    bool flat = false, noPerspective = false, centroid = false, sample = false;
+    bool flat = false, noPerspective = false, centroid = false, sample = false, perVertex = false;
     bool block = false, bufferBlock = false, rowMajor = false, isVolatile = false;
     bool towardsZero = false;  // FPRoundingMode
 };

@@ -287,6 +287,7 @@ class Parser {
         take(d.flat, from.flat);
         take(d.noPerspective, from.noPerspective);
         take(d.centroid, from.centroid);
+        take(d.perVertex, from.perVertex);
         take(d.sample, from.sample);
         take(d.block, from.block);
         take(d.bufferBlock, from.bufferBlock);
@@ -341,6 +342,9 @@ class Parser {
                 break;
             case spv::DecorationSample:
                 d.sample = true;
+                break;
+            case spv::DecorationPerVertexKHR:
+                d.perVertex = true;
                 break;
             case spv::DecorationBlock:
                 d.block = true;

@@ -22,7 +22,19 @@ class InterfaceWalker {
             place.name = found->second;
         apply(place, module_.decorationsOf(variable.id));
         next_ = place.location;
-        visit(type, place, 0);
+        const Type& element = module_.types[type.element];
+        const bool ofMembers = element.kind == TypeKind::structure && module_.decorationsOf(element.id, 0).perVertex;
+        if (place.output || type.kind != TypeKind::array || (!place.perVertex && !ofMembers)) {
+            visit(type, place, 0);
+            return;
+        }
+        // SPV_KHR_fragment_shader_barycentric: the first index is the vertex's and takes no locations.
+        place.perVertex = true;
+        for (uint32_t vertex = 0; vertex < type.count; ++vertex) {
+            place.index = vertex;
+            next_ = place.location;
+            visit(element, place, vertex * element.scalars);
+        }
     }
 
   private:
@@ -37,6 +49,7 @@ class InterfaceWalker {
         place.flat |= d.flat;
         place.noPerspective |= d.noPerspective;
         place.centroid |= d.centroid;
+        place.perVertex |= d.perVertex;
         place.sample |= d.sample;
     }
 

@@ -39,6 +39,15 @@ struct Descriptor {
 
 enum class BufferKind : uint8_t { uniform, storage, pushConstants };
 
+/// A scalar of a storage buffer that an invocation reads or writes.
+struct BufferAccess {
+    Descriptor buffer;
+    uint64_t offset = 0;  // bytes
+    uint32_t bytes = 4;
+    bool floating = false, isSigned = false;
+    uint32_t invocation = 0;  // 0..3: position in the quad
+};
+
 /// The type of an image as declared in the module.
 struct ImageShape {
     spv::Dim dim = spv::Dim2D;
@@ -103,6 +112,13 @@ class Resources {
     /// The bytes of a buffer; reads outside give 0, writes outside are dropped. Written only for
     /// BufferKind::storage.
     virtual std::span<std::byte> buffer(BufferKind, const Descriptor&) { return {}; }
+
+    /// Told of what is read from and written to storage buffers, scalar by scalar, before it happens in the bytes of
+    /// buffer(). Writes of helper invocations are none.
+    virtual void loaded(const BufferAccess&) {}
+    virtual void stored(const BufferAccess&, const Scalar<Number>&) {}
+    /// An atomic instruction that does both, with its value (1 of increments and decrements): told instead of them.
+    virtual void combined(const BufferAccess&, spv::Op, const Scalar<Number>&) {}
 
     /// The bytes at an address of physical storage, `size` or none.
     virtual std::span<std::byte> memory(uint64_t /*address*/, uint64_t /*size*/) { return {}; }

@@ -18,8 +18,8 @@ class EveryScene : public testing::TestWithParam<SceneEntry> {};
 /// Where the specification itself leaves much open: Bresenham lines may be a pixel off, smooth lines have any alpha,
 /// stipples and depth bias are cut at places that depend on it, and which samples an alpha covers is nobody's rule.
 bool isLoose(std::string_view scene) {
-    constexpr std::string_view kLoose[] = {"lines_bresenham", "lines_smooth", "lines_stippled", "depth_bias",
-                                           "alpha_to_coverage"};
+    constexpr std::string_view kLoose[] = {"lines_bresenham",     "lines_smooth", "lines_stippled",
+                                           "lines_stippled_wide", "depth_bias",   "alpha_to_coverage"};
     return std::find(std::begin(kLoose), std::end(kLoose), scene) != std::end(kLoose);
 }
 
