@@ -1,4 +1,5 @@
 // loadShader and checkModule of program.h: validation by SPIRV-Tools, then the lowering.
+#include "spirv_interp/capture.h"
 #include "spirv_interp/front/lower_module.h"
 #include "spirv_interp/front/lowering.h"
 #include "spirv_interp/front/spirv_tools.h"
@@ -53,11 +54,18 @@ Status checkModule(std::span<const uint32_t> words) {
 }
 
 Result<ir::Program> lowerModule(const ShaderSource& source) {
+    CaptureLayout ignored;
+    return lowerModule(source, ignored);
+}
+
+Result<ir::Program> lowerModule(const ShaderSource& source, CaptureLayout& capture) {
     Result<Module> module = Module::read(source.words);
     if (!module) return module.error();
     ir::Program program;
     try {
-        Lowering(*module, source, program).run();
+        Lowering lowering(*module, source, program);
+        lowering.run();
+        capture = lowering.capture();
     } catch (const LoweringError& error) {
         return error.error;
     }
@@ -78,14 +86,19 @@ Result<ValidatedModule> ValidatedModule::create(std::vector<uint32_t> words) {
     return ValidatedModule(std::move(words));
 }
 
-Result<ir::Program> loadShader(const ShaderSource& given) {
+Result<ir::Program> loadShader(const ShaderSource& source) {
+    CaptureLayout ignored;
+    return loadShader(source, ignored);
+}
+
+Result<ir::Program> loadShader(const ShaderSource& given, CaptureLayout& capture) {
     ShaderSource source = given;
     if (source.module != nullptr) {
         source.words = source.module->words();
     } else if (const Status valid = checkModule(source.words); !valid) {
         return valid.error();
     }
-    Result<ir::Program> program = lowerModule(source);
+    Result<ir::Program> program = lowerModule(source, capture);
     if (!program) return program;
     ir::optimise(*program, {.contract = source.contract});
     if (const Status verified = ir::verify(*program); !verified) return verified.error();

@@ -173,7 +173,16 @@ void Lowering::decorateSlot(const SlotPlace& place, ir::InterfaceSlot& slot, Slo
     const auto find = [&](spv::Decoration kind) { return module_.findDecoration(id, kind, place.member); };
     if (const Decoration* d = find(spv::Decoration::BuiltIn)) {
         slot.builtin = builtinOf(place, d->value);
-        at = {};
+        at.location = at.component = 0;
+    }
+    if (const Decoration* d = find(spv::Decoration::XfbBuffer)) at.buffer = d->value;
+    if (const Decoration* d = find(spv::Decoration::XfbStride)) at.stride = d->value;
+    if (const Decoration* d = find(spv::Decoration::Offset)) {
+        at.offset = d->value;
+        at.captured = true;
+    }
+    if (const Decoration* d = find(spv::Decoration::Stream); d != nullptr && d->value != 0) {
+        refuseId(place.variable, "goes to vertex stream " + std::to_string(d->value) + "; there is none but 0");
     }
     if (const Decoration* d = find(spv::Decoration::Location)) {
         at.location = d->value;
@@ -195,12 +204,17 @@ void Lowering::decorateSlot(const SlotPlace& place, ir::InterfaceSlot& slot, Slo
 // takes one location (a 64-bit vector of three or four components two), matrices one per column, arrays one per
 // element.
 void Lowering::appendSlots(uint32_t typeId, const SlotPlace& place, ir::InterfaceSlot slot, SlotCursor& at,
-                           std::vector<ir::InterfaceSlot>& slots) const {
+                           std::vector<ir::InterfaceSlot>& slots) {
     const SpirvType& type = typeInfo(typeId);
     switch (type.kind) {
         case SpirvType::Kind::matrix:
         case SpirvType::Kind::array:
-            for (uint32_t i = 0; i < type.count; ++i) appendSlots(type.element, place, slot, at, slots);
+            for (uint32_t i = 0; i < type.count; ++i) {
+                appendSlots(type.element, place, slot, at, slots);
+                // Blocks of an array go to buffers that follow each other.
+                if (at.buffer != SlotCursor::kNoBuffer && module_.hasDecoration(type.element, spv::Decoration::Block))
+                    ++at.buffer;
+            }
             return;
         case SpirvType::Kind::structure:
             for (uint32_t member = 0; member < type.members.size(); ++member) {
@@ -209,7 +223,12 @@ void Lowering::appendSlots(uint32_t typeId, const SlotPlace& place, ir::Interfac
                 SlotCursor memberAt = at;
                 decorateSlot(inner, memberSlot, memberAt);
                 appendSlots(type.members[member], inner, memberSlot, memberAt, slots);
-                if (memberSlot.builtin == ir::Builtin::user) at = memberAt;
+                if (memberSlot.builtin == ir::Builtin::user) {
+                    at.location = memberAt.location;
+                    at.component = memberAt.component;
+                }
+                // What has one Offset as a whole: its members follow each other.
+                if (at.captured) at.offset = memberAt.offset;
             }
             return;
         case SpirvType::Kind::vector:
@@ -227,6 +246,7 @@ void Lowering::appendSlots(uint32_t typeId, const SlotPlace& place, ir::Interfac
     if (slot.type == ir::Type::i32 && place.input && program_.stage == ir::Stage::fragment) {
         slot.interpolation = ir::Interpolation::flat;
     }
+    const size_t first = slots.size();
     for (uint32_t word = 0; word < type.words; ++word) {
         if (slot.builtin == ir::Builtin::user && at.component == 4) {
             ++at.location;
@@ -240,6 +260,32 @@ void Lowering::appendSlots(uint32_t typeId, const SlotPlace& place, ir::Interfac
     if (slot.builtin == ir::Builtin::user) {
         ++at.location;
         at.component = 0;
+    }
+    if (at.captured && at.buffer != SlotCursor::kNoBuffer && !place.input) {
+        captureScalar(place, type.scalar, std::span(slots).subspan(first), at);
+    }
+}
+
+/// Transform feedback of a scalar or vector. "Components are tightly packed", those of 64 bits aligned to their size.
+void Lowering::captureScalar(const SlotPlace& place, const LeafType& scalar, std::span<const ir::InterfaceSlot> slots,
+                             SlotCursor& at) {
+    if (scalar.bits < 32) refuseId(place.variable, "is captured, but has components of less than 32 bits");
+    if (at.buffer >= kCaptureBuffers) {
+        refuseId(place.variable, "is captured into buffer " + std::to_string(at.buffer) + "; there are " +
+                                     std::to_string(kCaptureBuffers));
+    }
+    const uint32_t bytes = scalar.bytes();
+    at.offset = (at.offset + bytes - 1) / bytes * bytes;
+    const uint64_t end = at.offset + 4 * slots.size();
+    uint32_t& stride = capture_.strides[at.buffer];
+    if (end > at.stride || at.stride % 4 != 0 || (stride != 0 && stride != at.stride)) {
+        refuseId(place.variable, "is captured with a stride of " + std::to_string(at.stride) +
+                                     " bytes, which is no multiple of 4, not that of other outputs, or ends before it");
+    }
+    stride = at.stride;
+    for (const ir::InterfaceSlot& slot : slots) {
+        capture_.words.push_back({slot, at.buffer, static_cast<uint32_t>(at.offset)});
+        at.offset += 4;
     }
 }
 

@@ -58,6 +58,7 @@ constexpr Capability kCapabilities[] = {
     Capability::DrawParameters,
     Capability::DeviceGroup,
     Capability::MultiView,
+    Capability::TransformFeedback,
     Capability::DenormPreserve,
     Capability::SignedZeroInfNanPreserve,
     Capability::RoundingModeRTE,
@@ -192,6 +193,9 @@ void Lowering::lowerExecutionModes(const EntryPoint& entry) {
             case spv::ExecutionMode::LocalSizeId:
                 setLocalSize(inst);
                 break;
+            case spv::ExecutionMode::Xfb:
+                captures_ = true;
+                break;
             case spv::ExecutionMode::OriginUpperLeft:
             case spv::ExecutionMode::DepthReplacing:
             case spv::ExecutionMode::DepthGreater:
@@ -208,6 +212,7 @@ void Lowering::lowerExecutionModes(const EntryPoint& entry) {
                 refuse(inst, "execution mode " + executionModeOf(inst) + " is not supported");
         }
     }
+    if (!captures_) capture_ = {};
     checkLocalSize(entry);
 }
 

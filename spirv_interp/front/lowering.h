@@ -10,6 +10,7 @@
 
 #include "base/arena.h"
 #include "base/result.h"
+#include "spirv_interp/capture.h"
 #include "spirv_interp/front/emitter.h"
 #include "spirv_interp/front/module.h"
 #include "spirv_interp/front/scalars.h"
@@ -86,6 +87,8 @@ class Lowering {
 
     /// Fills the program. Throws LoweringError.
     void run();
+    /// After run(): what transform feedback keeps.
+    const CaptureLayout& capture() const { return capture_; }
 
   private:
     using Leaves = Scalars;
@@ -103,6 +106,11 @@ class Lowering {
     static constexpr uint32_t kSeveral = ~0u;
     struct SlotCursor {
         uint32_t location = 0, component = 0;
+        // Transform feedback: where the next scalar goes, if it has an Offset and a buffer.
+        bool captured = false;
+        uint32_t buffer = kNoBuffer, stride = 0;
+        uint64_t offset = 0;
+        static constexpr uint32_t kNoBuffer = ~0u;
     };
     struct Output {
         Pointer pointer;
@@ -183,8 +191,10 @@ class Lowering {
     void lowerStageVariable(const Instruction& inst, bool input);
     void initialise(const Instruction& inst, const Pointer& pointer);
     void appendSlots(uint32_t type, const SlotPlace& place, ir::InterfaceSlot slot, SlotCursor& at,
-                     std::vector<ir::InterfaceSlot>& slots) const;
+                     std::vector<ir::InterfaceSlot>& slots);
     void decorateSlot(const SlotPlace& place, ir::InterfaceSlot& slot, SlotCursor& at) const;
+    void captureScalar(const SlotPlace& place, const LeafType& scalar, std::span<const ir::InterfaceSlot> slots,
+                       SlotCursor& at);
     ir::Builtin builtinOf(const SlotPlace& place, uint32_t builtin) const;
 
     // lower_builtins.cpp: built-in inputs that are computed, the size of a work-group, barriers
@@ -344,6 +354,8 @@ class Lowering {
     std::vector<uint32_t> pointerClass_;   // by id, union-find: pointers that may hold each other's values
     std::vector<uint32_t> classVariable_;  // by class: the buffer variable its pointers point into; kSeveral
     std::vector<Output> outputs_;
+    CaptureLayout capture_;
+    bool captures_ = false;               // the execution mode Xfb
     std::vector<uint32_t> interface_;     // ids of the entry point's interface variables
     std::vector<uint32_t> resourceOfId_;  // by id of a variable; kNoIndex = not used so far
     std::vector<uint32_t> localOfId_;     // by id of a variable in local memory: its first word

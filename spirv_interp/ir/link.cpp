@@ -18,18 +18,19 @@ bool isVarying(const InterfaceSlot& slot) {
            slot.builtin == Builtin::cullDistance;
 }
 
-const InterfaceSlot* findSlot(const std::vector<InterfaceSlot>& slots, const InterfaceSlot& like) {
+const InterfaceSlot* findSlot(std::span<const InterfaceSlot> slots, const InterfaceSlot& like) {
     const auto found =
         std::find_if(slots.begin(), slots.end(), [&](const InterfaceSlot& s) { return samePlace(s, like); });
     return found == slots.end() ? nullptr : &*found;
 }
 
 /// Returns how many outputs nobody reads.
-uint32_t dropUnreadOutputs(Program& vertex, const Program& fragment) {
+uint32_t dropUnreadOutputs(Program& vertex, const Program& fragment, std::span<const InterfaceSlot> kept) {
     std::vector<bool> read(vertex.outputs.size());
     for (size_t i = 0; i < vertex.outputs.size(); ++i) {
         const InterfaceSlot& slot = vertex.outputs[i];
-        read[i] = slot.builtin != Builtin::user || findSlot(fragment.inputs, slot) != nullptr;
+        read[i] = slot.builtin != Builtin::user || findSlot(fragment.inputs, slot) != nullptr ||
+                  findSlot(kept, slot) != nullptr;
     }
     for (Block& block : vertex.blocks) {
         std::erase_if(block.insts, [&](const Inst& inst) { return inst.op == Op::storeOutput && !read[inst.imm]; });
@@ -107,7 +108,7 @@ Status linkStages(Program& vertex, Program& fragment, LinkFacts* facts, const Li
     const LiftFacts lifted = options.lift ? lift(vertex, fragment, options.liftLinear) : LiftFacts{};
     const bool changed = lifted.flat + lifted.linear != 0;
     if (changed) optimise(fragment);
-    const uint32_t removed = options.dropUnread ? dropUnreadOutputs(vertex, fragment) : 0;
+    const uint32_t removed = options.dropUnread ? dropUnreadOutputs(vertex, fragment, options.kept) : 0;
     if (facts != nullptr) *facts = {removed, lifted};
     if (vertexChanged || changed || removed != 0) optimise(vertex);
     return {};

@@ -1,4 +1,8 @@
 // What the borders of small shaders become: inputs and outputs, resources, image operations.
+#include <spirv/unified1/spirv.hpp11>
+
+#include "spirv_interp/capture.h"
+#include "spirv_interp/ir/names.h"
 #include "tests/spirv_interp/lowering_fixture.h"
 
 namespace vernier::test {
@@ -42,6 +46,70 @@ output 8 f32 user 2.0
 output 9 i32 user 9.2
 output 10 i32 user 9.3
 )");
+}
+
+/// "builtin location.component > buffer:offset" of every captured word, then the strides.
+std::string captureOf(const Words& words) {
+    ShaderSource source;
+    source.words = words;
+    CaptureLayout layout;
+    const Result<ir::Program> program = loadShader(source, layout);
+    if (!program.ok()) return program.error().message;
+    std::string text;
+    for (const CapturedWord& word : layout.words) {
+        text += std::string(ir::nameOf(word.output.builtin)) + " " + std::to_string(word.output.location) + "." +
+                std::to_string(word.output.component) + " > " + std::to_string(word.buffer) + ":" +
+                std::to_string(word.offset) + "\n";
+    }
+    for (const uint32_t stride : layout.strides) text += std::to_string(stride) + " ";
+    return text;
+}
+
+std::string captureOf(const std::string& text) {
+    return captureOf(compileGlsl(ir::Stage::vertex, "#version 450\n" + text));
+}
+
+TEST_F(Lowering, TransformFeedback) {
+    EXPECT_EQ(captureOf("layout(location=0) out vec4 v; void main() { v = vec4(1); }"), "0 0 0 0 ");
+    // A member without an offset is not captured; a structure with one is, as a whole, wide scalars at their size.
+    EXPECT_EQ(captureOf(R"(
+struct Odd { float a; dvec2 b; };
+layout(xfb_buffer=1, xfb_stride=16) out gl_PerVertex { layout(xfb_offset=12) float gl_PointSize; vec4 gl_Position; };
+layout(location=1, xfb_buffer=0, xfb_offset=8, xfb_stride=48) out Odd odd;
+layout(location=4, component=1, xfb_buffer=0, xfb_offset=0) out vec2 v[1];
+layout(location=5, xfb_buffer=2, xfb_stride=4) out Block { layout(xfb_offset=0) float k; float no; } blocks[2];
+void main() { gl_Position = vec4(0); gl_PointSize = 1; odd = Odd(1, dvec2(2)); v[0] = vec2(3); blocks[0].k = blocks[1].k = 4; }
+)"),
+              R"(pointSize 0.0 > 1:12
+user 1.0 > 0:8
+user 2.0 > 0:16
+user 2.1 > 0:20
+user 2.2 > 0:24
+user 2.3 > 0:28
+user 4.1 > 0:0
+user 4.2 > 0:4
+user 5.0 > 2:0
+user 7.0 > 3:0
+48 16 4 4 )");
+}
+
+TEST_F(Lowering, TransformFeedbackRefused) {
+    const Words words = compileGlsl(ir::Stage::vertex, R"(#version 450
+layout(location=0, xfb_buffer=2, xfb_offset=8, xfb_stride=16) out vec2 v;
+void main() { v = vec2(1); })");
+    EXPECT_EQ(captureOf(words), "user 0.0 > 2:8\nuser 0.1 > 2:12\n0 0 16 0 ");
+    const auto with = [&](spv::Decoration kind, uint32_t value) {
+        Words changed = words;
+        for (size_t at = 5; at < changed.size(); at += changed[at] >> 16)
+            if ((changed[at] & 0xFFFF) == static_cast<uint32_t>(spv::Op::OpDecorate) &&
+                changed[at + 2] == static_cast<uint32_t>(kind))
+                changed[at + 3] = value;
+        return captureOf(changed);
+    };
+    EXPECT_NE(with(spv::Decoration::XfbBuffer, 4).find("captured into buffer 4; there are 4"), std::string::npos);
+    EXPECT_NE(with(spv::Decoration::XfbStride, 12).find("captured with a stride of 12 bytes"), std::string::npos);
+    EXPECT_NE(with(spv::Decoration::XfbStride, 18).find("no multiple of 4"), std::string::npos);
+    EXPECT_NE(with(spv::Decoration::Offset, 0xFFFFFFFC).find("ends before it"), std::string::npos);
 }
 
 TEST_F(Lowering, FragmentInterface) {

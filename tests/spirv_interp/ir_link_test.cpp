@@ -77,6 +77,33 @@ b0:
 )");
 }
 
+// Somebody else, transform feedback, reads them.
+TEST(Link, KeepsWhatItIsTold) {
+    Program vertex = read(kVertex);
+    Program fragment = read("program fragment \"main\"\nb0:\n  ret\n");
+    InterfaceSlot kept;
+    kept.location = 3;
+    kept.component = 1;
+    LinkFacts facts;
+    LinkOptions options;
+    options.kept = {&kept, 1};
+    ASSERT_TRUE(linkStages(vertex, fragment, &facts, options).ok());
+    EXPECT_EQ(print(vertex), R"(program vertex "main"
+input 0 f32 user 0.0
+input 1 f32 user 1.0
+output 0 f32 position 0.0
+output 1 f32 user 3.1
+b0:
+  %0 f32 = input #0
+  %1 f32 = input #1
+  %2 f32 = fsin %1
+  storeOutput #0 %0
+  storeOutput #1 %2
+  ret
+)");
+    EXPECT_EQ(facts.removedOutputs, 1u);
+}
+
 TEST(Link, FillsIndexedInputs) {
     Program vertex = read(kVertex);
     Program fragment = read(R"(program fragment "main"
