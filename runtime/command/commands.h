@@ -144,6 +144,30 @@ struct DrawIndirect {
     uint32_t stride = 0;
     BufferRange countBuffer;  // buffer == nullptr: drawCount counts
 };
+/// Where transform feedback writes from the next BeginTransformFeedback on.
+struct BindTransformFeedbackBuffers {
+    uint32_t first = 0;
+    std::span<const BufferRange> ranges;
+    std::span<const VkDeviceSize> sizes;  // one per range; VK_WHOLE_SIZE: to the end of the buffer
+};
+/// Draws capture from here on, unless the pass is multiview. `counters` belong to the buffers from `first` on: each
+/// holds the bytes of the bound range after which its buffer goes on (32 bits); others begin with the range.
+struct BeginTransformFeedback {
+    uint32_t first = 0;
+    std::span<const BufferRange> counters;
+};
+/// Writes counters from which BeginTransformFeedback can go on.
+struct EndTransformFeedback {
+    uint32_t first = 0;
+    std::span<const BufferRange> counters;
+};
+/// As many vertices as have been captured: (counter - counterOffset) / stride.
+struct DrawIndirectByteCount {
+    BufferRange counter;
+    uint32_t counterOffset = 0;
+    uint32_t stride = 0;  // not 0
+    uint32_t instances = 1, firstInstance = 0;
+};
 /// Outside a pass; not begun before all commands before it are done, and done before the next begins.
 struct Dispatch {
     std::array<uint32_t, 3> base{};  // added to WorkgroupId

@@ -1,9 +1,8 @@
 #include "runtime/command/executor.h"
 
 #include <algorithm>
-#include <cstring>
-#include <optional>
 
+#include "runtime/command/buffer_range.h"
 #include "runtime/command/query_pool.h"
 #include "runtime/resource/texture_unit.h"
 
@@ -48,21 +47,6 @@ void applyFixedState(const DynamicState& fixed, uint32_t dynamicMask, DynamicSta
     stencil(VK_DYNAMIC_STATE_STENCIL_REFERENCE, &DynamicState::StencilFace::reference);
 }
 
-VertexStream streamOf(const command::BufferRange& range) {
-    if (!range.buffer || !range.buffer->data() || range.offset > range.buffer->size()) return {};
-    return {range.buffer->data() + range.offset, range.buffer->size() - range.offset};
-}
-
-/// The indirect arguments as Vulkan lays them out, wherever they lie; nothing if they reach outside the buffer.
-template <class Arguments>
-std::optional<Arguments> argumentsAt(const command::BufferRange& range, VkDeviceSize offset) {
-    const VertexStream stream = streamOf(range);
-    if (!stream.data || offset > stream.size || stream.size - offset < sizeof(Arguments)) return std::nullopt;
-    Arguments arguments;
-    std::memcpy(&arguments, stream.data + offset, sizeof arguments);
-    return arguments;
-}
-
 }  // namespace
 
 /// A dispatch with all it needs. Indirect counts are read when it runs.
@@ -89,6 +73,7 @@ void Executor::run(const CommandBuffer& commands) {
     vertexStreams_ = {};
     indices_ = {};
     leavesOut_ = false;
+    feedback_ = {};
     runAll(commands);
     if (pass_ != nullptr) run(command::EndRendering{});
     queries_.abandon();
@@ -244,6 +229,15 @@ void Executor::addStreams() {
     streamsChanged_ = false;
     for (const VertexStream& stream : vertexStreams_) pass_->geometry.read(stream.data, stream.size);
     pass_->geometry.read(indices_.data, indices_.size);
+    indicesReady_ = false;
+}
+
+/// Waits for what is still to write memory that the walk reads.
+void Executor::awaitWrites(std::initializer_list<VertexStream> streams) {
+    AccessSet& reads = scheduler_.nextAccesses();
+    for (const VertexStream& stream : streams) reads.read(stream.data, stream.size);
+    reads.finish();
+    scheduler_.waitFor(scheduler_.conflicting(reads));
 }
 
 void Executor::draw(const command::Draw& command) {
@@ -251,6 +245,11 @@ void Executor::draw(const command::Draw& command) {
     if (command.indexed && !indices_.data) return;
     refreshDrawBindings();
     addStreams();
+    if (command.indexed && pipeline_->state().primitiveRestart && !indicesReady_) {
+        // Where primitives are cut is found out now.
+        awaitWrites({VertexStream{indices_.data, indices_.size}});
+        indicesReady_ = true;
+    }
     if (!dynamicSnapshot_) dynamicSnapshot_ = pass_->arena.create(dynamic_);
     DrawCall call;
     call.pipeline = pipeline_;
@@ -266,6 +265,7 @@ void Executor::draw(const command::Draw& command) {
     call.vertexOffset = command.vertexOffset;
     call.firstInstance = command.firstInstance;
     call.drawIndex = command.drawIndex;
+    if (feedback_.active() && views_ == 0) call.capture = placeCapture(call);
     ++commandsRun_.draws;
     pass_->pass.draw(call);
     if (pass_->pass.recordedDraws() >= kDrawsPerFlush) catchUp();
@@ -275,18 +275,8 @@ void Executor::run(const command::Draw& command) {
     draw(command);
 }
 
-void Executor::waitForWriters(std::initializer_list<command::BufferRange> ranges) {
-    AccessSet& arguments = scheduler_.nextAccesses();
-    for (const command::BufferRange& range : ranges) {
-        const VertexStream stream = streamOf(range);
-        arguments.read(stream.data, stream.size);
-    }
-    arguments.finish();
-    scheduler_.waitFor(scheduler_.conflicting(arguments));
-}
-
 void Executor::run(const command::BeginConditionalRendering& command) {
-    waitForWriters({command.predicate});
+    awaitWrites({streamOf(command.predicate)});
     const bool passes = argumentsAt<uint32_t>(command.predicate, 0).value_or(0) != 0;
     leavesOut_ = passes == command.inverted;
 }
@@ -297,7 +287,7 @@ void Executor::run(const command::EndConditionalRendering&) {
 
 void Executor::run(const command::DrawIndirect& command) {
     if (leavesOut_) return;
-    waitForWriters({command.arguments, command.countBuffer});
+    awaitWrites({streamOf(command.arguments), streamOf(command.countBuffer)});
     uint32_t count = command.drawCount;
     if (command.countBuffer.buffer) {
         const auto available = argumentsAt<uint32_t>(command.countBuffer, 0);

@@ -18,6 +18,7 @@
 #include "runtime/command/dispatcher.h"
 #include "runtime/command/running_queries.h"
 #include "runtime/command/scheduler.h"
+#include "runtime/command/transform_feedback.h"
 #include "runtime/raster/render_pass.h"
 #include "runtime/raster/render_workers.h"
 
@@ -58,6 +59,7 @@ class Executor {
         bool writesVertices = false;  // vertex programs of it write memory
         AccessSet geometry;           // what its vertex stage reads
         AccessSet rest;               // attachments, and what fragment programs reach
+        AccessSet captured;           // what transform feedback has written since the pass last caught up
         std::vector<QueryPart> queries;
     };
     /// One dispatch that waits or runs; lies in dispatchArena_.
@@ -69,9 +71,9 @@ class Executor {
     void catchUp();
     void addStreams();
 
-    /// Waits for what writes the bytes that the host is about to read.
-    void waitForWriters(std::initializer_list<command::BufferRange> ranges);
     void draw(const command::Draw& command);
+    void awaitWrites(std::initializer_list<VertexStream> streams);
+    const CaptureTarget* placeCapture(const DrawCall& call);
     void refreshDrawBindings();
     void dispatch(const DispatchWork& work);
     PassStatistics runDispatch(const DispatchWork& work);
@@ -117,6 +119,8 @@ class Executor {
     std::array<VertexStream, kMaxVertexBindings> vertexStreams_{};
     IndexStream indices_;
     bool streamsChanged_ = true;  // since they were last added to the accesses of the pass
+    bool indicesReady_ = false;   // nothing that was submitted before the pass is still to write them
+    TransformFeedback feedback_;
 
     /// What dispatches point to until they have run.
     Arena dispatchArena_;

@@ -95,6 +95,7 @@ void Executor::run(const command::BeginRendering& command) {
     work.begun = work.writesVertices = false;
     work.geometry.clear();
     work.rest.clear();
+    work.captured.clear();
     const uint32_t layers =
         command.viewMask != 0 ? static_cast<uint32_t>(std::bit_width(command.viewMask)) : command.layers;
     for (uint32_t i = 0; i < command.colorCount; ++i) {
@@ -153,6 +154,7 @@ void Executor::catchUp() {
     if (pass_ == nullptr) return;
     pass_->begun = true;
     pass_->pass.flush();
+    pass_->captured.clear();
 }
 
 void Executor::run(const command::Flush&) {

@@ -28,6 +28,17 @@ uint64_t statisticOf(VkQueryPipelineStatisticFlags bit, const PassStatistics& s)
     }
 }
 
+uint32_t valuesOf(VkQueryType type, VkQueryPipelineStatisticFlags statistics) {
+    switch (type) {
+        case VK_QUERY_TYPE_PIPELINE_STATISTICS:
+            return static_cast<uint32_t>(std::popcount(statistics));
+        case VK_QUERY_TYPE_TRANSFORM_FEEDBACK_STREAM_EXT:
+            return 2;
+        default:
+            return 1;
+    }
+}
+
 void put(std::byte* target, uint64_t value, bool wide) {
     if (wide) return static_cast<void>(std::memcpy(target, &value, sizeof value));
     const auto narrow = static_cast<uint32_t>(value);
@@ -37,10 +48,7 @@ void put(std::byte* target, uint64_t value, bool wide) {
 }  // namespace
 
 QueryPool::QueryPool(VkQueryType type, uint32_t count, VkQueryPipelineStatisticFlags statistics)
-    : type_(type),
-      statistics_(statistics),
-      valuesPerQuery_(type == VK_QUERY_TYPE_PIPELINE_STATISTICS ? static_cast<uint32_t>(std::popcount(statistics)) : 1),
-      queries_(count) {}
+    : type_(type), statistics_(statistics), valuesPerQuery_(valuesOf(type, statistics)), queries_(count) {}
 
 void QueryPool::reset(uint32_t first, uint32_t count) {
     const std::lock_guard lock(mutex_);
@@ -52,9 +60,19 @@ void QueryPool::write(uint32_t query, const PassStatistics& difference) {
     if (query >= queries_.size()) return;
     Query& target = queries_[query];
     target.available = true;
-    if (type_ == VK_QUERY_TYPE_OCCLUSION) {
-        target.values[0] = difference.samplesPassed;
-        return;
+    switch (type_) {
+        case VK_QUERY_TYPE_OCCLUSION:
+            target.values[0] = difference.samplesPassed;
+            return;
+        case VK_QUERY_TYPE_PRIMITIVES_GENERATED_EXT:
+            target.values[0] = difference.inputPrimitives;
+            return;
+        case VK_QUERY_TYPE_TRANSFORM_FEEDBACK_STREAM_EXT:
+            target.values[0] = difference.capturedPrimitives;
+            target.values[1] = difference.capturablePrimitives;
+            return;
+        default:
+            break;
     }
     size_t next = 0;
     for (VkQueryPipelineStatisticFlags left = statistics_; left != 0; left &= left - 1)

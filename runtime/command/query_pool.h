@@ -1,4 +1,4 @@
-// Query pools: occlusion, pipeline statistics, timestamps.
+// Query pools: occlusion, pipeline statistics, transform feedback, timestamps.
 #pragma once
 
 #include <vulkan/vulkan_core.h>

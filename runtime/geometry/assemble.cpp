@@ -324,6 +324,7 @@ bool Assembler::run(std::span<const PreparedDraw> draws, uint64_t token, std::sp
         statistics_.inputPrimitives += range.count;
         statistics_.vertexInvocations += refs_.size();
         statistics_.clippingInvocations += range.count;
+        if (draw.call.capture != nullptr) capture(draw, range.first);
         assemble(draw, range.draw, chunk);
     }
     setup_.finish();

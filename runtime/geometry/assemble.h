@@ -48,6 +48,7 @@ class Assembler {
     void startReuse();
     uint32_t localVertex(const VertexRef& ref);
     void reuseByIndex(uint32_t least, uint32_t instance, uint32_t vertexCount);
+    void capture(const PreparedDraw& draw, uint64_t first) const;
     void assemble(const PreparedDraw& draw, uint32_t drawIndex, Chunk& chunk);
     void assembleTriangles(const PreparedDraw& draw, uint32_t drawIndex, Chunk& chunk);
     void assemblePrimitive(const PreparedDraw& draw, uint32_t drawIndex, const LocalPrimitive& primitive,

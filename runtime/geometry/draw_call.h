@@ -24,6 +24,12 @@ struct IndexStream {
     VkIndexType type = VK_INDEX_TYPE_UINT16;
 };
 
+/// Where transform feedback puts the vertices of a draw.
+struct CaptureTarget {
+    std::array<std::byte*, kCaptureBuffers> data{};  // of the first vertex; by CapturePlan::strides from there
+    uint64_t primitives = 0;                         // that have room in every buffer: the others are dropped
+};
+
 /// One draw. What it points to must stay alive until the pass ends.
 struct DrawCall {
     const GraphicsPipeline* pipeline = nullptr;
@@ -31,6 +37,7 @@ struct DrawCall {
     std::array<VertexStream, kMaxVertexBindings> vertexStreams{};
     IndexStream indices;
     ResourceBindings vertexResources, fragmentResources;
+    const CaptureTarget* capture = nullptr;  // nullptr: nothing is captured
     bool needsLevels = true;  // what fragments sample depends on levels of detail (resource/texture_unit.h)
     uint32_t count = 0;       // vertices or indices
     uint32_t instances = 1;

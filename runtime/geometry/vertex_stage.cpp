@@ -126,6 +126,22 @@ void storeCullDistances(const Plan& plan, const BatchContext& context, uint32_t 
     }
 }
 
+/// The words of captured outputs.
+void storeCaptured(const CapturePlan& plan, const BatchContext& context, uint32_t first, uint32_t count,
+                   ShadedVertices& vertices) {
+    const size_t stride = plan.outputs.size();
+    uint32_t* words = vertices.captured.data() + first * stride;
+    for (size_t k = 0; k < stride; ++k) {
+        const uint32_t slot = plan.outputs[k].slot;
+        const float* plane = slot == ir::kNoIndex ? nullptr : context.output(slot);
+        for (uint32_t n = 0; n < count; ++n) {
+            uint32_t& word = words[n * stride + k];
+            word = 0;
+            if (plane != nullptr) std::memcpy(&word, plane + n, sizeof word);
+        }
+    }
+}
+
 /// Clip distances: negative is outside. NaN counts as outside of everything it is compared with: as not
 /// finite.
 void flagClipDistances(uint32_t count, uint32_t clipCount, ShadedVertices& vertices) {
@@ -174,6 +190,10 @@ bool shadeVertices(const PreparedDraw& draw, uint64_t token, const std::vector<V
     vertices.firstAttribute = static_cast<uint32_t>(chunk.attributes.size());
     chunk.attributes.resize(chunk.attributes.size() + size_t{count} * vertices.attributeStride);
 
+    const bool captures = draw.call.capture != nullptr;
+    const CapturePlan& capture = draw.call.pipeline->program().capture();
+    vertices.captured.resize(captures ? count * capture.outputs.size() : 0);
+
     const std::shared_ptr<const BatchProgram>& program = draw.call.pipeline->vertexProgram();
     ContextCache::Entry& entry = cache.get(program);
     if (entry.begun != token) {
@@ -191,6 +211,7 @@ bool shadeVertices(const PreparedDraw& draw, uint64_t token, const std::vector<V
         finished &= entry.context.run(padded, mask, mask);
         storeOutputs(plan, entry.context, first, n, vertices, chunk);
         storeCullDistances(plan, entry.context, first, n, vertices);
+        if (captures) storeCaptured(capture, entry.context, first, n, vertices);
     }
     const ProjectionInput in{
         {vertices.clip[0].data(), vertices.clip[1].data(), vertices.clip[2].data(), vertices.clip[3].data()},

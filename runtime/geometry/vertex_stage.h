@@ -44,6 +44,7 @@ struct ShadedVertices {
     std::vector<float> clipDistances;  // vertex-major
     std::vector<float> pointSize;
     std::vector<uint32_t> layers, viewports;  // empty unless the program writes them
+    std::vector<uint32_t> captured;           // vertex-major, by CapturePlan::outputs; empty unless it is asked for
     uint32_t firstAttribute = 0;              // of vertex 0 in Chunk::attributes
     uint32_t attributeStride = 0;
 

@@ -171,6 +171,10 @@ void collectFacts(const GraphicsState& state, const ShaderProgram& program, Plan
     if (program.lifted().linear > 0)
         facts.runs(count(program.lifted().linear, "operation") + " of the fragment shader, once per vertex",
                    "they are linear across a primitive; fast maths allows what interpolation then rounds otherwise");
+    if (!program.capture().empty())
+        facts.runs("transform feedback of " + count(program.capture().outputs.size(), "word") +
+                       " per vertex, in draws between its begin and its end",
+                   "the vertex shader declares it");
     if (program.removedVaryings() > 0)
         facts.leftOut(count(program.removedVaryings(), "vertex output"), "nobody reads them");
     if (state.rasterizerDiscard) return;

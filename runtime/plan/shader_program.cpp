@@ -45,6 +45,10 @@ Result<std::shared_ptr<const ShaderProgram>> ShaderProgram::create(const ShaderP
     linking.liftLinear = desc.accuracy.math == MathTier::fast;
     linking.lift = linking.liftLinear || desc.skips.has(Skip::perVertexWork);
     linking.dropUnread = !hasFragment || dropUnread;
+    std::vector<ir::InterfaceSlot> captured;
+    if (desc.capture != nullptr)
+        for (const CapturedWord& word : desc.capture->words) captured.push_back(word.output);
+    linking.kept = captured;
     if (Status status = ir::linkStages(vertexIr, fragmentIr, &facts, linking); !status) return status.error();
     program->removedVaryings_ = facts.removedOutputs;
     program->lifted_ = facts.lifted;
@@ -58,6 +62,7 @@ Result<std::shared_ptr<const ShaderProgram>> ShaderProgram::create(const ShaderP
         return {};
     };
     if (Status status = compile(vertexIr, "vertex", program->vertex_); !status) return status.error();
+    if (desc.capture != nullptr) program->capture_ = planCapture(*desc.capture, program->vertexIr());
     if (auto split = desc.skips.has(Skip::sharedSamples) ? ir::splitSamples(fragmentIr) : std::nullopt) {
         if (Status status = compile(split->pixel, "fragment", program->pixelPart_); !status) return status.error();
         if (Status status = compile(split->sample, "fragment", program->samplePart_); !status) return status.error();

@@ -7,6 +7,7 @@
 #include "base/result.h"
 #include "base/simd.h"
 #include "runtime/accuracy.h"
+#include "runtime/plan/capture_plan.h"
 #include "runtime/skips.h"
 #include "spirv_interp/ir/lift.h"
 #include "spirv_interp/program.h"
@@ -14,8 +15,9 @@
 namespace vernier {
 
 struct ShaderProgramDesc {
-    const ir::Program* vertex = nullptr;    // as loadShader gives it
-    const ir::Program* fragment = nullptr;  // nullptr: no fragment stage (depth only, or rasterizer discard)
+    const ir::Program* vertex = nullptr;     // as loadShader gives it
+    const ir::Program* fragment = nullptr;   // nullptr: no fragment stage (depth only, or rasterizer discard)
+    const CaptureLayout* capture = nullptr;  // of the vertex program; nullptr: nothing is captured
     // A bit per location whose colours some attachment keeps; what is behind the others is not computed. A program that
     // is used with any attachments keeps all.
     uint32_t keptColors = ~0u;
@@ -41,6 +43,8 @@ class ShaderProgram {
     /// The fragment program in two (ir/split_samples.h); nullptr where it is not worth it.
     const std::shared_ptr<const BatchProgram>& pixelPart() const { return pixelPart_; }
     const std::shared_ptr<const BatchProgram>& samplePart() const { return samplePart_; }
+    /// What draws capture while transform feedback is active.
+    const CapturePlan& capture() const { return capture_; }
     /// Vertex outputs that linking removed because nobody reads them, for explain().
     uint32_t removedVaryings() const { return removedVaryings_; }
     /// Operations of the fragment shader that linking moved into the vertex program, for explain().
@@ -52,6 +56,7 @@ class ShaderProgram {
     Isa isa_ = Isa::sse4;
     Skips skips_;
     std::shared_ptr<const BatchProgram> vertex_, fragment_, pixelPart_, samplePart_;
+    CapturePlan capture_;
     uint32_t removedVaryings_ = 0;
     ir::LiftFacts lifted_;
 };

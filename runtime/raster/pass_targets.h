@@ -50,7 +50,9 @@ struct PassTargets {
 struct PassStatistics {
     uint64_t inputVertices = 0;
     uint64_t inputPrimitives = 0;
-    uint64_t vertexInvocations = 0;  // depends on the chunking, which does not depend on threads
+    uint64_t capturablePrimitives = 0;  // drawn while transform feedback was active
+    uint64_t capturedPrimitives = 0;    // of them, those that had room
+    uint64_t vertexInvocations = 0;     // depends on the chunking, which does not depend on threads
     uint64_t clippingInvocations = 0;
     uint64_t clippingPrimitives = 0;   // not all outside; those to be culled are in it
     uint64_t clippedPrimitives = 0;    // primitives that really were cut

@@ -63,6 +63,11 @@ struct ThreadCounts {
     }
 };
 
+/// What the draws of a segment ask for: known when they are recorded.
+struct SegmentInput {
+    uint64_t vertices = 0, capturable = 0, captured = 0;
+};
+
 /// Hands a range of cycles to a counter.
 class CycleCount {
   public:
@@ -110,8 +115,8 @@ struct RenderPass::Impl {
     PassTargets targets;
     TileGrid grid;
     std::vector<ThreadCounts> counts;
-    std::vector<uint64_t> inputVertices;  // by segment
-    uint32_t segment = 0;                 // of what is recorded next
+    std::vector<SegmentInput> segmentInputs;
+    uint32_t segment = 0;  // of what is recorded next
 
     // Recorded and not yet rendered.
     std::vector<PreparedDraw> draws;
@@ -337,7 +342,7 @@ void RenderPass::begin(const PassTargets& targets) {
     self.stipple = 0;
     self.outOfBudget = false;
     self.exactCounts = false;
-    self.inputVertices.assign(1, 0);
+    self.segmentInputs.assign(1, {});
     self.segment = 0;
     self.activeTiles.clear();
     self.tileWork.assign(self.grid.count(), {});
@@ -359,7 +364,12 @@ void RenderPass::draw(const DrawCall& call) {
 void RenderPass::Impl::add(PreparedDraw draw) {
     Impl& self = *this;
     const DrawCall& call = draw.call;
-    for (const VertexRun& run : draw.runs) self.inputVertices[self.segment] += uint64_t{run.vertices} * call.instances;
+    SegmentInput& input = self.segmentInputs[self.segment];
+    for (const VertexRun& run : draw.runs) input.vertices += uint64_t{run.vertices} * call.instances;
+    if (call.capture != nullptr) {
+        input.capturable += draw.primitives();
+        input.captured += call.capture->primitives;
+    }
     const auto index = static_cast<uint32_t>(self.draws.size());
     // Neighbours that differ in geometry only fill the same fragment batches.
     const bool same = index > 0 && self.draws.back().call.pipeline == call.pipeline &&
@@ -377,7 +387,7 @@ void RenderPass::countExactly() {
 }
 
 uint32_t RenderPass::nextSegment() {
-    impl_->inputVertices.push_back(0);
+    impl_->segmentInputs.emplace_back();
     return ++impl_->segment;
 }
 
@@ -420,8 +430,11 @@ bool RenderPass::end() {
 
 PassStatistics RenderPass::statistics(uint32_t first, uint32_t end) const {
     PassStatistics sum;
-    for (size_t s = first; s < std::min<size_t>(end, impl_->inputVertices.size()); ++s) {
-        sum.inputVertices += impl_->inputVertices[s];
+    for (size_t s = first; s < std::min<size_t>(end, impl_->segmentInputs.size()); ++s) {
+        const SegmentInput& input = impl_->segmentInputs[s];
+        sum.inputVertices += input.vertices;
+        sum.capturablePrimitives += input.capturable;
+        sum.capturedPrimitives += input.captured;
         for (const ThreadCounts& thread : impl_->counts)
             if (s < thread.segments.size()) sum = combine(sum, thread.segments[s], std::plus<>{});
     }

@@ -1,0 +1,28 @@
+// The bytes of a buffer range that commands read from the host's side.
+#pragma once
+
+#include <cstring>
+#include <optional>
+
+#include "runtime/command/commands.h"
+#include "runtime/geometry/draw_call.h"
+
+namespace vernier {
+
+/// From the range's begin to the end of the buffer; none where there is no memory.
+inline VertexStream streamOf(const command::BufferRange& range) {
+    if (!range.buffer || !range.buffer->data() || range.offset > range.buffer->size()) return {};
+    return {range.buffer->data() + range.offset, range.buffer->size() - range.offset};
+}
+
+/// The indirect arguments as Vulkan lays them out, wherever they lie; nothing if they reach outside the buffer.
+template <class Arguments>
+std::optional<Arguments> argumentsAt(const command::BufferRange& range, VkDeviceSize offset) {
+    const VertexStream stream = streamOf(range);
+    if (!stream.data || offset > stream.size || stream.size - offset < sizeof(Arguments)) return std::nullopt;
+    Arguments arguments;
+    std::memcpy(&arguments, stream.data + offset, sizeof arguments);
+    return arguments;
+}
+
+}  // namespace vernier
