@@ -77,6 +77,16 @@ VKAPI_ATTR void VKAPI_CALL CmdDrawIndexedIndirectCount(VkCommandBuffer commandBu
                    true, {object(buffer), offset}, maxDrawCount, stride, {object(countBuffer), countBufferOffset}});
 }
 
+VKAPI_ATTR void VKAPI_CALL CmdDrawIndirectByteCountEXT(VkCommandBuffer commandBuffer, uint32_t instanceCount,
+                                                       uint32_t firstInstance, VkBuffer counterBuffer,
+                                                       VkDeviceSize counterBufferOffset, uint32_t counterOffset,
+                                                       uint32_t vertexStride) {
+    recordDraw(
+        commandBuffer, "vkCmdDrawIndirectByteCountEXT",
+        command::DrawIndirectByteCount{
+            {object(counterBuffer), counterBufferOffset}, counterOffset, vertexStride, instanceCount, firstInstance});
+}
+
 VKAPI_ATTR void VKAPI_CALL CmdDrawMultiEXT(VkCommandBuffer commandBuffer, uint32_t drawCount,
                                            const VkMultiDrawInfoEXT* pVertexInfo, uint32_t instanceCount,
                                            uint32_t firstInstance, uint32_t stride) {

@@ -63,6 +63,18 @@ VKAPI_ATTR void VKAPI_CALL CmdEndQuery(VkCommandBuffer commandBuffer, VkQueryPoo
     recordQueries(commandBuffer, "vkCmdEndQuery", query, 1, command::EndQuery{object(queryPool), query});
 }
 
+// There is one vertex stream: `index` is 0.
+
+VKAPI_ATTR void VKAPI_CALL CmdBeginQueryIndexedEXT(VkCommandBuffer commandBuffer, VkQueryPool queryPool, uint32_t query,
+                                                   VkQueryControlFlags flags, uint32_t) {
+    CmdBeginQuery(commandBuffer, queryPool, query, flags);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdEndQueryIndexedEXT(VkCommandBuffer commandBuffer, VkQueryPool queryPool, uint32_t query,
+                                                 uint32_t) {
+    CmdEndQuery(commandBuffer, queryPool, query);
+}
+
 VKAPI_ATTR void VKAPI_CALL CmdResetQueryPool(VkCommandBuffer commandBuffer, VkQueryPool queryPool, uint32_t firstQuery,
                                              uint32_t queryCount) {
     recordQueries(commandBuffer, "vkCmdResetQueryPool", firstQuery, queryCount,

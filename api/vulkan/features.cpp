@@ -51,6 +51,11 @@ namespace {
     X(shaderResourceMinLod)                    \
     X(inheritedQueries)
 
+#define VERNIER_PRIMITIVES_GENERATED_FEATURES(X)                                                                \
+    X(VkPhysicalDevicePrimitivesGeneratedQueryFeaturesEXT, primitivesGeneratedQuery, true)                      \
+    X(VkPhysicalDevicePrimitivesGeneratedQueryFeaturesEXT, primitivesGeneratedQueryWithRasterizerDiscard, true) \
+    X(VkPhysicalDevicePrimitivesGeneratedQueryFeaturesEXT, primitivesGeneratedQueryWithNonZeroStreams, false)
+
 // The members of the structures that extensions bring, and whether they are supported.
 #define VERNIER_EXTENSION_FEATURES(X)                                                                    \
     X(VkPhysicalDeviceTimelineSemaphoreFeatures, timelineSemaphore, true)                                \
@@ -66,7 +71,10 @@ namespace {
     X(VkPhysicalDeviceMultiviewFeatures, multiviewGeometryShader, false)                                 \
     X(VkPhysicalDeviceMultiviewFeatures, multiviewTessellationShader, false)                             \
     X(VkPhysicalDeviceProvokingVertexFeaturesEXT, provokingVertexLast, true)                             \
-    X(VkPhysicalDeviceProvokingVertexFeaturesEXT, transformFeedbackPreservesProvokingVertex, false)      \
+    X(VkPhysicalDeviceProvokingVertexFeaturesEXT, transformFeedbackPreservesProvokingVertex, true)       \
+    X(VkPhysicalDeviceTransformFeedbackFeaturesEXT, transformFeedback, true)                             \
+    X(VkPhysicalDeviceTransformFeedbackFeaturesEXT, geometryStreams, false)                              \
+    VERNIER_PRIMITIVES_GENERATED_FEATURES(X)                                                             \
     X(VkPhysicalDevice16BitStorageFeatures, storageBuffer16BitAccess, true)                              \
     X(VkPhysicalDevice16BitStorageFeatures, uniformAndStorageBuffer16BitAccess, true)                    \
     X(VkPhysicalDevice16BitStorageFeatures, storagePushConstant16, true)                                 \

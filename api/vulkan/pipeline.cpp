@@ -58,10 +58,12 @@ Result<std::shared_ptr<const ShaderProgram>> loadProgram(const Device& device, c
     if (vertexStage == nullptr) return invalidArgument("there is no vertex stage");
     if (state.rasterizerDiscard) fragmentStage = nullptr;
 
-    Result<ir::Program> vertex = loadStage(*vertexStage, ir::Stage::vertex);
+    CaptureLayout capture;
+    Result<ir::Program> vertex = loadStage(*vertexStage, ir::Stage::vertex, capture);
     if (!vertex) return Error{vertex.error().code, "vertex shader: " + vertex.error().message};
     ShaderProgramDesc desc;
     desc.vertex = &*vertex;
+    desc.capture = &capture;
     Result<ir::Program> fragment = ir::Program{};
     if (fragmentStage != nullptr) {
         fragment = loadStage(*fragmentStage, ir::Stage::fragment);
@@ -90,9 +92,14 @@ VkResult createOne(const Device& device, const VkGraphicsPipelineCreateInfo& inf
 }  // namespace
 
 Result<ir::Program> loadStage(const VkPipelineShaderStageCreateInfo& stage, ir::Stage kind) {
+    CaptureLayout ignored;
+    return loadStage(stage, kind, ignored);
+}
+
+Result<ir::Program> loadStage(const VkPipelineShaderStageCreateInfo& stage, ir::Stage kind, CaptureLayout& capture) {
     if (stage.module == VK_NULL_HANDLE) return invalidArgument("a stage without a shader module");
     std::vector<Specialization::Entry> entries;
-    return loadShader(shaderSource(stage, kind, entries));
+    return loadShader(shaderSource(stage, kind, entries), capture);
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateShaderModule(VkDevice device, const VkShaderModuleCreateInfo* pCreateInfo,

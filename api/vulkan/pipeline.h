@@ -9,6 +9,7 @@
 #include "api/vulkan/handle.h"
 #include "runtime/plan/compute_pipeline.h"
 #include "runtime/plan/pipeline.h"
+#include "spirv_interp/capture.h"
 #include "spirv_interp/program.h"
 
 namespace vernier::vulkan {
@@ -35,6 +36,8 @@ struct Pipeline {
 
 /// Loads the program of a stage with its specialization (pipeline.cpp).
 Result<ir::Program> loadStage(const VkPipelineShaderStageCreateInfo& stage, ir::Stage kind);
+/// And what transform feedback keeps of it.
+Result<ir::Program> loadStage(const VkPipelineShaderStageCreateInfo& stage, ir::Stage kind, CaptureLayout& capture);
 
 /// The state of VkGraphicsPipelineCreateInfo in the runtime's terms (pipeline_state.cpp).
 struct PipelineState {

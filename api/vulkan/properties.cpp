@@ -6,6 +6,7 @@
 #include "api/vulkan/resource_limits.h"
 #include "runtime/plan/sample_positions.h"
 #include "runtime/raster/depth_resolve.h"
+#include "spirv_interp/capture.h"
 #include "spirv_interp/program.h"
 
 namespace vernier::vulkan {
@@ -37,6 +38,17 @@ void setSubgroups(VkPhysicalDeviceSubgroupProperties& p) {
                             VK_SUBGROUP_FEATURE_SHUFFLE_BIT | VK_SUBGROUP_FEATURE_SHUFFLE_RELATIVE_BIT |
                             VK_SUBGROUP_FEATURE_CLUSTERED_BIT | VK_SUBGROUP_FEATURE_QUAD_BIT;
     p.quadOperationsInAllStages = VK_TRUE;
+}
+
+void setTransformFeedback(VkPhysicalDeviceTransformFeedbackPropertiesEXT& p) {
+    p.maxTransformFeedbackStreams = 1;
+    p.maxTransformFeedbackBuffers = kCaptureBuffers;
+    p.maxTransformFeedbackBufferSize = UINT32_MAX;  // what counters can tell
+    // Bytes of a vertex, with gaps.
+    p.maxTransformFeedbackStreamDataSize = p.maxTransformFeedbackBufferDataSize =
+        p.maxTransformFeedbackBufferDataStride = kMaxInterfaceComponents * sizeof(float);
+    p.transformFeedbackQueries = p.transformFeedbackDraw = VK_TRUE;
+    p.transformFeedbackStreamsLinesTriangles = p.transformFeedbackRasterizationStreamSelect = VK_FALSE;
 }
 
 /// Every operation of every width rounds to nearest even, and keeps denormals, signs of zeros, infinities and NaNs;
@@ -72,8 +84,9 @@ void fillPropertyChain(const PhysicalDevice& device, void* chain) {
     }
     if (auto* p = findInChain<VkPhysicalDeviceProvokingVertexPropertiesEXT>(chain)) {
         p->provokingVertexModePerPipeline = VK_TRUE;
-        p->transformFeedbackPreservesTriangleFanProvokingVertex = VK_FALSE;
+        p->transformFeedbackPreservesTriangleFanProvokingVertex = VK_TRUE;
     }
+    if (auto* p = findInChain<VkPhysicalDeviceTransformFeedbackPropertiesEXT>(chain)) setTransformFeedback(*p);
     if (auto* p = findInChain<VkPhysicalDevicePointClippingProperties>(chain)) {
         p->pointClippingBehavior = VK_POINT_CLIPPING_BEHAVIOR_ALL_CLIP_PLANES;
     }

@@ -23,6 +23,8 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateQueryPool(VkDevice device, const VkQueryPoo
             case VK_QUERY_TYPE_OCCLUSION:
             case VK_QUERY_TYPE_PIPELINE_STATISTICS:
             case VK_QUERY_TYPE_TIMESTAMP:
+            case VK_QUERY_TYPE_TRANSFORM_FEEDBACK_STREAM_EXT:
+            case VK_QUERY_TYPE_PRIMITIVES_GENERATED_EXT:
                 break;
             default:
                 return object(device)->report("vkCreateQueryPool", VK_ERROR_FEATURE_NOT_PRESENT,

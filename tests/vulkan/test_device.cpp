@@ -18,9 +18,13 @@ VKAPI_ATTR VkBool32 VKAPI_CALL keepMessage(VkDebugUtilsMessageSeverityFlagBitsEX
 
 }  // namespace
 
+void useDriver(const char* manifest) {
+    setenv("VK_ICD_FILENAMES", manifest, 1);
+    setenv("VK_DRIVER_FILES", manifest, 1);
+}
+
 void useOwnDriver() {
-    setenv("VK_ICD_FILENAMES", VERNIER_ICD_JSON, 1);
-    setenv("VK_DRIVER_FILES", VERNIER_ICD_JSON, 1);
+    useDriver(VERNIER_ICD_JSON);
 }
 
 bool validated() {
@@ -47,8 +51,12 @@ std::vector<uint32_t> compileGlsl(VkShaderStageFlagBits stage, const std::string
     return words;
 }
 
+const char* VulkanTest::driver() {
+    return VERNIER_ICD_JSON;
+}
+
 void VulkanTest::SetUp() {
-    useOwnDriver();
+    useDriver(driver());
     auto application = make<VkApplicationInfo>(VK_STRUCTURE_TYPE_APPLICATION_INFO);
     application.apiVersion = apiVersion();
     std::vector<const char*> extensions = moreInstanceExtensions();

@@ -15,7 +15,8 @@
 
 namespace vernier::test {
 
-/// Points the loader to the driver of this build. Call before the first Vulkan call.
+/// Points the loader to a driver's manifest, or to the driver of this build. Call before instances are made.
+void useDriver(const char* manifest);
 void useOwnDriver();
 
 /// GLSL to SPIR-V for a version of core Vulkan; the test fails when it does not compile.
@@ -47,6 +48,8 @@ class VulkanTest : public testing::Test {
   protected:
     void SetUp() override;
     void TearDown() override;
+    /// The manifest of the driver.
+    virtual const char* driver();
     /// The version of core Vulkan that the instance is made for.
     virtual uint32_t apiVersion() { return VK_API_VERSION_1_0; }
     /// Extensions that the instance gets besides those every test has.
