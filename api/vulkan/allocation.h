@@ -4,12 +4,14 @@
 
 #include <vulkan/vulkan_core.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <exception>
 #include <new>
 #include <utility>
 
 #include "api/vulkan/handle.h"
+#include "api/vulkan/private_data.h"
 
 namespace vernier::vulkan {
 
@@ -31,16 +33,24 @@ VkResult guarded(Body&& body) noexcept {
     }
 }
 
+/// Where an object lies in its allocation: behind its header.
+template <class T>
+inline constexpr size_t kObjectAlignment = std::max(alignof(T), alignof(ObjectHeader));
+template <class T>
+inline constexpr size_t kObjectOffset = std::max(alignof(T), sizeof(ObjectHeader));
+
 /// Constructs a T in memory from the callbacks; nullptr when there is none. Exceptions of the constructor
 /// pass through.
 template <class T, class... Args>
 T* newObject(const VkAllocationCallbacks* callbacks, VkSystemAllocationScope scope, Args&&... args) {
-    void* memory = allocateHost(callbacks, sizeof(T), alignof(T), scope);
+    void* memory = allocateHost(callbacks, kObjectOffset<T> + sizeof(T), kObjectAlignment<T>, scope);
     if (memory == nullptr) return nullptr;
+    std::byte* const place = static_cast<std::byte*>(memory) + kObjectOffset<T>;
+    new (place - sizeof(ObjectHeader)) ObjectHeader;
     try {
-        return new (memory) T(std::forward<Args>(args)...);
+        return new (place) T(std::forward<Args>(args)...);
     } catch (...) {
-        freeHost(callbacks, memory, alignof(T));
+        freeHost(callbacks, memory, kObjectAlignment<T>);
         throw;
     }
 }
@@ -48,8 +58,11 @@ T* newObject(const VkAllocationCallbacks* callbacks, VkSystemAllocationScope sco
 template <class T>
 void deleteObject(const VkAllocationCallbacks* callbacks, T* object) {
     if (object == nullptr) return;
+    auto* const place = reinterpret_cast<std::byte*>(object);
+    const auto* header = reinterpret_cast<const ObjectHeader*>(place - sizeof(ObjectHeader));
+    if (PrivateData* data = header->data) data->forgetObject(object);
     object->~T();
-    freeHost(callbacks, object, alignof(T));
+    freeHost(callbacks, place - kObjectOffset<T>, kObjectAlignment<T>);
 }
 
 /// Makes the object of a non-dispatchable or dispatchable handle and stores the handle in `out`.

@@ -51,6 +51,12 @@ VKAPI_ATTR void VKAPI_CALL GetBufferMemoryRequirements2(VkDevice, const VkBuffer
     fillRequirementChain(pMemoryRequirements->pNext);
 }
 
+VKAPI_ATTR void VKAPI_CALL GetDeviceBufferMemoryRequirements(VkDevice, const VkDeviceBufferMemoryRequirements* pInfo,
+                                                             VkMemoryRequirements2* pMemoryRequirements) {
+    pMemoryRequirements->memoryRequirements = memoryRequirements(pInfo->pCreateInfo->size);
+    fillRequirementChain(pMemoryRequirements->pNext);
+}
+
 VKAPI_ATTR VkResult VKAPI_CALL BindBufferMemory(VkDevice device, VkBuffer buffer, VkDeviceMemory memory,
                                                 VkDeviceSize memoryOffset) {
     return guarded([&] {

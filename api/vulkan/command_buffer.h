@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "api/vulkan/handle.h"
+#include "api/vulkan/plan_cache.h"
 #include "api/vulkan/render_pass.h"
 #include "runtime/command/command_buffer.h"
 
@@ -24,20 +25,24 @@ struct CommandBuffer : Dispatchable {
     vernier::CommandBuffer stream;
     VkResult result = VK_SUCCESS;  // what vkEndCommandBuffer will say
 
-    /// The render pass being recorded. `pass` alone is set in a secondary command buffer that continues one.
+    /// The pass being recorded. In a secondary command buffer that continues one, `formats` and `pass` alone are set.
     struct Pass {
-        const RenderPassObject* pass = nullptr;
+        bool inside = false;
+        const RenderPassObject* pass = nullptr;  // nullptr: dynamic rendering
         std::vector<const ImageView*> views;
         uint32_t layers = 0;  // 0: not begun here
         uint32_t subpass = 0;
         VkRect2D area{};
         std::vector<VkClearValue> clears;
         SubpassFormats formats;
+        bool begunHere() const { return inside && layers != 0; }
     };
     Pass pass;
     const Pipeline* pipeline = nullptr;
-    bool pipelineFits = false;  // `pipeline` may draw in the current subpass
+    bool pipelineFits = false;  // `pipeline` may draw in the current subpass, and its plan is chosen
     const Pipeline* computePipeline = nullptr;
+    SetState set;
+    std::vector<std::shared_ptr<const GraphicsPipeline>> plans;  // that draws follow, of plan caches
 
     bool executable() const { return state == State::executable && result == VK_SUCCESS; }
     void reset();
@@ -45,6 +50,10 @@ struct CommandBuffer : Dispatchable {
     void fail(const char* command, std::string_view text);
     /// Sets pipelineFits, after a pipeline was bound or a subpass begun.
     void checkPipeline();
+    /// The state that plans are made for is about to change: a pipeline that takes some from commands needs another.
+    SetState& changePlanState();
+    /// Where the pipeline does not fit yet: looks its plan up and records it. False when it cannot draw here.
+    bool choosePlan(const char* command);
 };
 
 struct CommandPool {

@@ -11,7 +11,7 @@ namespace {
 template <class Command>
 void recordDispatch(VkCommandBuffer handle, const char* name, const Command& command) {
     recording(handle, [&](CommandBuffer& buffer) {
-        if (buffer.pass.pass != nullptr) return buffer.fail(name, "not allowed inside a render pass");
+        if (buffer.pass.inside) return buffer.fail(name, "not allowed inside a render pass");
         if (buffer.computePipeline == nullptr) return buffer.fail(name, "no compute pipeline is bound");
         buffer.stream.record(command);
     });

@@ -12,7 +12,7 @@ namespace {
 template <class Command>
 void recordDraw(VkCommandBuffer handle, const char* name, const Command& command) {
     recording(handle, [&](CommandBuffer& buffer) {
-        if (!buffer.pipelineFits) {
+        if (!buffer.pipelineFits && !buffer.choosePlan(name)) {
             return buffer.fail(name, "no pipeline is bound that was made for the attachments of the current subpass");
         }
         buffer.stream.record(command);
@@ -31,7 +31,22 @@ bool clears(const SubpassFormats& formats, const VkClearAttachment& attachment) 
         return attachment.colorAttachment < formats.colorCount &&
                formats.colors[attachment.colorAttachment] != VK_FORMAT_UNDEFINED;
     }
-    return (attachment.aspectMask & VK_IMAGE_ASPECT_COLOR_BIT) == 0 && formats.depthStencil != VK_FORMAT_UNDEFINED;
+    return (attachment.aspectMask & VK_IMAGE_ASPECT_COLOR_BIT) == 0 && formats.depthStencil() != VK_FORMAT_UNDEFINED;
+}
+
+/// Whether what was recorded for passes of one kind may run in a pass of the other. In dynamic rendering, an attachment
+/// that either does not have is left alone by draws; but for depth and stencil, draws have been planned.
+bool mayRunIn(const CommandBuffer::Pass& recorded, const CommandBuffer::Pass& pass) {
+    if (!pass.inside) return false;
+    if (recorded.pass != nullptr || pass.pass != nullptr) return recorded.formats == pass.formats;
+    const SubpassFormats &from = recorded.formats, &to = pass.formats;
+    for (uint32_t n = 0; n < kMaxColorAttachments; ++n) {
+        const bool used = from.colors[n] != VK_FORMAT_UNDEFINED && to.colors[n] != VK_FORMAT_UNDEFINED;
+        if (used && from.colors[n] != to.colors[n]) return false;
+    }
+    const auto holds = [](VkFormat wanted, VkFormat has) { return wanted == VK_FORMAT_UNDEFINED || wanted == has; };
+    return holds(from.depth, to.depth) && holds(from.stencil, to.stencil) && from.viewMask == to.viewMask &&
+           (to.samples == 0 || from.samples == to.samples);
 }
 
 }  // namespace
@@ -127,7 +142,7 @@ VKAPI_ATTR void VKAPI_CALL CmdClearAttachments(VkCommandBuffer commandBuffer, ui
                                                const VkClearAttachment* pAttachments, uint32_t rectCount,
                                                const VkClearRect* pRects) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
-        if (buffer.pass.pass == nullptr) return buffer.fail("vkCmdClearAttachments", "not inside a render pass");
+        if (!buffer.pass.inside) return buffer.fail("vkCmdClearAttachments", "not inside a render pass");
         std::vector<VkClearAttachment> existing;
         for (uint32_t i = 0; i < attachmentCount; ++i) {
             if (clears(buffer.pass.formats, pAttachments[i])) existing.push_back(pAttachments[i]);
@@ -146,8 +161,7 @@ VKAPI_ATTR void VKAPI_CALL CmdExecuteCommands(VkCommandBuffer commandBuffer, uin
             if (!secondary.executable() || secondary.level != VK_COMMAND_BUFFER_LEVEL_SECONDARY) {
                 return buffer.fail("vkCmdExecuteCommands", "a command buffer is not an executable secondary one");
             }
-            if (secondary.pass.pass != nullptr &&
-                (buffer.pass.pass == nullptr || !(secondary.pass.formats == buffer.pass.formats))) {
+            if (secondary.pass.inside && !mayRunIn(secondary.pass, buffer.pass)) {
                 return buffer.fail("vkCmdExecuteCommands", "a command buffer was recorded for another render pass");
             }
             streams[i] = &secondary.stream;

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "api/vulkan/allocation.h"
+#include "api/vulkan/chain.h"
 #include "api/vulkan/command_buffer.h"
 #include "api/vulkan/device.h"
 #include "api/vulkan/entry_points.h"
@@ -16,6 +17,8 @@ void CommandBuffer::reset() {
     pipeline = nullptr;
     pipelineFits = false;
     computePipeline = nullptr;
+    set = {};
+    plans.clear();
 }
 
 void CommandBuffer::fail(const char* command, std::string_view text) {
@@ -23,6 +26,28 @@ void CommandBuffer::fail(const char* command, std::string_view text) {
     device.messages().error(command, {VK_OBJECT_TYPE_COMMAND_BUFFER, reinterpret_cast<uint64_t>(this)}, text);
     result = VK_ERROR_UNKNOWN;
 }
+
+namespace {
+
+/// What a secondary command buffer is told of the pass that it continues.
+void inheritPass(const VkCommandBufferInheritanceInfo& inherited, CommandBuffer::Pass& pass) {
+    if (inherited.renderPass != VK_NULL_HANDLE) {
+        pass.pass = object(inherited.renderPass);
+        pass.inside = inherited.subpass < pass.pass->subpasses.size();
+        pass.subpass = inherited.subpass;
+        if (pass.inside) pass.formats = pass.pass->formats(inherited.subpass);
+    } else if (const auto* rendering = findInChain<VkCommandBufferInheritanceRenderingInfo>(inherited.pNext)) {
+        pass.inside = true;
+        pass.formats.colorCount = std::min(rendering->colorAttachmentCount, kMaxColorAttachments);
+        std::copy_n(rendering->pColorAttachmentFormats, pass.formats.colorCount, pass.formats.colors);
+        pass.formats.depth = rendering->depthAttachmentFormat;
+        pass.formats.stencil = rendering->stencilAttachmentFormat;
+        pass.formats.samples = static_cast<uint32_t>(rendering->rasterizationSamples);
+        pass.formats.viewMask = rendering->viewMask;
+    }
+}
+
+}  // namespace
 
 CommandPool::CommandPool(Device& owner, const VkAllocationCallbacks* given)
     : device_(owner), hasCallbacks_(given != nullptr) {
@@ -109,12 +134,8 @@ VKAPI_ATTR VkResult VKAPI_CALL BeginCommandBuffer(VkCommandBuffer commandBuffer,
     buffer.state = CommandBuffer::State::recording;
     const VkCommandBufferInheritanceInfo* inherited = pBeginInfo->pInheritanceInfo;
     if (buffer.level == VK_COMMAND_BUFFER_LEVEL_SECONDARY && inherited != nullptr &&
-        (pBeginInfo->flags & VK_COMMAND_BUFFER_USAGE_RENDER_PASS_CONTINUE_BIT) != 0 &&
-        inherited->renderPass != VK_NULL_HANDLE &&
-        inherited->subpass < object(inherited->renderPass)->subpasses.size()) {
-        buffer.pass.pass = object(inherited->renderPass);
-        buffer.pass.subpass = inherited->subpass;
-        buffer.pass.formats = buffer.pass.pass->formats(inherited->subpass);
+        (pBeginInfo->flags & VK_COMMAND_BUFFER_USAGE_RENDER_PASS_CONTINUE_BIT) != 0) {
+        inheritPass(*inherited, buffer.pass);
     }
     return VK_SUCCESS;
 }

@@ -8,20 +8,6 @@
 namespace vernier::vulkan {
 namespace {
 
-/// The part of the area that lies inside the framebuffer.
-VkRect2D clipArea(const VkRect2D& area, const VkExtent2D& extent) {
-    const auto clip = [](int32_t offset, uint32_t size, uint32_t limit, int32_t& start, uint32_t& length) {
-        const int64_t first = std::clamp<int64_t>(offset, 0, limit);
-        const int64_t last = std::clamp<int64_t>(int64_t{offset} + size, first, limit);
-        start = static_cast<int32_t>(first);
-        length = static_cast<uint32_t>(last - first);
-    };
-    VkRect2D result{};
-    clip(area.offset.x, area.extent.width, extent.width, result.offset.x, result.extent.width);
-    clip(area.offset.y, area.extent.height, extent.height, result.offset.y, result.extent.height);
-    return result;
-}
-
 /// Those of the framebuffer, or, if it is imageless, those that the beginning gives.
 std::vector<const ImageView*> viewsOf(const Framebuffer& framebuffer, const VkRenderPassBeginInfo& begin) {
     std::vector<const ImageView*> views = framebuffer.views;
@@ -47,7 +33,7 @@ VKAPI_ATTR void VKAPI_CALL CmdBeginRenderPass(VkCommandBuffer commandBuffer,
     recording(commandBuffer, [&](CommandBuffer& buffer) {
         const RenderPassObject* pass = object(pRenderPassBegin->renderPass);
         const Framebuffer* framebuffer = object(pRenderPassBegin->framebuffer);
-        if (buffer.level != VK_COMMAND_BUFFER_LEVEL_PRIMARY || buffer.pass.pass != nullptr) {
+        if (buffer.level != VK_COMMAND_BUFFER_LEVEL_PRIMARY || buffer.pass.inside) {
             return buffer.fail("vkCmdBeginRenderPass", "needs a primary command buffer outside a render pass");
         }
         std::vector<const ImageView*> views = viewsOf(*framebuffer, *pRenderPassBegin);
@@ -56,6 +42,7 @@ VKAPI_ATTR void VKAPI_CALL CmdBeginRenderPass(VkCommandBuffer commandBuffer,
             return buffer.fail("vkCmdBeginRenderPass",
                                status ? "the render pass has no subpass" : status.error().message);
         }
+        buffer.pass.inside = true;
         buffer.pass.pass = pass;
         buffer.pass.views = std::move(views);
         buffer.pass.layers = framebuffer->layers;
@@ -69,7 +56,8 @@ VKAPI_ATTR void VKAPI_CALL CmdBeginRenderPass(VkCommandBuffer commandBuffer,
 
 VKAPI_ATTR void VKAPI_CALL CmdNextSubpass(VkCommandBuffer commandBuffer, VkSubpassContents) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
-        if (buffer.pass.layers == 0 || buffer.pass.subpass + 1 >= buffer.pass.pass->subpasses.size()) {
+        if (!buffer.pass.begunHere() || buffer.pass.pass == nullptr ||
+            buffer.pass.subpass + 1 >= buffer.pass.pass->subpasses.size()) {
             return buffer.fail("vkCmdNextSubpass", "there is no next subpass");
         }
         buffer.stream.record(command::EndRendering{});
@@ -79,7 +67,7 @@ VKAPI_ATTR void VKAPI_CALL CmdNextSubpass(VkCommandBuffer commandBuffer, VkSubpa
 
 VKAPI_ATTR void VKAPI_CALL CmdEndRenderPass(VkCommandBuffer commandBuffer) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
-        if (buffer.pass.layers == 0) {
+        if (!buffer.pass.begunHere() || buffer.pass.pass == nullptr) {
             return buffer.fail("vkCmdEndRenderPass", "no render pass was begun");
         }
         buffer.stream.record(command::EndRendering{});

@@ -13,9 +13,21 @@ namespace {
 /// Whether a pipeline's state was made for these attachments. Drawing with another would write texels of one
 /// size into images of another.
 bool fits(const GraphicsState& state, const SubpassFormats& formats) {
-    if (state.colorCount != formats.colorCount || state.depthStencilFormat != formats.depthStencil) return false;
+    if (state.colorCount != formats.colorCount || state.depthStencilFormat != formats.depthStencil()) return false;
     if (formats.samples != 0 && state.samples != formats.samples) return false;
     return std::equal(formats.colors, formats.colors + formats.colorCount, state.colorFormats.begin());
+}
+
+/// The same for a plan in dynamic rendering, where an attachment that either does not have is left alone.
+bool fitsDynamic(const GraphicsState& state, const SubpassFormats& formats) {
+    for (uint32_t n = 0; n < kMaxColorAttachments; ++n) {
+        const VkFormat wanted = n < state.colorCount ? state.colorFormats[n] : VK_FORMAT_UNDEFINED;
+        if (wanted != VK_FORMAT_UNDEFINED && formats.colors[n] != VK_FORMAT_UNDEFINED && wanted != formats.colors[n])
+            return false;
+    }
+    const VkFormat depthStencil = state.depthStencilFormat;
+    return (depthStencil == VK_FORMAT_UNDEFINED || depthStencil == formats.depthStencil()) &&
+           (formats.samples == 0 || state.samples == formats.samples);
 }
 
 /// Empty for a bind point that does not exist here.
@@ -33,7 +45,34 @@ void record(VkCommandBuffer handle, const Command& command) {
 }  // namespace
 
 void CommandBuffer::checkPipeline() {
-    pipelineFits = pipeline != nullptr && pass.pass != nullptr && fits(pipeline->graphics->state(), pass.formats);
+    pipelineFits = pipeline != nullptr && pass.inside && pipeline->plans == nullptr &&
+                   fits(pipeline->graphics->state(), pass.formats);
+}
+
+SetState& CommandBuffer::changePlanState() {
+    if (pipeline != nullptr && pipeline->plans != nullptr) pipelineFits = false;
+    return set;
+}
+
+bool CommandBuffer::choosePlan(const char* command) {
+    if (pipeline == nullptr || pipeline->plans == nullptr || !pass.inside) return false;
+    auto plan = pipeline->plans->find(set, pass.formats);
+    if (!plan) {
+        fail(command, plan.error().message);
+        return false;
+    }
+    const GraphicsState& planned = (*plan)->state();
+    if (pass.pass != nullptr ? !fits(planned, pass.formats) : !fitsDynamic(planned, pass.formats)) return false;
+    const DynamicState* fixed = &pipeline->fixed;
+    if (pipeline->viewportCountDynamic && set.viewportCount != fixed->viewportCount) {
+        DynamicState counted = *fixed;
+        counted.viewportCount = set.viewportCount;
+        fixed = stream.arena().create(counted);
+    }
+    stream.record(command::BindPipeline{plan->get(), fixed, pipeline->dynamicMask});
+    if (plans.empty() || plans.back() != *plan) plans.push_back(std::move(*plan));
+    pipelineFits = true;
+    return true;
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdBindPipeline(VkCommandBuffer commandBuffer, VkPipelineBindPoint pipelineBindPoint,
@@ -51,6 +90,7 @@ VKAPI_ATTR void VKAPI_CALL CmdBindPipeline(VkCommandBuffer commandBuffer, VkPipe
         }
         buffer.pipeline = &bound;
         buffer.checkPipeline();
+        if (bound.plans != nullptr) return;  // a draw will choose the plan
         buffer.stream.record(command::BindPipeline{bound.graphics.get(), &bound.fixed, bound.dynamicMask});
     });
 }

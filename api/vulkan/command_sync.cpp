@@ -33,8 +33,12 @@ VKAPI_ATTR void VKAPI_CALL CmdPipelineBarrier(VkCommandBuffer commandBuffer, VkP
                                               VkDependencyFlags, uint32_t, const VkMemoryBarrier*, uint32_t,
                                               const VkBufferMemoryBarrier*, uint32_t, const VkImageMemoryBarrier*) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
-        if (buffer.pass.pass != nullptr) buffer.stream.record(command::Flush{});
+        if (buffer.pass.inside) buffer.stream.record(command::Flush{});
     });
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdPipelineBarrier2(VkCommandBuffer commandBuffer, const VkDependencyInfo*) {
+    CmdPipelineBarrier(commandBuffer, 0, 0, 0, 0, nullptr, 0, nullptr, 0, nullptr);
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdSetEvent(VkCommandBuffer commandBuffer, VkEvent event, VkPipelineStageFlags) {
@@ -52,6 +56,19 @@ VKAPI_ATTR void VKAPI_CALL CmdWaitEvents(VkCommandBuffer commandBuffer, uint32_t
     for (uint32_t i = 0; i < eventCount; ++i) {
         record(commandBuffer, command::WaitEvent{&object(pEvents[i])->set});
     }
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetEvent2(VkCommandBuffer commandBuffer, VkEvent event, const VkDependencyInfo*) {
+    CmdSetEvent(commandBuffer, event, 0);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdResetEvent2(VkCommandBuffer commandBuffer, VkEvent event, VkPipelineStageFlags2) {
+    CmdResetEvent(commandBuffer, event, 0);
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdWaitEvents2(VkCommandBuffer commandBuffer, uint32_t eventCount, const VkEvent* pEvents,
+                                          const VkDependencyInfo*) {
+    CmdWaitEvents(commandBuffer, eventCount, pEvents, 0, 0, 0, nullptr, 0, nullptr, 0, nullptr);
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdBeginQuery(VkCommandBuffer commandBuffer, VkQueryPool queryPool, uint32_t query,
@@ -84,6 +101,11 @@ VKAPI_ATTR void VKAPI_CALL CmdResetQueryPool(VkCommandBuffer commandBuffer, VkQu
 VKAPI_ATTR void VKAPI_CALL CmdWriteTimestamp(VkCommandBuffer commandBuffer, VkPipelineStageFlagBits,
                                              VkQueryPool queryPool, uint32_t query) {
     recordQueries(commandBuffer, "vkCmdWriteTimestamp", query, 1, command::WriteTimestamp{object(queryPool), query});
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdWriteTimestamp2(VkCommandBuffer commandBuffer, VkPipelineStageFlags2,
+                                              VkQueryPool queryPool, uint32_t query) {
+    CmdWriteTimestamp(commandBuffer, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, queryPool, query);
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdCopyQueryPoolResults(VkCommandBuffer commandBuffer, VkQueryPool queryPool,

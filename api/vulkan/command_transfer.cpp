@@ -20,7 +20,7 @@ bool hasMemory(const Image& image) {
 /// What a command outside render passes needs of the resources it touches; false after an error.
 template <class... Resources>
 bool check(CommandBuffer& buffer, const char* name, const Resources&... resources) {
-    if (buffer.pass.pass != nullptr) {
+    if (buffer.pass.inside) {
         buffer.fail(name, "not allowed inside a render pass");
     } else if (!(hasMemory(resources) && ...)) {
         buffer.fail(name, "a buffer or image has no memory bound");

@@ -8,6 +8,7 @@
 #include "api/vulkan/handle.h"
 #include "api/vulkan/message.h"
 #include "api/vulkan/physical_device.h"
+#include "api/vulkan/private_data.h"
 #include "runtime/command/device.h"
 
 namespace vernier::vulkan {
@@ -25,6 +26,7 @@ struct Device : Dispatchable {
     ExtensionSet extensions;  // of the instance and of the device
     std::unique_ptr<vernier::Device> runtime;
     Queue queue;
+    PrivateData privateData;
     std::atomic<VkDeviceSize> allocated{0};  // bytes of device memory
 
     Messages& messages() const;

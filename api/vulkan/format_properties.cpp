@@ -66,6 +66,22 @@ VkSampleCountFlags sampleCounts(VkFormatFeatureFlags features, VkImageType type,
     return multisampled ? kSampleCounts : VkSampleCountFlags{VK_SAMPLE_COUNT_1_BIT};
 }
 
+/// As VkFormatFeatureFlags2: with what has no bit among the first 31.
+VkFormatFeatureFlags2 wideFeatures(VkFormat format, VkFormatFeatureFlags features) {
+    VkFormatFeatureFlags2 wide = features;
+    constexpr VkFormatFeatureFlags kStorage =
+        VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT | VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT;
+    if ((features & kStorage) != 0) {
+        wide |=
+            VK_FORMAT_FEATURE_2_STORAGE_READ_WITHOUT_FORMAT_BIT | VK_FORMAT_FEATURE_2_STORAGE_WRITE_WITHOUT_FORMAT_BIT;
+    }
+    if ((features & VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT) != 0 &&
+        (findFormat(format)->aspects & VK_IMAGE_ASPECT_DEPTH_BIT) != 0) {
+        wide |= VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_DEPTH_COMPARISON_BIT;
+    }
+    return wide;
+}
+
 VkExtent3D maxExtent(VkImageType type) {
     switch (type) {
         case VK_IMAGE_TYPE_1D:
@@ -125,7 +141,13 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceFormatProperties(VkPhysicalDevice, V
 
 VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceFormatProperties2(VkPhysicalDevice, VkFormat format,
                                                               VkFormatProperties2* pFormatProperties) {
-    pFormatProperties->formatProperties = formatProperties(format);
+    const VkFormatProperties plain = formatProperties(format);
+    pFormatProperties->formatProperties = plain;
+    if (auto* p = findInChain<VkFormatProperties3>(pFormatProperties->pNext)) {
+        p->linearTilingFeatures = wideFeatures(format, plain.linearTilingFeatures);
+        p->optimalTilingFeatures = wideFeatures(format, plain.optimalTilingFeatures);
+        p->bufferFeatures = wideFeatures(format, plain.bufferFeatures);
+    }
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties(VkPhysicalDevice physicalDevice, VkFormat format,

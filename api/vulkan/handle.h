@@ -48,6 +48,7 @@ struct Event;
 struct Surface;
 struct Swapchain;
 struct DebugMessenger;
+struct PrivateDataSlot;
 
 template <class Handle>
 struct HandleTraits;
@@ -85,6 +86,7 @@ VERNIER_HANDLE(VkQueryPool, vernier::QueryPool)
 VERNIER_HANDLE(VkSurfaceKHR, Surface)
 VERNIER_HANDLE(VkSwapchainKHR, Swapchain)
 VERNIER_HANDLE(VkDebugUtilsMessengerEXT, DebugMessenger)
+VERNIER_HANDLE(VkPrivateDataSlot, PrivateDataSlot)
 #undef VERNIER_HANDLE
 
 template <class Handle>

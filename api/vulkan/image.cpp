@@ -45,6 +45,21 @@ Status checkCreateInfo(const PhysicalDevice& device, const VkImageCreateInfo& in
     return {};
 }
 
+Result<Image> makeImage(const PhysicalDevice& device, const VkImageCreateInfo& from) {
+    if (Status status = checkCreateInfo(device, from); !status) return status.error();
+    ImageInfo info;
+    info.type = from.imageType;
+    info.format = from.format;
+    info.extent = from.extent;
+    info.mipLevels = from.mipLevels;
+    info.arrayLayers = from.arrayLayers;
+    info.samples = static_cast<uint32_t>(from.samples);
+    info.tiling = from.tiling;
+    info.usage = usageOfAspects(from.pNext, from.usage);
+    info.flags = from.flags;
+    return Image::create(info);
+}
+
 /// To the memory of an image of a swapchain, as another name of it.
 VkResult bindToSwapchain(const Device& device, Image& image, const VkBindImageMemorySwapchainInfoKHR& info) {
     const auto& images = object(info.swapchain)->images;
@@ -61,20 +76,7 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateImage(VkDevice device, const VkImageCreateI
                                            const VkAllocationCallbacks* pAllocator, VkImage* pImage) {
     return guarded([&] {
         const Device& owner = *object(device);
-        if (const Status status = checkCreateInfo(owner.physicalDevice, *pCreateInfo); !status) {
-            return owner.report("vkCreateImage", status.error());
-        }
-        ImageInfo info;
-        info.type = pCreateInfo->imageType;
-        info.format = pCreateInfo->format;
-        info.extent = pCreateInfo->extent;
-        info.mipLevels = pCreateInfo->mipLevels;
-        info.arrayLayers = pCreateInfo->arrayLayers;
-        info.samples = static_cast<uint32_t>(pCreateInfo->samples);
-        info.tiling = pCreateInfo->tiling;
-        info.usage = usageOfAspects(pCreateInfo->pNext, pCreateInfo->usage);
-        info.flags = pCreateInfo->flags;
-        Result<Image> image = Image::create(info);
+        Result<Image> image = makeImage(owner.physicalDevice, *pCreateInfo);
         if (!image) return owner.report("vkCreateImage", image.error());
         return createHandle(pAllocator, pImage, std::move(image).value());
     });
@@ -93,6 +95,25 @@ VKAPI_ATTR void VKAPI_CALL GetImageMemoryRequirements2(VkDevice, const VkImageMe
                                                        VkMemoryRequirements2* pMemoryRequirements) {
     pMemoryRequirements->memoryRequirements = memoryRequirements(object(pInfo->image)->memorySize());
     fillRequirementChain(pMemoryRequirements->pNext);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetDeviceImageMemoryRequirements(VkDevice device,
+                                                            const VkDeviceImageMemoryRequirements* pInfo,
+                                                            VkMemoryRequirements2* pMemoryRequirements) {
+    pMemoryRequirements->memoryRequirements = {};
+    (void)guarded([&] {
+        const Result<Image> image = makeImage(object(device)->physicalDevice, *pInfo->pCreateInfo);
+        if (!image) return object(device)->report("vkGetDeviceImageMemoryRequirements", image.error());
+        pMemoryRequirements->memoryRequirements = memoryRequirements(image->memorySize());
+        return VK_SUCCESS;
+    });
+    fillRequirementChain(pMemoryRequirements->pNext);
+}
+
+VKAPI_ATTR void VKAPI_CALL GetDeviceImageSparseMemoryRequirements(VkDevice, const VkDeviceImageMemoryRequirements*,
+                                                                  uint32_t* pSparseMemoryRequirementCount,
+                                                                  VkSparseImageMemoryRequirements2*) {
+    *pSparseMemoryRequirementCount = 0;
 }
 
 VKAPI_ATTR void VKAPI_CALL GetImageSparseMemoryRequirements(VkDevice, VkImage, uint32_t* pSparseMemoryRequirementCount,

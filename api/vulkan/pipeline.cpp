@@ -1,8 +1,10 @@
 #include "api/vulkan/pipeline.h"
 
+#include <algorithm>
 #include <cstring>
 #include <string>
 
+#include "api/vulkan/chain.h"
 #include "api/vulkan/device.h"
 #include "api/vulkan/entry_points.h"
 #include "api/vulkan/instance.h"
@@ -31,15 +33,46 @@ ShaderSource shaderSource(const VkPipelineShaderStageCreateInfo& stage, ir::Stag
 }
 
 /// A bit per location that an attachment keeps something of; alpha to coverage needs location 0 all the same.
-uint32_t keptColors(const GraphicsState& state) {
-    uint32_t kept = state.alphaToCoverage ? 1 : 0;
-    for (uint32_t n = 0; n < state.colorCount; ++n)
-        if (state.colorFormats[n] != VK_FORMAT_UNDEFINED && state.blend[n].colorWriteMask != 0) kept |= 1u << n;
+uint32_t keptColors(const PipelineState& pipeline) {
+    const GraphicsState& state = pipeline.state;
+    const bool anyMask = pipeline.isDynamic(PlanState::COLOR_WRITE_MASK_EXT);
+    uint32_t kept = state.alphaToCoverage || pipeline.isDynamic(PlanState::ALPHA_TO_COVERAGE_ENABLE_EXT) ? 1 : 0;
+    for (uint32_t n = 0; n < state.colorCount; ++n) {
+        const bool writes = anyMask || state.blend[n].colorWriteMask != 0;
+        if (state.colorFormats[n] != VK_FORMAT_UNDEFINED && writes) kept |= 1u << n;
+    }
     return kept;
 }
 
+/// Something for every input, so that the programs of a pipeline without a vertex input state can be told of.
+void inventVertexInput(const ir::Program& vertex, GraphicsState& state) {
+    state.vertexBindings = {{0, 16, VK_VERTEX_INPUT_RATE_VERTEX}};
+    for (uint32_t location = 0; location < kMaxVertexAttributes; ++location) {
+        const auto reads = [location](const ir::InterfaceSlot& slot) {
+            return slot.builtin == ir::Builtin::user && slot.location == location;
+        };
+        if (std::ranges::any_of(vertex.inputs, reads))
+            state.vertexAttributes.push_back({location, 0, VK_FORMAT_R32G32B32A32_SFLOAT, 0});
+    }
+}
+
+/// Of a pipeline that has more than one plan; nullptr for others.
+std::unique_ptr<PlanCache> makePlanCache(const PipelineState& state, std::shared_ptr<const ShaderProgram> program,
+                                         std::shared_ptr<const GraphicsPipeline> example) {
+    if (state.planStates == 0 && !state.dynamicRendering) return nullptr;
+    PlanCache::Desc desc;
+    desc.state = state.state;
+    desc.program = std::move(program);
+    desc.example = std::move(example);
+    desc.dynamic = state.planStates;
+    desc.clipsUnlessClamped = state.clipsUnlessClamped;
+    desc.hasDepth = state.formats.depth != VK_FORMAT_UNDEFINED;
+    desc.hasStencil = state.formats.stencil != VK_FORMAT_UNDEFINED;
+    return std::make_unique<PlanCache>(std::move(desc));
+}
+
 Result<std::shared_ptr<const ShaderProgram>> loadProgram(const Device& device, const VkGraphicsPipelineCreateInfo& info,
-                                                         const GraphicsState& state) {
+                                                         const PipelineState& state) {
     const VkPipelineShaderStageCreateInfo* vertexStage = nullptr;
     const VkPipelineShaderStageCreateInfo* fragmentStage = nullptr;
     for (uint32_t i = 0; i < info.stageCount; ++i) {
@@ -56,7 +89,7 @@ Result<std::shared_ptr<const ShaderProgram>> loadProgram(const Device& device, c
         }
     }
     if (vertexStage == nullptr) return invalidArgument("there is no vertex stage");
-    if (state.rasterizerDiscard) fragmentStage = nullptr;
+    if (state.state.rasterizerDiscard) fragmentStage = nullptr;
 
     CaptureLayout capture;
     Result<ir::Program> vertex = loadStage(*vertexStage, ir::Stage::vertex, capture);
@@ -81,12 +114,14 @@ VkResult createOne(const Device& device, const VkGraphicsPipelineCreateInfo& inf
                    const VkAllocationCallbacks* callbacks, VkPipeline* out) {
     Result<PipelineState> state = pipelineState(info);
     if (!state) return device.report("vkCreateGraphicsPipelines", state.error());
-    auto program = loadProgram(device, info, state->state);
+    auto program = loadProgram(device, info, *state);
     if (!program) return device.report("vkCreateGraphicsPipelines", program.error());
-    auto graphics = GraphicsPipeline::create({std::move(state->state), std::move(program).value()});
+    if (state->isDynamic(PlanState::VERTEX_INPUT_EXT)) inventVertexInput((*program)->vertexIr(), state->state);
+    auto graphics = GraphicsPipeline::create({state->state, *program});
     if (!graphics) return device.report("vkCreateGraphicsPipelines", graphics.error());
     device.physicalDevice.instance.explainLog.pipeline("graphics", (*graphics)->plan().facts);
-    return createHandle(callbacks, out, std::move(graphics).value(), state->fixed, state->dynamicMask);
+    return createHandle(callbacks, out, *graphics, state->fixed, state->dynamicMask, state->viewportCountDynamic,
+                        makePlanCache(*state, std::move(program).value(), *graphics));
 }
 
 }  // namespace
@@ -98,8 +133,24 @@ Result<ir::Program> loadStage(const VkPipelineShaderStageCreateInfo& stage, ir::
 
 Result<ir::Program> loadStage(const VkPipelineShaderStageCreateInfo& stage, ir::Stage kind, CaptureLayout& capture) {
     if (stage.module == VK_NULL_HANDLE) return invalidArgument("a stage without a shader module");
+    const auto* subgroup = findInChain<VkPipelineShaderStageRequiredSubgroupSizeCreateInfo>(stage.pNext);
+    if (subgroup != nullptr && subgroup->requiredSubgroupSize != ir::kSubgroupSize) {
+        return unsupported("requiredSubgroupSize is " + std::to_string(subgroup->requiredSubgroupSize) +
+                           ", subgroups have " + std::to_string(ir::kSubgroupSize));
+    }
     std::vector<Specialization::Entry> entries;
     return loadShader(shaderSource(stage, kind, entries), capture);
+}
+
+void giveFeedback(const void* chain, bool made, std::chrono::nanoseconds duration) {
+    const auto* info = findInChain<VkPipelineCreationFeedbackCreateInfo>(chain);
+    if (info == nullptr) return;
+    *info->pPipelineCreationFeedback = {};
+    for (uint32_t i = 0; i < info->pipelineStageCreationFeedbackCount; ++i)
+        info->pPipelineStageCreationFeedbacks[i] = {};
+    if (!made) return;
+    *info->pPipelineCreationFeedback = {VK_PIPELINE_CREATION_FEEDBACK_VALID_BIT,
+                                        static_cast<uint64_t>(duration.count())};
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateShaderModule(VkDevice device, const VkShaderModuleCreateInfo* pCreateInfo,

@@ -1,12 +1,15 @@
 // Pipelines, shader modules and pipeline caches.
 #pragma once
 
+#include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "api/vulkan/allocation.h"
 #include "api/vulkan/handle.h"
+#include "api/vulkan/plan_cache.h"
 #include "runtime/plan/compute_pipeline.h"
 #include "runtime/plan/pipeline.h"
 #include "spirv_interp/capture.h"
@@ -25,12 +28,19 @@ struct PipelineCache {};
 
 /// Of one of the two kinds.
 struct Pipeline {
-    Pipeline(std::shared_ptr<const GraphicsPipeline> made, const DynamicState& values, uint32_t mask)
-        : graphics(std::move(made)), fixed(values), dynamicMask(mask) {}
+    Pipeline(std::shared_ptr<const GraphicsPipeline> made, const DynamicState& values, uint32_t mask,
+             bool countsViewports, std::unique_ptr<PlanCache> cache)
+        : graphics(std::move(made)),
+          fixed(values),
+          dynamicMask(mask),
+          viewportCountDynamic(countsViewports),
+          plans(std::move(cache)) {}
     explicit Pipeline(std::shared_ptr<const ComputePipeline> made) : compute(std::move(made)) {}
-    std::shared_ptr<const GraphicsPipeline> graphics;
+    std::shared_ptr<const GraphicsPipeline> graphics;  // with `plans`: an example, which tells of the programs
     DynamicState fixed;
     uint32_t dynamicMask = 0;
+    bool viewportCountDynamic = false;
+    std::unique_ptr<PlanCache> plans;  // nullptr: `graphics` is the only one
     std::shared_ptr<const ComputePipeline> compute;
 };
 
@@ -43,21 +53,39 @@ Result<ir::Program> loadStage(const VkPipelineShaderStageCreateInfo& stage, ir::
 struct PipelineState {
     GraphicsState state;
     DynamicState fixed;
-    uint32_t dynamicMask = 0;  // of dynamicStateBit()
+    uint32_t dynamicMask = 0;   // of dynamicStateBit()
+    PlanStates planStates = 0;  // that are dynamic
+    bool viewportCountDynamic = false;
+    bool clipsUnlessClamped = true;  // see PlanCache::Desc
+    bool dynamicRendering = false;
+    SubpassFormats formats;  // of the attachments
+
+    bool isDynamic(PlanState one) const { return (planStates & planStateBit(one)) != 0; }
 };
 /// The sample locations of a pixel in the runtime's terms; outside sampleLocationCoordinateRange they are clamped.
 std::array<SamplePosition, kMaxSamples> sampleLocationsOf(const VkSampleLocationsInfoEXT& info);
 Result<PipelineState> pipelineState(const VkGraphicsPipelineCreateInfo& info);
 
+/// Answers VkPipelineCreationFeedbackCreateInfo: of the whole pipeline, for stages are not made one by one.
+void giveFeedback(const void* chain, bool made, std::chrono::nanoseconds duration);
+
 /// Calls create(info, place) for each, which returns a VkResult; a pipeline that fails becomes VK_NULL_HANDLE and the
-/// others are made all the same ("Multiple Pipeline Creation" in the Vulkan specification).
+/// others are made all the same ("Multiple Pipeline Creation" in the Vulkan specification). None is made of one whose
+/// flags do not allow compiling: nothing is kept that could stand in for it (VK_EXT_pipeline_creation_cache_control).
 template <class Info, class Create>
 VkResult createEach(uint32_t count, const Info* infos, VkPipeline* pipelines, Create&& create) {
     VkResult result = VK_SUCCESS;
+    std::fill_n(pipelines, count, VkPipeline{VK_NULL_HANDLE});
     for (uint32_t i = 0; i < count; ++i) {
-        pipelines[i] = VK_NULL_HANDLE;
-        const VkResult one = guarded([&] { return create(infos[i], &pipelines[i]); });
-        if (one != VK_SUCCESS) result = one;
+        const Info& info = infos[i];
+        const auto start = std::chrono::steady_clock::now();
+        const bool mayCompile = (info.flags & VK_PIPELINE_CREATE_FAIL_ON_PIPELINE_COMPILE_REQUIRED_BIT) == 0;
+        const VkResult one =
+            mayCompile ? guarded([&] { return create(info, &pipelines[i]); }) : VK_PIPELINE_COMPILE_REQUIRED;
+        giveFeedback(info.pNext, one == VK_SUCCESS, std::chrono::steady_clock::now() - start);
+        if (one == VK_SUCCESS) continue;
+        if (result >= VK_SUCCESS) result = one;  // errors are negative, and count more
+        if ((info.flags & VK_PIPELINE_CREATE_EARLY_RETURN_ON_FAILURE_BIT) != 0) break;
     }
     return result;
 }

@@ -21,28 +21,37 @@ bool isDynamic(const PipelineState& result, VkDynamicState state) {
     return (result.dynamicMask & dynamicStateBit(state)) != 0;
 }
 
+/// Whether all of some states are dynamic: what they are read from may then be missing.
+bool areDynamic(const PipelineState& result, std::initializer_list<PlanState> states) {
+    return std::ranges::all_of(states, [&](PlanState state) { return result.isDynamic(state); });
+}
+
 Status readDynamicStates(const VkPipelineDynamicStateCreateInfo* info, PipelineState& result) {
     for (uint32_t i = 0; info != nullptr && i < info->dynamicStateCount; ++i) {
-        const VkDynamicState state = info->pDynamicStates[i];
-        if (dynamicStateBit(state) == 0) {
+        VkDynamicState state = info->pDynamicStates[i];
+        if (state == VK_DYNAMIC_STATE_VIEWPORT_WITH_COUNT) {
+            state = VK_DYNAMIC_STATE_VIEWPORT;
+            result.viewportCountDynamic = true;
+        }
+        if (state == VK_DYNAMIC_STATE_SCISSOR_WITH_COUNT) state = VK_DYNAMIC_STATE_SCISSOR;
+        if (dynamicStateBit(state) == 0 && planStateBit(state) == 0) {
             return unsupported("dynamic state " + std::to_string(state) + " is not supported");
         }
         result.dynamicMask |= dynamicStateBit(state);
+        result.planStates |= planStateBit(state);
     }
     return {};
 }
 
-Status readVertexInput(const VkGraphicsPipelineCreateInfo& info, GraphicsState& state) {
-    const VkPipelineVertexInputStateCreateInfo* input = info.pVertexInputState;
-    const VkPipelineInputAssemblyStateCreateInfo* assembly = info.pInputAssemblyState;
-    if (input == nullptr || assembly == nullptr) {
-        return invalidArgument("pVertexInputState and pInputAssemblyState must be given");
-    }
+Status readVertexInput(const VkPipelineVertexInputStateCreateInfo* input, PipelineState& result) {
+    GraphicsState& state = result.state;
+    if (result.isDynamic(PlanState::VERTEX_INPUT_EXT)) return {};
+    if (input == nullptr) return invalidArgument("pVertexInputState must be given");
     for (uint32_t i = 0; i < input->vertexBindingDescriptionCount; ++i) {
         const VkVertexInputBindingDescription& binding = input->pVertexBindingDescriptions[i];
         if (binding.binding >= kMaxVertexBindings)
             return aboveLimit("vertex binding", binding.binding, kMaxVertexBindings - 1);
-        if (binding.stride > kMaxVertexBindingStride) {
+        if (binding.stride > kMaxVertexBindingStride && !result.isDynamic(PlanState::VERTEX_INPUT_BINDING_STRIDE)) {
             return aboveLimit("vertex binding stride", binding.stride, kMaxVertexBindingStride);
         }
         state.vertexBindings.push_back(binding);
@@ -65,8 +74,16 @@ Status readVertexInput(const VkGraphicsPipelineCreateInfo& info, GraphicsState& 
         }
         state.vertexAttributes.push_back(attribute);
     }
-    state.topology = assembly->topology;
-    state.primitiveRestart = assembly->primitiveRestartEnable != VK_FALSE;
+    return {};
+}
+
+Status readAssembly(const VkPipelineInputAssemblyStateCreateInfo* assembly, PipelineState& result) {
+    if (assembly == nullptr) {
+        if (areDynamic(result, {PlanState::PRIMITIVE_TOPOLOGY, PlanState::PRIMITIVE_RESTART_ENABLE})) return {};
+        return invalidArgument("pInputAssemblyState must be given");
+    }
+    result.state.topology = assembly->topology;
+    result.state.primitiveRestart = assembly->primitiveRestartEnable != VK_FALSE;
     return {};
 }
 
@@ -76,6 +93,7 @@ void readRasterization(const VkPipelineRasterizationStateCreateInfo& info, Pipel
     state.depthClipEnable = !state.depthClampEnable;
     if (const auto* clip = findInChain<VkPipelineRasterizationDepthClipStateCreateInfoEXT>(info.pNext)) {
         state.depthClipEnable = clip->depthClipEnable != VK_FALSE;
+        result.clipsUnlessClamped = false;
     }
     state.rasterizerDiscard = info.rasterizerDiscardEnable != VK_FALSE;
     state.polygonMode = info.polygonMode;
@@ -98,7 +116,10 @@ void readRasterization(const VkPipelineRasterizationStateCreateInfo& info, Pipel
 }
 
 Status readViewports(const VkPipelineViewportStateCreateInfo* info, PipelineState& result) {
-    if (info == nullptr) return invalidArgument("pViewportState must be given");
+    if (info == nullptr) {
+        if (result.viewportCountDynamic && isDynamic(result, VK_DYNAMIC_STATE_SCISSOR)) return {};
+        return invalidArgument("pViewportState must be given");
+    }
     if (info->viewportCount > kMaxViewports) return aboveLimit("viewportCount", info->viewportCount, kMaxViewports);
     if (info->scissorCount > kMaxViewports) return aboveLimit("scissorCount", info->scissorCount, kMaxViewports);
     result.fixed.viewportCount = std::max(1u, info->viewportCount);
@@ -115,14 +136,21 @@ Status readViewports(const VkPipelineViewportStateCreateInfo* info, PipelineStat
 }
 
 Status readMultisample(const VkPipelineMultisampleStateCreateInfo* info, PipelineState& result) {
-    if (info == nullptr) return invalidArgument("pMultisampleState must be given");
     GraphicsState& state = result.state;
-    state.samples = static_cast<uint32_t>(info->rasterizationSamples);
+    const bool samplesFollow = result.isDynamic(PlanState::RASTERIZATION_SAMPLES_EXT);
+    if (samplesFollow) state.samples = std::max(1u, result.formats.samples);
+    if (info == nullptr) {
+        if (samplesFollow && areDynamic(result, {PlanState::SAMPLE_MASK_EXT, PlanState::ALPHA_TO_COVERAGE_ENABLE_EXT}))
+            return {};
+        return invalidArgument("pMultisampleState must be given");
+    }
+    if (!samplesFollow) state.samples = static_cast<uint32_t>(info->rasterizationSamples);
     if (const auto* locations = findInChain<VkPipelineSampleLocationsStateCreateInfoEXT>(info->pNext)) {
         state.sampleLocations = locations->sampleLocationsEnable != VK_FALSE;
         if (state.sampleLocations) result.fixed.sampleLocations = sampleLocationsOf(locations->sampleLocationsInfo);
     }
-    state.sampleMask = info->pSampleMask != nullptr ? info->pSampleMask[0] : ~0u;
+    const bool hasMask = info->pSampleMask != nullptr && !result.isDynamic(PlanState::SAMPLE_MASK_EXT);
+    state.sampleMask = hasMask ? info->pSampleMask[0] : ~0u;
     state.sampleShading = info->sampleShadingEnable != VK_FALSE;
     state.minSampleShading = info->minSampleShading;
     state.alphaToCoverage = info->alphaToCoverageEnable != VK_FALSE;
@@ -135,7 +163,13 @@ DynamicState::StencilFace stencilFace(const VkStencilOpState& from) {
 }
 
 Status readDepthStencil(const VkPipelineDepthStencilStateCreateInfo* info, PipelineState& result) {
-    if (info == nullptr) return invalidArgument("pDepthStencilState must be given: the subpass has such an attachment");
+    if (info == nullptr) {
+        if (areDynamic(result,
+                       {PlanState::DEPTH_TEST_ENABLE, PlanState::DEPTH_WRITE_ENABLE, PlanState::DEPTH_COMPARE_OP,
+                        PlanState::DEPTH_BOUNDS_TEST_ENABLE, PlanState::STENCIL_TEST_ENABLE, PlanState::STENCIL_OP}))
+            return {};
+        return invalidArgument("pDepthStencilState must be given: there is such an attachment");
+    }
     GraphicsState& state = result.state;
     state.depthTest = info->depthTestEnable != VK_FALSE;
     state.depthWrite = info->depthWriteEnable != VK_FALSE;
@@ -154,31 +188,71 @@ Status readDepthStencil(const VkPipelineDepthStencilStateCreateInfo* info, Pipel
     return {};
 }
 
-Status readBlend(const VkPipelineColorBlendStateCreateInfo* info, const SubpassFormats& formats,
-                 PipelineState& result) {
-    if (info == nullptr) return invalidArgument("pColorBlendState must be given: the subpass has colour attachments");
-    if (info->attachmentCount != formats.colorCount) {
-        return invalidArgument("pColorBlendState->attachmentCount is " + std::to_string(info->attachmentCount) +
-                               "; the subpass has " + std::to_string(formats.colorCount));
+Status readBlend(const VkPipelineColorBlendStateCreateInfo* info, PipelineState& result) {
+    const bool allDynamic = areDynamic(result, {PlanState::COLOR_BLEND_ENABLE_EXT, PlanState::COLOR_BLEND_EQUATION_EXT,
+                                                PlanState::COLOR_WRITE_MASK_EXT});
+    if (info == nullptr) {
+        if (allDynamic && areDynamic(result, {PlanState::LOGIC_OP_ENABLE_EXT, PlanState::LOGIC_OP_EXT})) return {};
+        return invalidArgument("pColorBlendState must be given: there are colour attachments");
     }
     result.state.logicOpEnable = info->logicOpEnable != VK_FALSE;
     result.state.logicOp = info->logicOp;
-    std::copy_n(info->pAttachments, info->attachmentCount, result.state.blend.begin());
+    if (!allDynamic) {
+        if (info->attachmentCount != result.formats.colorCount) {
+            return invalidArgument("pColorBlendState->attachmentCount is " + std::to_string(info->attachmentCount) +
+                                   "; there are " + std::to_string(result.formats.colorCount) + " colour attachments");
+        }
+        std::copy_n(info->pAttachments, info->attachmentCount, result.state.blend.begin());
+    }
     const auto* writes = findInChain<VkPipelineColorWriteCreateInfoEXT>(info->pNext);
     if (writes != nullptr && !isDynamic(result, VK_DYNAMIC_STATE_COLOR_WRITE_ENABLE_EXT)) {
-        const uint32_t count = std::min(writes->attachmentCount, info->attachmentCount);
+        const uint32_t count = std::min({writes->attachmentCount, info->attachmentCount, kMaxColorAttachments});
         for (uint32_t i = 0; i < count; ++i) {
-            if (writes->pColorWriteEnables[i] == VK_FALSE) result.state.blend[i].colorWriteMask = 0;
+            if (writes->pColorWriteEnables[i] != VK_FALSE) continue;
+            result.state.blend[i].colorWriteMask = 0;
+            result.fixed.colorWrites &= ~(1u << i);
         }
     }
     std::copy_n(info->blendConstants, result.fixed.blendConstants.size(), result.fixed.blendConstants.begin());
     return {};
 }
 
-void setFormats(const SubpassFormats& formats, GraphicsState& state) {
-    state.colorCount = formats.colorCount;
-    std::copy_n(formats.colors, formats.colorCount, state.colorFormats.begin());
-    state.depthStencilFormat = formats.depthStencil;
+Status readRendering(const VkPipelineRenderingCreateInfo& info, SubpassFormats& formats) {
+    if (info.colorAttachmentCount > kMaxColorAttachments) {
+        return aboveLimit("colorAttachmentCount", info.colorAttachmentCount, kMaxColorAttachments);
+    }
+    formats.colorCount = info.colorAttachmentCount;
+    if (info.pColorAttachmentFormats != nullptr)
+        std::copy_n(info.pColorAttachmentFormats, info.colorAttachmentCount, formats.colors);
+    formats.depth = info.depthAttachmentFormat;
+    formats.stencil = info.stencilAttachmentFormat;
+    formats.viewMask = info.viewMask;
+    const bool both = formats.depth != VK_FORMAT_UNDEFINED && formats.stencil != VK_FORMAT_UNDEFINED;
+    if (both && formats.depth != formats.stencil) {
+        return invalidArgument(
+            "depthAttachmentFormat and stencilAttachmentFormat must be the same or VK_FORMAT_UNDEFINED");
+    }
+    return {};
+}
+
+/// The attachments that the pipeline is made for: of a subpass, or of dynamic rendering.
+Status readFormats(const VkGraphicsPipelineCreateInfo& info, PipelineState& result) {
+    if (info.renderPass != VK_NULL_HANDLE) {
+        if (info.subpass >= object(info.renderPass)->subpasses.size()) {
+            return invalidArgument("subpass must name a subpass of renderPass");
+        }
+        result.formats = object(info.renderPass)->formats(info.subpass);
+    } else {
+        result.dynamicRendering = true;
+        if (const auto* rendering = findInChain<VkPipelineRenderingCreateInfo>(info.pNext)) {
+            if (Status s = readRendering(*rendering, result.formats); !s) return s;
+        }
+    }
+    GraphicsState& state = result.state;
+    state.colorCount = result.formats.colorCount;
+    std::copy_n(result.formats.colors, state.colorCount, state.colorFormats.begin());
+    state.depthStencilFormat = result.formats.depthStencil();
+    return {};
 }
 
 }  // namespace
@@ -199,15 +273,14 @@ std::array<SamplePosition, kMaxSamples> sampleLocationsOf(const VkSampleLocation
 
 Result<PipelineState> pipelineState(const VkGraphicsPipelineCreateInfo& info) {
     PipelineState result;
-    if (info.renderPass == VK_NULL_HANDLE || info.subpass >= object(info.renderPass)->subpasses.size()) {
-        return invalidArgument("renderPass and subpass must name a subpass");
-    }
     if (info.pRasterizationState == nullptr) return invalidArgument("pRasterizationState must be given");
-    const SubpassFormats formats = object(info.renderPass)->formats(info.subpass);
-    setFormats(formats, result.state);
+    if (Status s = readFormats(info, result); !s) return s.error();
+    const SubpassFormats& formats = result.formats;
     if (Status s = readDynamicStates(info.pDynamicState, result); !s) return s.error();
-    if (Status s = readVertexInput(info, result.state); !s) return s.error();
+    if (Status s = readVertexInput(info.pVertexInputState, result); !s) return s.error();
+    if (Status s = readAssembly(info.pInputAssemblyState, result); !s) return s.error();
     readRasterization(*info.pRasterizationState, result);
+    if (result.isDynamic(PlanState::RASTERIZER_DISCARD_ENABLE)) result.state.rasterizerDiscard = false;
     if (result.state.rasterizerDiscard) {
         if (formats.samples != 0) result.state.samples = formats.samples;
         return result;
@@ -218,13 +291,17 @@ Result<PipelineState> pipelineState(const VkGraphicsPipelineCreateInfo& info) {
         return invalidArgument("rasterizationSamples is " + std::to_string(result.state.samples) +
                                "; the attachments have " + std::to_string(formats.samples));
     }
-    if (formats.depthStencil != VK_FORMAT_UNDEFINED) {
+    if (formats.depthStencil() != VK_FORMAT_UNDEFINED) {
         if (Status s = readDepthStencil(info.pDepthStencilState, result); !s) return s.error();
     }
+    // "If there is no depth attachment, then the depth test is skipped"; the image may have the aspect all the same.
+    if (formats.depth == VK_FORMAT_UNDEFINED)
+        result.state.depthTest = result.state.depthWrite = result.state.depthBoundsTest = false;
+    if (formats.stencil == VK_FORMAT_UNDEFINED) result.state.stencilTest = false;
     const bool anyColor = std::any_of(formats.colors, formats.colors + formats.colorCount,
                                       [](VkFormat format) { return format != VK_FORMAT_UNDEFINED; });
     if (anyColor) {
-        if (Status s = readBlend(info.pColorBlendState, formats, result); !s) return s.error();
+        if (Status s = readBlend(info.pColorBlendState, result); !s) return s.error();
     }
     return result;
 }

@@ -6,6 +6,7 @@
 #include "api/vulkan/resource_limits.h"
 #include "runtime/plan/sample_positions.h"
 #include "runtime/raster/depth_resolve.h"
+#include "runtime/resource/buffer_view.h"
 #include "spirv_interp/capture.h"
 #include "spirv_interp/program.h"
 
@@ -49,6 +50,20 @@ void setTransformFeedback(VkPhysicalDeviceTransformFeedbackPropertiesEXT& p) {
         p.maxTransformFeedbackBufferDataStride = kMaxInterfaceComponents * sizeof(float);
     p.transformFeedbackQueries = p.transformFeedbackDraw = VK_TRUE;
     p.transformFeedbackStreamsLinesTriangles = p.transformFeedbackRasterizationStreamSelect = VK_FALSE;
+}
+
+/// There is one size.
+void setSubgroupSizes(VkPhysicalDeviceSubgroupSizeControlProperties& p) {
+    p.minSubgroupSize = p.maxSubgroupSize = ir::kSubgroupSize;
+    p.maxComputeWorkgroupSubgroups = kMaxWorkGroupInvocations / ir::kSubgroupSize;
+    p.requiredSubgroupSizeStages =
+        VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
+}
+
+/// Texels are read wherever they lie, but loads of whole texels want them aligned to themselves.
+void setTexelAlignments(VkPhysicalDeviceTexelBufferAlignmentProperties& p) {
+    p.storageTexelBufferOffsetAlignmentBytes = p.uniformTexelBufferOffsetAlignmentBytes = kTexelBufferAlignment;
+    p.storageTexelBufferOffsetSingleTexelAlignment = p.uniformTexelBufferOffsetSingleTexelAlignment = VK_TRUE;
 }
 
 /// Every operation of every width rounds to nearest even, and keeps denormals, signs of zeros, infinities and NaNs;
@@ -122,6 +137,12 @@ void fillPropertyChain(const PhysicalDevice& device, void* chain) {
         p->filterMinmaxImageComponentMapping = VK_TRUE;
     }
     if (auto* p = findInChain<VkPhysicalDeviceFloatControlsProperties>(chain)) setFloatControls(*p);
+    if (auto* p = findInChain<VkPhysicalDeviceMaintenance4Properties>(chain)) p->maxBufferSize = kMaxAllocation;
+    if (auto* p = findInChain<VkPhysicalDeviceSubgroupSizeControlProperties>(chain)) setSubgroupSizes(*p);
+    if (auto* p = findInChain<VkPhysicalDeviceTexelBufferAlignmentProperties>(chain)) setTexelAlignments(*p);
+    if (auto* p = findInChain<VkPhysicalDeviceExtendedDynamicState3PropertiesEXT>(chain)) {
+        p->dynamicPrimitiveTopologyUnrestricted = VK_TRUE;
+    }
     if (auto* p = findInChain<VkPhysicalDeviceShaderIntegerDotProductProperties>(chain)) {
         // None of them is faster than the products and sums written out.
         const VkBaseOutStructure head{p->sType, static_cast<VkBaseOutStructure*>(p->pNext)};

@@ -1,4 +1,6 @@
 // Submitting work.
+#include <algorithm>
+
 #include "api/vulkan/allocation.h"
 #include "api/vulkan/chain.h"
 #include "api/vulkan/command_buffer.h"
@@ -9,14 +11,14 @@
 namespace vernier::vulkan {
 namespace {
 
-/// One wait or signal of a batch. Values count for timeline semaphores alone; missing ones are 0.
-void addSemaphore(VkSemaphore handle, const uint64_t* values, uint32_t valueCount, uint32_t index,
-                  std::vector<BinarySignal*>& binaries, std::vector<Submission::TimelinePoint>& points) {
+/// One wait or signal of a batch. The value counts for timeline semaphores alone.
+void addSemaphore(VkSemaphore handle, uint64_t value, std::vector<BinarySignal*>& binaries,
+                  std::vector<Submission::TimelinePoint>& points) {
     Semaphore& semaphore = *object(handle);
     if (!semaphore.timeline) {
         binaries.push_back(&semaphore.binary);
     } else {
-        points.push_back({&semaphore.counter, index < valueCount ? values[index] : 0});
+        points.push_back({&semaphore.counter, value});
     }
 }
 
@@ -26,41 +28,76 @@ Submission makeSubmission(const VkSubmitInfo& info) {
     const VkTimelineSemaphoreSubmitInfo none{};
     const VkTimelineSemaphoreSubmitInfo& values = timeline != nullptr ? *timeline : none;
     for (uint32_t i = 0; i < info.waitSemaphoreCount; ++i) {
-        addSemaphore(info.pWaitSemaphores[i], values.pWaitSemaphoreValues, values.waitSemaphoreValueCount, i,
-                     submission.waitSemaphores, submission.waitTimelines);
+        const uint64_t value = i < values.waitSemaphoreValueCount ? values.pWaitSemaphoreValues[i] : 0;
+        addSemaphore(info.pWaitSemaphores[i], value, submission.waitSemaphores, submission.waitTimelines);
     }
     for (uint32_t i = 0; i < info.commandBufferCount; ++i) {
         submission.commands.push_back(&object(info.pCommandBuffers[i])->stream);
     }
     for (uint32_t i = 0; i < info.signalSemaphoreCount; ++i) {
-        addSemaphore(info.pSignalSemaphores[i], values.pSignalSemaphoreValues, values.signalSemaphoreValueCount, i,
-                     submission.signalSemaphores, submission.signalTimelines);
+        const uint64_t value = i < values.signalSemaphoreValueCount ? values.pSignalSemaphoreValues[i] : 0;
+        addSemaphore(info.pSignalSemaphores[i], value, submission.signalSemaphores, submission.signalTimelines);
     }
     return submission;
+}
+
+Submission makeSubmission(const VkSubmitInfo2& info) {
+    Submission submission;
+    for (uint32_t i = 0; i < info.waitSemaphoreInfoCount; ++i) {
+        const VkSemaphoreSubmitInfo& wait = info.pWaitSemaphoreInfos[i];
+        addSemaphore(wait.semaphore, wait.value, submission.waitSemaphores, submission.waitTimelines);
+    }
+    for (uint32_t i = 0; i < info.commandBufferInfoCount; ++i) {
+        submission.commands.push_back(&object(info.pCommandBufferInfos[i].commandBuffer)->stream);
+    }
+    for (uint32_t i = 0; i < info.signalSemaphoreInfoCount; ++i) {
+        const VkSemaphoreSubmitInfo& signal = info.pSignalSemaphoreInfos[i];
+        addSemaphore(signal.semaphore, signal.value, submission.signalSemaphores, submission.signalTimelines);
+    }
+    return submission;
+}
+
+bool allExecutable(const VkSubmitInfo& info) {
+    const auto executable = [](VkCommandBuffer commands) { return object(commands)->executable(); };
+    return std::all_of(info.pCommandBuffers, info.pCommandBuffers + info.commandBufferCount, executable);
+}
+
+bool allExecutable(const VkSubmitInfo2& info) {
+    const auto executable = [](const VkCommandBufferSubmitInfo& one) {
+        return object(one.commandBuffer)->executable();
+    };
+    return std::all_of(info.pCommandBufferInfos, info.pCommandBufferInfos + info.commandBufferInfoCount, executable);
+}
+
+template <class Info>
+VkResult submit(VkQueue queue, const char* command, uint32_t count, const Info* infos, VkFence fence) {
+    return guarded([&] {
+        Device& device = object(queue)->device;
+        if (device.lost()) return VK_ERROR_DEVICE_LOST;
+        for (uint32_t i = 0; i < count; ++i) {
+            if (!allExecutable(infos[i])) {
+                return device.report(command, VK_ERROR_UNKNOWN, "a command buffer is not in the executable state");
+            }
+        }
+        std::vector<Submission> batches;
+        for (uint32_t i = 0; i < count; ++i) batches.push_back(makeSubmission(infos[i]));
+        if (batches.empty()) batches.emplace_back();
+        batches.back().fence = object(fence);
+        for (Submission& batch : batches) device.runtime->queue().submit(std::move(batch));
+        return VK_SUCCESS;
+    });
 }
 
 }  // namespace
 
 VKAPI_ATTR VkResult VKAPI_CALL QueueSubmit(VkQueue queue, uint32_t submitCount, const VkSubmitInfo* pSubmits,
                                            VkFence fence) {
-    return guarded([&] {
-        Device& device = object(queue)->device;
-        if (device.lost()) return VK_ERROR_DEVICE_LOST;
-        for (uint32_t i = 0; i < submitCount; ++i) {
-            for (uint32_t j = 0; j < pSubmits[i].commandBufferCount; ++j) {
-                if (!object(pSubmits[i].pCommandBuffers[j])->executable()) {
-                    return device.report("vkQueueSubmit", VK_ERROR_UNKNOWN,
-                                         "a command buffer is not in the executable state");
-                }
-            }
-        }
-        std::vector<Submission> batches;
-        for (uint32_t i = 0; i < submitCount; ++i) batches.push_back(makeSubmission(pSubmits[i]));
-        if (batches.empty()) batches.emplace_back();
-        batches.back().fence = object(fence);
-        for (Submission& batch : batches) device.runtime->queue().submit(std::move(batch));
-        return VK_SUCCESS;
-    });
+    return submit(queue, "vkQueueSubmit", submitCount, pSubmits, fence);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL QueueSubmit2(VkQueue queue, uint32_t submitCount, const VkSubmitInfo2* pSubmits,
+                                            VkFence fence) {
+    return submit(queue, "vkQueueSubmit2", submitCount, pSubmits, fence);
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL QueueBindSparse(VkQueue queue, uint32_t, const VkBindSparseInfo*, VkFence) {

@@ -221,7 +221,27 @@ SubpassFormats RenderPassObject::formats(uint32_t subpass) const {
     result.viewMask = from.viewMask;
     result.colorCount = static_cast<uint32_t>(from.colors.size());
     for (uint32_t i = 0; i < result.colorCount; ++i) result.colors[i] = use(from.colors[i]);
-    result.depthStencil = use(from.depthStencil);
+    result.setDepthStencil(use(from.depthStencil));
+    return result;
+}
+
+void SubpassFormats::setDepthStencil(VkFormat format) {
+    const FormatInfo* info = findFormat(format);
+    const VkImageAspectFlags aspects = info != nullptr ? info->aspects : 0;
+    depth = (aspects & VK_IMAGE_ASPECT_DEPTH_BIT) != 0 ? format : VK_FORMAT_UNDEFINED;
+    stencil = (aspects & VK_IMAGE_ASPECT_STENCIL_BIT) != 0 ? format : VK_FORMAT_UNDEFINED;
+}
+
+VkRect2D clipArea(const VkRect2D& area, const VkExtent2D& extent) {
+    const auto clip = [](int32_t offset, uint32_t size, uint32_t limit, int32_t& start, uint32_t& length) {
+        const int64_t first = std::clamp<int64_t>(offset, 0, limit);
+        const int64_t last = std::clamp<int64_t>(int64_t{offset} + size, first, limit);
+        start = static_cast<int32_t>(first);
+        length = static_cast<uint32_t>(last - first);
+    };
+    VkRect2D result{};
+    clip(area.offset.x, area.extent.width, extent.width, result.offset.x, result.extent.width);
+    clip(area.offset.y, area.extent.height, extent.height, result.offset.y, result.extent.height);
     return result;
 }
 

@@ -28,10 +28,13 @@ struct Subpass {
 struct SubpassFormats {
     uint32_t colorCount = 0;
     VkFormat colors[kMaxColorAttachments] = {};
-    VkFormat depthStencil = VK_FORMAT_UNDEFINED;
-    uint32_t samples = 0;  // 0: no attachments, any
+    VkFormat depth = VK_FORMAT_UNDEFINED, stencil = VK_FORMAT_UNDEFINED;  // the same one where both are there
+    uint32_t samples = 0;                                                 // 0: no attachments, any
     uint32_t viewMask = 0;
     bool operator==(const SubpassFormats&) const = default;
+    VkFormat depthStencil() const { return depth != VK_FORMAT_UNDEFINED ? depth : stencil; }
+    /// An attachment for both of the aspects that the format has.
+    void setDepthStencil(VkFormat format);
 };
 
 struct RenderPassObject {
@@ -55,6 +58,9 @@ struct Framebuffer {
 command::BeginRendering renderingOf(const RenderPassObject& pass, const std::vector<const ImageView*>& views,
                                     uint32_t layers, uint32_t subpass, const VkRect2D& area,
                                     const std::vector<VkClearValue>& clears);
+
+/// The part of the area that lies inside the extent.
+VkRect2D clipArea(const VkRect2D& area, const VkExtent2D& extent);
 
 /// Whether the views can stand for the attachments of the pass in a framebuffer of this size.
 Status checkViews(const RenderPassObject& pass, std::span<const ImageView* const> views, const VkExtent2D& extent,

@@ -5,11 +5,20 @@
 #include <memory>
 
 #include "api/vulkan/presenter.h"
+#include "api/vulkan/private_data.h"
 
 namespace vernier::vulkan {
 
 struct SwapchainImage {
+    SwapchainImage(Image made, std::unique_ptr<Memory> of) : image(std::move(made)), memory(std::move(of)) {}
+    /// Before anybody knows the handle.
+    SwapchainImage(SwapchainImage&& other) noexcept : SwapchainImage(std::move(other.image), std::move(other.memory)) {}
+    ~SwapchainImage() {
+        if (PrivateData* data = header.data) data->forgetObject(&image);
+    }
+    ObjectHeader header;  // of the image behind it
     Image image;
+    static_assert(alignof(Image) <= sizeof(ObjectHeader));
     std::unique_ptr<Memory> memory;
 };
 

@@ -1,6 +1,7 @@
 // The bytes of a buffer range that commands read from the host's side.
 #pragma once
 
+#include <algorithm>
 #include <cstring>
 #include <optional>
 
@@ -12,7 +13,7 @@ namespace vernier {
 /// From the range's begin to the end of the buffer; none where there is no memory.
 inline VertexStream streamOf(const command::BufferRange& range) {
     if (!range.buffer || !range.buffer->data() || range.offset > range.buffer->size()) return {};
-    return {range.buffer->data() + range.offset, range.buffer->size() - range.offset};
+    return {range.buffer->data() + range.offset, std::min(range.size, range.buffer->size() - range.offset)};
 }
 
 /// The indirect arguments as Vulkan lays them out, wherever they lie; nothing if they reach outside the buffer.

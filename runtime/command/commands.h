@@ -80,6 +80,7 @@ struct PushConstants {
 struct BufferRange {
     const Buffer* buffer = nullptr;  // nullptr: unbound, reads give 0
     VkDeviceSize offset = 0;
+    VkDeviceSize size = VK_WHOLE_SIZE;  // of a vertex buffer: what lies behind reads as 0
 };
 struct BindVertexBuffers {
     uint32_t first = 0;

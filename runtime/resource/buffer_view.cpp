@@ -4,6 +4,15 @@
 #include <string>
 
 namespace vernier {
+namespace {
+
+/// That of a texel, of texels of three components that of one ("VkPhysicalDeviceTexelBufferAlignmentProperties").
+VkDeviceSize texelAlignment(const FormatInfo& format) {
+    const uint32_t bytes = format.bytesPerTexel;
+    return std::min<VkDeviceSize>(bytes % 3 == 0 ? bytes / 3 : bytes, kTexelBufferAlignment);
+}
+
+}  // namespace
 
 Result<BufferView> BufferView::create(const Buffer& buffer, const BufferViewInfo& info, Isa isa) {
     const auto wrong = [](const std::string& what) { return invalidArgument("buffer view: " + what); };
@@ -14,10 +23,10 @@ Result<BufferView> BufferView::create(const Buffer& buffer, const BufferViewInfo
         return unsupported("buffer view: format " + (format ? format->name : std::to_string(info.format)) +
                            " cannot be that of a texel buffer");
     if (!buffer.data()) return wrong("the buffer has no memory bound");
-    if (info.offset >= buffer.size() || info.offset % kTexelBufferAlignment != 0)
+    const VkDeviceSize alignment = texelAlignment(*format);
+    if (info.offset >= buffer.size() || info.offset % alignment != 0)
         return wrong("offset " + std::to_string(info.offset) + " is outside the buffer's " +
-                     std::to_string(buffer.size()) + " bytes or no multiple of " +
-                     std::to_string(kTexelBufferAlignment));
+                     std::to_string(buffer.size()) + " bytes or no multiple of " + std::to_string(alignment));
     const VkDeviceSize left = buffer.size() - info.offset;
     if (info.range != VK_WHOLE_SIZE && (info.range > left || info.range % format->bytesPerTexel != 0))
         return wrong("range " + std::to_string(info.range) + " leaves the buffer or is not whole texels of " +

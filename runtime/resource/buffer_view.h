@@ -15,7 +15,7 @@ inline constexpr VkDeviceSize kTexelBufferAlignment = 16;
 
 struct BufferViewInfo {
     VkFormat format = VK_FORMAT_UNDEFINED;
-    VkDeviceSize offset = 0;  // bytes; a multiple of kTexelBufferAlignment
+    VkDeviceSize offset = 0;  // bytes; whole texels or, if less is enough, a multiple of kTexelBufferAlignment
     VkDeviceSize range = 0;   // bytes, whole texels; VK_WHOLE_SIZE: as many texels as there are up to the buffer's end
 };
 

@@ -129,6 +129,7 @@ VkPipeline DrawTest::makePipeline(VkRenderPass pass, const PipelineDesc& desc, V
     if (desc.change) desc.change({input, assembly, viewports, raster, multisample, depth, colors, blends});
 
     auto info = make<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
+    info.pNext = desc.next;
     info.flags = desc.flags;
     info.stageCount = static_cast<uint32_t>(stages.size());
     info.pStages = stages.data();

@@ -46,6 +46,7 @@ class DrawTest : public VulkanTest {
         std::vector<VkDynamicState> dynamic;
         VkExtent2D extent{};
         std::function<void(const PipelineStates&)> change;
+        const void* next = nullptr;  // chain of the pipeline's description
     };
     VkPipeline makePipeline(VkRenderPass pass, const PipelineDesc& desc, VkResult expected = VK_SUCCESS);
 

@@ -114,7 +114,7 @@ TEST_F(TexelBufferTest, wrongViewsAreRefused) {
         EXPECT_THAT(messages, Contains(HasSubstr(message)));
     };
     refused(VK_FORMAT_D16_UNORM, 0, VK_WHOLE_SIZE, "D16_UNORM cannot be that of a texel buffer");
-    refused(VK_FORMAT_R32_UINT, 8, VK_WHOLE_SIZE, "offset 8 is outside");
+    refused(VK_FORMAT_R32_UINT, 6, VK_WHOLE_SIZE, "offset 6 is outside");
     refused(VK_FORMAT_R32_UINT, 64, VK_WHOLE_SIZE, "offset 64 is outside");
     refused(VK_FORMAT_R32G32_UINT, 0, 12, "range 12 leaves the buffer or is not whole texels of 8");
     refused(VK_FORMAT_R32_UINT, 16, 64, "range 64 leaves");
