@@ -1,9 +1,11 @@
 // Command buffers: a stream of the runtime, and what recording has to remember.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
+#include "api/vulkan/descriptor.h"
 #include "api/vulkan/handle.h"
 #include "api/vulkan/plan_cache.h"
 #include "api/vulkan/render_pass.h"
@@ -43,6 +45,8 @@ struct CommandBuffer : Dispatchable {
     const Pipeline* computePipeline = nullptr;
     SetState set;
     std::vector<std::shared_ptr<const GraphicsPipeline>> plans;  // that draws follow, of plan caches
+    std::vector<std::unique_ptr<DescriptorSetObject>> pushed;    // sets of push descriptors
+    std::array<DescriptorSetObject*, 2> latestPush{};            // of draws and of dispatches
 
     bool executable() const { return state == State::executable && result == VK_SUCCESS; }
     void reset();

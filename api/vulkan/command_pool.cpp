@@ -19,6 +19,8 @@ void CommandBuffer::reset() {
     computePipeline = nullptr;
     set = {};
     plans.clear();
+    pushed.clear();
+    latestPush = {};
 }
 
 void CommandBuffer::fail(const char* command, std::string_view text) {

@@ -1,7 +1,9 @@
 // Descriptor pools and the sets allocated from them.
 #include <algorithm>
+#include <functional>
 
 #include "api/vulkan/allocation.h"
+#include "api/vulkan/chain.h"
 #include "api/vulkan/descriptor.h"
 #include "api/vulkan/entry_points.h"
 
@@ -11,27 +13,51 @@ DescriptorPool::DescriptorPool(const VkAllocationCallbacks* given, const VkDescr
     : hasCallbacks_(given != nullptr), setsLeft_(info.maxSets) {
     if (given != nullptr) callbacks_ = *given;
     for (uint32_t i = 0; i < info.poolSizeCount; ++i) {
-        const auto type = static_cast<size_t>(info.pPoolSizes[i].type);
-        if (type < left_.size()) left_[type] += info.pPoolSizes[i].descriptorCount;
+        const size_t type = placeOf(info.pPoolSizes[i].type);
+        if (type < left_.of.size()) left_.of[type] += info.pPoolSizes[i].descriptorCount;
     }
+    const auto* blocks = findInChain<VkDescriptorPoolInlineUniformBlockCreateInfo>(info.pNext);
+    if (blocks != nullptr) left_.blocks = blocks->maxInlineUniformBlockBindings;
+}
+
+DescriptorPool::Counts DescriptorPool::countsOf(const DescriptorSetLayout& layout, uint32_t variableCount) {
+    Counts counts;
+    for (const DescriptorBinding& binding : layout.bindings) {
+        const bool isBlock = binding.type == VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK;
+        const uint32_t most = isBlock ? binding.blockBytes : binding.count;
+        const uint32_t count = binding.variable ? std::min(most, variableCount) : most;
+        if (count == 0) continue;  // whose type does not count
+        counts.of[placeOf(binding.type)] += count;
+        if (isBlock) ++counts.blocks;
+    }
+    return counts;
+}
+
+bool DescriptorPool::Counts::take(const Counts& wanted) {
+    const auto holds = [](uint32_t has, uint32_t wants) { return has >= wants; };
+    if (blocks < wanted.blocks || !std::equal(of.begin(), of.end(), wanted.of.begin(), holds)) return false;
+    std::transform(of.begin(), of.end(), wanted.of.begin(), of.begin(), std::minus<>{});
+    blocks -= wanted.blocks;
+    return true;
+}
+
+void DescriptorPool::Counts::put(const Counts& back) {
+    std::transform(of.begin(), of.end(), back.of.begin(), of.begin(), std::plus<>{});
+    blocks += back.blocks;
 }
 
 DescriptorPool::~DescriptorPool() {
     reset();
 }
 
-VkResult DescriptorPool::allocate(const std::shared_ptr<const DescriptorSetLayout>& layout, VkDescriptorSet* out) {
+VkResult DescriptorPool::allocate(const std::shared_ptr<const DescriptorSetLayout>& layout, uint32_t variableCount,
+                                  VkDescriptorSet* out) {
     if (setsLeft_ == 0) return VK_ERROR_OUT_OF_POOL_MEMORY;
-    std::array<uint32_t, kDescriptorTypeCount> left = left_;
-    for (const DescriptorBinding& binding : layout->bindings) {
-        if (binding.count == 0) continue;
-        uint32_t& available = left[static_cast<size_t>(binding.type)];
-        if (available < binding.count) return VK_ERROR_OUT_OF_POOL_MEMORY;
-        available -= binding.count;
-    }
+    Counts left = left_;
+    if (!left.take(countsOf(*layout, variableCount))) return VK_ERROR_OUT_OF_POOL_MEMORY;
     // Room first, and twice of it each time: nothing may fail once the object is made.
     if (sets_.size() == sets_.capacity()) sets_.reserve(2 * sets_.size() + 1);
-    auto* set = newObject<DescriptorSetObject>(callbacks(), VK_SYSTEM_ALLOCATION_SCOPE_OBJECT, layout);
+    auto* set = newObject<DescriptorSetObject>(callbacks(), VK_SYSTEM_ALLOCATION_SCOPE_OBJECT, layout, variableCount);
     if (set == nullptr) return VK_ERROR_OUT_OF_HOST_MEMORY;
     sets_.push_back(set);
     left_ = left;
@@ -45,9 +71,7 @@ void DescriptorPool::free(DescriptorSetObject* set) {
     if (found == sets_.end()) return;
     *found = sets_.back();
     sets_.pop_back();
-    for (const DescriptorBinding& binding : set->layout->bindings) {
-        if (binding.count != 0) left_[static_cast<size_t>(binding.type)] += binding.count;
-    }
+    left_.put(countsOf(*set->layout, set->variableCount));
     ++setsLeft_;
     deleteObject(callbacks(), set);
 }
@@ -77,10 +101,14 @@ VKAPI_ATTR VkResult VKAPI_CALL AllocateDescriptorSets(VkDevice, const VkDescript
                                                       VkDescriptorSet* pDescriptorSets) {
     DescriptorPool& pool = *object(pAllocateInfo->descriptorPool);
     const uint32_t count = pAllocateInfo->descriptorSetCount;
+    const auto* variable = findInChain<VkDescriptorSetVariableDescriptorCountAllocateInfo>(pAllocateInfo->pNext);
+    const bool counts = variable != nullptr && variable->descriptorSetCount != 0;
     std::fill_n(pDescriptorSets, count, VkDescriptorSet{VK_NULL_HANDLE});
     const VkResult result = guarded([&] {
         for (uint32_t i = 0; i < count; ++i) {
-            const VkResult one = pool.allocate(object(pAllocateInfo->pSetLayouts[i])->layout, &pDescriptorSets[i]);
+            const uint32_t last = counts && i < variable->descriptorSetCount ? variable->pDescriptorCounts[i] : 0;
+            const VkResult one =
+                pool.allocate(object(pAllocateInfo->pSetLayouts[i])->layout, last, &pDescriptorSets[i]);
             if (one != VK_SUCCESS) return one;
         }
         return VK_SUCCESS;

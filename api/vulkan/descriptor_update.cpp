@@ -1,7 +1,10 @@
 // Writing and copying descriptors, directly and through templates (VK_KHR_descriptor_update_template).
+#include <algorithm>
+#include <cstring>
 #include <string>
 
 #include "api/vulkan/allocation.h"
+#include "api/vulkan/chain.h"
 #include "api/vulkan/descriptor.h"
 #include "api/vulkan/device.h"
 #include "api/vulkan/entry_points.h"
@@ -15,8 +18,8 @@ namespace {
 /// updates run over from one binding into the next by counting on ("consecutive binding updates").
 class SlotCursor {
   public:
-    SlotCursor(const DescriptorSetLayout& layout, uint32_t binding, uint32_t element)
-        : layout_(layout), binding_(layout.find(binding)), element_(element) {
+    SlotCursor(const DescriptorSet& set, uint32_t binding, uint32_t element)
+        : set_(set), binding_(set.layout().find(binding)), element_(element) {
         settle();
     }
 
@@ -33,14 +36,15 @@ class SlotCursor {
 
   private:
     void settle() {
-        while (binding_ != nullptr && element_ >= binding_->count) {
-            element_ -= binding_->count;
+        const std::vector<DescriptorBinding>& all = set_.layout().bindings;
+        while (binding_ != nullptr && element_ >= set_.countOf(*binding_)) {
+            element_ -= set_.countOf(*binding_);
             ++binding_;
-            if (binding_ == layout_.bindings.data() + layout_.bindings.size()) binding_ = nullptr;
+            if (binding_ == all.data() + all.size()) binding_ = nullptr;
         }
     }
 
-    const DescriptorSetLayout& layout_;
+    const DescriptorSet& set_;
     const DescriptorBinding* binding_;
     uint32_t element_;
 };
@@ -111,9 +115,26 @@ const void* sourceOf(const VkWriteDescriptorSet& info, uint32_t i) {
     }
 }
 
-void write(const Device& device, const VkWriteDescriptorSet& info) {
-    DescriptorSet& set = object(info.dstSet)->set;
-    SlotCursor cursor(set.layout(), info.dstBinding, info.dstArrayElement);
+/// The bytes of an inline uniform block from `first` on, as many as there are of `count`.
+std::span<std::byte> blockBytes(DescriptorSet& set, uint32_t binding, uint32_t first, uint32_t count) {
+    const DescriptorBinding* found = set.layout().find(binding);
+    if (found == nullptr || found->type != VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK) return {};
+    const std::span<std::byte> bytes = set.block(*found);
+    if (first > bytes.size()) return {};
+    return bytes.subspan(first, std::min<size_t>(count, bytes.size() - first));
+}
+
+void writeBlock(DescriptorSet& set, const VkWriteDescriptorSet& info) {
+    const auto* data = findInChain<VkWriteDescriptorSetInlineUniformBlock>(info.pNext);
+    if (data == nullptr) return;
+    const auto to =
+        blockBytes(set, info.dstBinding, info.dstArrayElement, std::min(info.descriptorCount, data->dataSize));
+    if (!to.empty()) std::memcpy(to.data(), data->pData, to.size());
+}
+
+void write(const Device& device, DescriptorSet& set, const VkWriteDescriptorSet& info) {
+    if (info.descriptorType == VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK) return writeBlock(set, info);
+    SlotCursor cursor(set, info.dstBinding, info.dstArrayElement);
     for (uint32_t i = 0; i < info.descriptorCount && matches(cursor, info.descriptorType); ++i, cursor.next()) {
         if (const void* source = sourceOf(info, i)) writeOne(device, set, cursor, source);
     }
@@ -122,17 +143,18 @@ void write(const Device& device, const VkWriteDescriptorSet& info) {
 void copy(const Device& device, const VkCopyDescriptorSet& info) {
     DescriptorSet& source = object(info.srcSet)->set;
     DescriptorSet& destination = object(info.dstSet)->set;
-    SlotCursor from(source.layout(), info.srcBinding, info.srcArrayElement);
-    SlotCursor to(destination.layout(), info.dstBinding, info.dstArrayElement);
+    const auto fromBytes = blockBytes(source, info.srcBinding, info.srcArrayElement, info.descriptorCount);
+    const auto toBytes = blockBytes(destination, info.dstBinding, info.dstArrayElement, info.descriptorCount);
+    const std::unique_lock lock = destination.lock();
+    if (const size_t bytes = std::min(fromBytes.size(), toBytes.size()); bytes != 0)
+        return static_cast<void>(std::memmove(toBytes.data(), fromBytes.data(), bytes));
+    SlotCursor from(source, info.srcBinding, info.srcArrayElement);
+    SlotCursor to(destination, info.dstBinding, info.dstArrayElement);
     for (uint32_t i = 0; i < info.descriptorCount && from.valid() && matches(to, from.type()); ++i) {
-        const Descriptor& value = source.slots()[from.slot()];
-        if (const SamplerState* immutable = to.immutableSampler(); immutable == nullptr) {
-            destination.slots()[to.slot()] = value;
-        } else {
-            const Status status =
-                destination.writeImage(to.slot(), value.texture.view, immutable, device.runtime->isa());
-            if (!status) (void)device.report("vkUpdateDescriptorSets", status.error());
-        }
+        if (from.type() == VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK) return;
+        const Status status =
+            destination.copySlot(to.slot(), source, from.slot(), to.immutableSampler(), device.runtime->isa());
+        if (!status) (void)device.report("vkUpdateDescriptorSets", status.error());
         from.next();
         to.next();
     }
@@ -140,29 +162,51 @@ void copy(const Device& device, const VkCopyDescriptorSet& info) {
 
 }  // namespace
 
+void writeDescriptors(const Device& device, DescriptorSet& set, uint32_t count, const VkWriteDescriptorSet* writes) {
+    for (uint32_t i = 0; i < count; ++i) write(device, set, writes[i]);
+}
+
+void writeDescriptors(const Device& device, DescriptorSet& set, const DescriptorUpdateTemplate& entries,
+                      const void* data) {
+    for (const VkDescriptorUpdateTemplateEntry& entry : entries.entries) {
+        const auto* source = static_cast<const std::byte*>(data) + entry.offset;
+        if (entry.descriptorType == VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK) {
+            const auto to = blockBytes(set, entry.dstBinding, entry.dstArrayElement, entry.descriptorCount);
+            if (!to.empty()) std::memcpy(to.data(), source, to.size());
+            continue;
+        }
+        SlotCursor cursor(set, entry.dstBinding, entry.dstArrayElement);
+        for (uint32_t i = 0; i < entry.descriptorCount && matches(cursor, entry.descriptorType); ++i) {
+            writeOne(device, set, cursor, source + i * entry.stride);
+            cursor.next();
+        }
+    }
+}
+
 VKAPI_ATTR void VKAPI_CALL UpdateDescriptorSets(VkDevice device, uint32_t descriptorWriteCount,
                                                 const VkWriteDescriptorSet* pDescriptorWrites,
                                                 uint32_t descriptorCopyCount,
                                                 const VkCopyDescriptorSet* pDescriptorCopies) {
     (void)guarded([&] {
-        for (uint32_t i = 0; i < descriptorWriteCount; ++i) write(*object(device), pDescriptorWrites[i]);
+        for (uint32_t i = 0; i < descriptorWriteCount; ++i) {
+            DescriptorSet& set = object(pDescriptorWrites[i].dstSet)->set;
+            const std::unique_lock lock = set.lock();
+            write(*object(device), set, pDescriptorWrites[i]);
+        }
         for (uint32_t i = 0; i < descriptorCopyCount; ++i) copy(*object(device), pDescriptorCopies[i]);
         return VK_SUCCESS;
     });
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL CreateDescriptorUpdateTemplate(VkDevice device,
+VKAPI_ATTR VkResult VKAPI_CALL CreateDescriptorUpdateTemplate(VkDevice,
                                                               const VkDescriptorUpdateTemplateCreateInfo* pCreateInfo,
                                                               const VkAllocationCallbacks* pAllocator,
                                                               VkDescriptorUpdateTemplate* pDescriptorUpdateTemplate) {
     return guarded([&] {
-        if (pCreateInfo->templateType != VK_DESCRIPTOR_UPDATE_TEMPLATE_TYPE_DESCRIPTOR_SET) {
-            return object(device)->report("vkCreateDescriptorUpdateTemplate", VK_ERROR_FEATURE_NOT_PRESENT,
-                                          "templateType: there are no push descriptors");
-        }
         const auto* first = pCreateInfo->pDescriptorUpdateEntries;
         return createHandle(pAllocator, pDescriptorUpdateTemplate,
-                            std::vector(first, first + pCreateInfo->descriptorUpdateEntryCount));
+                            std::vector(first, first + pCreateInfo->descriptorUpdateEntryCount),
+                            pCreateInfo->pipelineBindPoint);
     });
 }
 
@@ -177,14 +221,8 @@ VKAPI_ATTR void VKAPI_CALL UpdateDescriptorSetWithTemplate(VkDevice device, VkDe
                                                            const void* pData) {
     (void)guarded([&] {
         DescriptorSet& set = object(descriptorSet)->set;
-        for (const VkDescriptorUpdateTemplateEntry& entry : object(descriptorUpdateTemplate)->entries) {
-            const auto* source = static_cast<const std::byte*>(pData) + entry.offset;
-            SlotCursor cursor(set.layout(), entry.dstBinding, entry.dstArrayElement);
-            for (uint32_t i = 0; i < entry.descriptorCount && matches(cursor, entry.descriptorType); ++i) {
-                writeOne(*object(device), set, cursor, source + i * entry.stride);
-                cursor.next();
-            }
-        }
+        const std::unique_lock lock = set.lock();
+        writeDescriptors(*object(device), set, *object(descriptorUpdateTemplate), pData);
         return VK_SUCCESS;
     });
 }

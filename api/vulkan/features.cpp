@@ -188,7 +188,29 @@ namespace {
     X(VkPhysicalDeviceExtendedDynamicState3FeaturesEXT, extendedDynamicState3CoverageReductionMode, false)            \
     X(VkPhysicalDeviceExtendedDynamicState3FeaturesEXT, extendedDynamicState3RepresentativeFragmentTestEnable, false) \
     X(VkPhysicalDeviceExtendedDynamicState3FeaturesEXT, extendedDynamicState3ShadingRateImageEnable, false)           \
-    X(VkPhysicalDeviceVertexInputDynamicStateFeaturesEXT, vertexInputDynamicState, true)
+    X(VkPhysicalDeviceVertexInputDynamicStateFeaturesEXT, vertexInputDynamicState, true)                              \
+    X(VkPhysicalDeviceInlineUniformBlockFeatures, inlineUniformBlock, true)                                           \
+    X(VkPhysicalDeviceInlineUniformBlockFeatures, descriptorBindingInlineUniformBlockUpdateAfterBind, true)           \
+    X(VkPhysicalDeviceDescriptorIndexingFeatures, shaderInputAttachmentArrayDynamicIndexing, true)                    \
+    X(VkPhysicalDeviceDescriptorIndexingFeatures, shaderUniformTexelBufferArrayDynamicIndexing, true)                 \
+    X(VkPhysicalDeviceDescriptorIndexingFeatures, shaderStorageTexelBufferArrayDynamicIndexing, true)                 \
+    X(VkPhysicalDeviceDescriptorIndexingFeatures, shaderUniformBufferArrayNonUniformIndexing, true)                   \
+    X(VkPhysicalDeviceDescriptorIndexingFeatures, shaderSampledImageArrayNonUniformIndexing, true)                    \
+    X(VkPhysicalDeviceDescriptorIndexingFeatures, shaderStorageBufferArrayNonUniformIndexing, true)                   \
+    X(VkPhysicalDeviceDescriptorIndexingFeatures, shaderStorageImageArrayNonUniformIndexing, true)                    \
+    X(VkPhysicalDeviceDescriptorIndexingFeatures, shaderInputAttachmentArrayNonUniformIndexing, true)                 \
+    X(VkPhysicalDeviceDescriptorIndexingFeatures, shaderUniformTexelBufferArrayNonUniformIndexing, true)              \
+    X(VkPhysicalDeviceDescriptorIndexingFeatures, shaderStorageTexelBufferArrayNonUniformIndexing, true)              \
+    X(VkPhysicalDeviceDescriptorIndexingFeatures, descriptorBindingUniformBufferUpdateAfterBind, true)                \
+    X(VkPhysicalDeviceDescriptorIndexingFeatures, descriptorBindingSampledImageUpdateAfterBind, true)                 \
+    X(VkPhysicalDeviceDescriptorIndexingFeatures, descriptorBindingStorageImageUpdateAfterBind, true)                 \
+    X(VkPhysicalDeviceDescriptorIndexingFeatures, descriptorBindingStorageBufferUpdateAfterBind, true)                \
+    X(VkPhysicalDeviceDescriptorIndexingFeatures, descriptorBindingUniformTexelBufferUpdateAfterBind, true)           \
+    X(VkPhysicalDeviceDescriptorIndexingFeatures, descriptorBindingStorageTexelBufferUpdateAfterBind, true)           \
+    X(VkPhysicalDeviceDescriptorIndexingFeatures, descriptorBindingUpdateUnusedWhilePending, true)                    \
+    X(VkPhysicalDeviceDescriptorIndexingFeatures, descriptorBindingPartiallyBound, true)                              \
+    X(VkPhysicalDeviceDescriptorIndexingFeatures, descriptorBindingVariableDescriptorCount, true)                     \
+    X(VkPhysicalDeviceDescriptorIndexingFeatures, runtimeDescriptorArray, true)
 
 // VkPhysicalDeviceFeatures is nothing but VkBool32 members.
 constexpr size_t kFeatureCount = sizeof(VkPhysicalDeviceFeatures) / sizeof(VkBool32);

@@ -52,6 +52,34 @@ void setTransformFeedback(VkPhysicalDeviceTransformFeedbackPropertiesEXT& p) {
     p.transformFeedbackStreamsLinesTriangles = p.transformFeedbackRasterizationStreamSelect = VK_FALSE;
 }
 
+void setInlineBlocks(VkPhysicalDeviceInlineUniformBlockProperties& p) {
+    p.maxInlineUniformBlockSize = kMaxInlineUniformBlockBytes;
+    p.maxPerStageDescriptorInlineUniformBlocks = p.maxPerStageDescriptorUpdateAfterBindInlineUniformBlocks =
+        p.maxDescriptorSetInlineUniformBlocks = p.maxDescriptorSetUpdateAfterBindInlineUniformBlocks =
+            kMaxInlineUniformBlocks;
+}
+
+/// Descriptors that are updated after they are bound are like others, but for how many there may be.
+void setDescriptorIndexing(const VkPhysicalDeviceLimits& limits, VkPhysicalDeviceDescriptorIndexingProperties& p) {
+    p.maxUpdateAfterBindDescriptorsInAllPools = UINT32_MAX;
+    // Lanes that name several descriptors are served one descriptor after the other.
+    p.shaderUniformBufferArrayNonUniformIndexingNative = p.shaderSampledImageArrayNonUniformIndexingNative =
+        p.shaderStorageBufferArrayNonUniformIndexingNative = p.shaderStorageImageArrayNonUniformIndexingNative =
+            p.shaderInputAttachmentArrayNonUniformIndexingNative = VK_FALSE;
+    p.robustBufferAccessUpdateAfterBind = VK_TRUE;
+    p.quadDivergentImplicitLod = VK_FALSE;
+    p.maxPerStageDescriptorUpdateAfterBindSamplers = p.maxPerStageDescriptorUpdateAfterBindUniformBuffers =
+        p.maxPerStageDescriptorUpdateAfterBindStorageBuffers = p.maxPerStageDescriptorUpdateAfterBindSampledImages =
+            p.maxPerStageDescriptorUpdateAfterBindStorageImages = p.maxPerStageUpdateAfterBindResources =
+                p.maxDescriptorSetUpdateAfterBindSamplers = p.maxDescriptorSetUpdateAfterBindUniformBuffers =
+                    p.maxDescriptorSetUpdateAfterBindStorageBuffers = p.maxDescriptorSetUpdateAfterBindSampledImages =
+                        p.maxDescriptorSetUpdateAfterBindStorageImages = kMaxDescriptorsPerSet;
+    p.maxPerStageDescriptorUpdateAfterBindInputAttachments = p.maxDescriptorSetUpdateAfterBindInputAttachments =
+        limits.maxPerStageDescriptorInputAttachments;
+    p.maxDescriptorSetUpdateAfterBindUniformBuffersDynamic = limits.maxDescriptorSetUniformBuffersDynamic;
+    p.maxDescriptorSetUpdateAfterBindStorageBuffersDynamic = limits.maxDescriptorSetStorageBuffersDynamic;
+}
+
 /// There is one size.
 void setSubgroupSizes(VkPhysicalDeviceSubgroupSizeControlProperties& p) {
     p.minSubgroupSize = p.maxSubgroupSize = ir::kSubgroupSize;
@@ -137,6 +165,13 @@ void fillPropertyChain(const PhysicalDevice& device, void* chain) {
         p->filterMinmaxImageComponentMapping = VK_TRUE;
     }
     if (auto* p = findInChain<VkPhysicalDeviceFloatControlsProperties>(chain)) setFloatControls(*p);
+    if (auto* p = findInChain<VkPhysicalDevicePushDescriptorPropertiesKHR>(chain)) {
+        p->maxPushDescriptors = kMaxPushDescriptors;
+    }
+    if (auto* p = findInChain<VkPhysicalDeviceInlineUniformBlockProperties>(chain)) setInlineBlocks(*p);
+    if (auto* p = findInChain<VkPhysicalDeviceDescriptorIndexingProperties>(chain)) {
+        setDescriptorIndexing(device.properties.limits, *p);
+    }
     if (auto* p = findInChain<VkPhysicalDeviceMaintenance4Properties>(chain)) p->maxBufferSize = kMaxAllocation;
     if (auto* p = findInChain<VkPhysicalDeviceSubgroupSizeControlProperties>(chain)) setSubgroupSizes(*p);
     if (auto* p = findInChain<VkPhysicalDeviceTexelBufferAlignmentProperties>(chain)) setTexelAlignments(*p);

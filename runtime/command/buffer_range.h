@@ -10,7 +10,7 @@
 
 namespace vernier {
 
-/// From the range's begin to the end of the buffer; none where there is no memory.
+/// What of the range lies inside its buffer; none where there is no memory.
 inline VertexStream streamOf(const command::BufferRange& range) {
     if (!range.buffer || !range.buffer->data() || range.offset > range.buffer->size()) return {};
     return {range.buffer->data() + range.offset, std::min(range.size, range.buffer->size() - range.offset)};

@@ -5,6 +5,9 @@
 namespace vernier {
 namespace {
 
+/// Inline uniform blocks begin where scalars of any width may.
+constexpr uint32_t kBlockAlignment = 16;
+
 bool isDynamic(VkDescriptorType type) {
     return type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC || type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC;
 }
@@ -54,6 +57,9 @@ DescriptorSetLayout DescriptorSetLayout::create(std::vector<DescriptorBinding> b
         layout.slotCount += binding.count;
         binding.firstDynamic = layout.dynamicCount;
         if (isDynamic(binding.type)) layout.dynamicCount += binding.count;
+        binding.blockOffset = layout.blockBytes;
+        layout.blockBytes += (binding.blockBytes + kBlockAlignment - 1) / kBlockAlignment * kBlockAlignment;
+        layout.mayChange = layout.mayChange || binding.mayChange;
     }
     layout.bindings = std::move(bindings);
     return layout;
@@ -65,10 +71,77 @@ const DescriptorBinding* DescriptorSetLayout::find(uint32_t binding) const {
     return found != bindings.end() && found->binding == binding ? &*found : nullptr;
 }
 
-DescriptorSet::DescriptorSet(const DescriptorSetLayout& layout) : layout_(&layout), slots_(layout.slotCount) {
-    for (const DescriptorBinding& binding : layout.bindings)
-        for (uint32_t i = 0; i < binding.immutableSamplers.size(); ++i)
-            slots_[binding.firstSlot + i].sampler = binding.immutableSamplers[i];
+DescriptorSet::DescriptorSet(const DescriptorSetLayout& layout, uint32_t variableCount)
+    : layout_(&layout), variableCount_(variableCount) {
+    uint32_t slots = layout.slotCount;
+    bool keeping = false;
+    for (const DescriptorBinding& binding : layout.bindings) {
+        // The binding that is variable is the last one.
+        if (binding.variable) slots = binding.firstSlot + countOf(binding);
+        keeping = keeping || binding.mayBeInvalid;
+    }
+    slots_.resize(slots);
+    if (keeping) kept_.resize(slots);
+    if (layout.mayChange) mutex_ = std::make_unique<std::mutex>();
+    if (layout.blockBytes != 0) blocks_.resize((layout.blockBytes + Memory::kSlack) / sizeof(uint64_t));
+    for (const DescriptorBinding& binding : layout.bindings) {
+        const uint32_t samplers = std::min<uint32_t>(countOf(binding), binding.immutableSamplers.size());
+        for (uint32_t i = 0; i < samplers; ++i) slots_[binding.firstSlot + i].sampler = binding.immutableSamplers[i];
+        if (const std::span<std::byte> bytes = block(binding); !bytes.empty())
+            slots_[binding.firstSlot].buffer = {bytes.data(), static_cast<uint32_t>(bytes.size())};
+    }
+}
+
+uint32_t DescriptorSet::countOf(const DescriptorBinding& binding) const {
+    const bool block = binding.type == VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK;
+    return binding.variable && !block ? std::min(binding.count, variableCount_) : binding.count;
+}
+
+std::span<std::byte> DescriptorSet::block(const DescriptorBinding& binding) {
+    const uint32_t bytes = binding.variable ? std::min(binding.blockBytes, variableCount_) : binding.blockBytes;
+    if (bytes == 0) return {};
+    return {reinterpret_cast<std::byte*>(blocks_.data()) + binding.blockOffset, bytes};
+}
+
+std::unique_lock<std::mutex> DescriptorSet::lock() const {
+    return mutex_ ? std::unique_lock(*mutex_) : std::unique_lock<std::mutex>();
+}
+
+bool DescriptorSet::keeps(uint32_t slot) const {
+    if (kept_.empty()) return false;
+    const auto after =
+        std::upper_bound(layout_->bindings.begin(), layout_->bindings.end(), slot,
+                         [](uint32_t number, const DescriptorBinding& binding) { return number < binding.firstSlot; });
+    return after != layout_->bindings.begin() && std::prev(after)->mayBeInvalid;
+}
+
+void DescriptorSet::keep(uint32_t slot) {
+    if (kept_.empty()) kept_.resize(slots_.size());
+    if (kept_[slot] == nullptr) kept_[slot] = std::make_unique<Kept>();
+    Kept& kept = *kept_[slot];
+    const auto take = [](auto& pointer, auto& copy) {
+        if (pointer == nullptr) return;
+        copy = *pointer;
+        pointer = &copy;
+    };
+    Descriptor& descriptor = slots_[slot];
+    take(descriptor.texture.view, kept.view);
+    take(descriptor.texture.sampler, kept.sampler);
+    take(descriptor.sampler, kept.sampler);
+}
+
+Status DescriptorSet::copySlot(uint32_t slot, const DescriptorSet& from, uint32_t fromSlot,
+                               const SamplerState* immutable, Isa isa) {
+    const bool keptThere = fromSlot < from.kept_.size() && from.kept_[fromSlot] != nullptr;
+    Status status;
+    if (immutable != nullptr) {
+        status = writeImage(slot, from.slots_[fromSlot].texture.view, immutable, isa);
+    } else {
+        slots_[slot] = from.slots_[fromSlot];
+    }
+    // What the other set keeps goes with it.
+    if (keptThere || keeps(slot)) keep(slot);
+    return status;
 }
 
 void DescriptorSet::writeBuffer(uint32_t slot, const Buffer* buffer, VkDeviceSize offset, VkDeviceSize range) {
@@ -87,11 +160,13 @@ Status DescriptorSet::writeImage(uint32_t slot, const TextureView* view, const S
     Result<TextureUnit> unit = makeTextureUnit(view, sampler, isa);
     if (!unit) return unit.error();
     descriptor.texture = *unit;
+    if (keeps(slot)) keep(slot);
     return {};
 }
 
 void DescriptorSet::writeTexelBuffer(uint32_t slot, const TextureView* view, Isa isa) {
     slots_[slot].texture = makeTexelBufferUnit(view, isa);
+    if (keeps(slot)) keep(slot);
 }
 
 BoundDescriptorRange findDescriptors(const ir::Resource& resource, const BoundDescriptors& bound) {
@@ -99,8 +174,9 @@ BoundDescriptorRange findDescriptors(const ir::Resource& resource, const BoundDe
     const DescriptorSet& set = *bound.sets[resource.set];
     const DescriptorBinding* binding = set.layout().find(resource.binding);
     if (!binding) return {};
-    const uint32_t count = resource.arraySize ? std::min(resource.arraySize, binding->count) : binding->count;
-    return {set.slots().subspan(binding->firstSlot, count), binding, bound.dynamicOffsets[resource.set]};
+    const uint32_t has = set.countOf(*binding);
+    const uint32_t count = resource.arraySize ? std::min(resource.arraySize, has) : has;
+    return {set.slots().subspan(binding->firstSlot, count), binding, bound.dynamicOffsets[resource.set], set.lock()};
 }
 
 BufferBinding boundBuffer(const BoundDescriptorRange& found, uint32_t index) {

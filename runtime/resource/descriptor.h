@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -20,16 +21,24 @@ namespace vernier {
 struct DescriptorBinding {
     uint32_t binding = 0;
     VkDescriptorType type = VK_DESCRIPTOR_TYPE_SAMPLER;
-    uint32_t count = 0;
-    uint32_t firstSlot = 0;                              // into DescriptorSet::slots
-    uint32_t firstDynamic = 0;                           // into the dynamic offsets of the set, for *_DYNAMIC types
+    uint32_t count = 0;       // of an inline uniform block: 1, or 0 without bytes
+    uint32_t blockBytes = 0;  // of an inline uniform block
+    uint32_t blockOffset = 0;
+    bool variable = false;      // sets have descriptors, or bytes, of their own number, up to these
+    bool mayBeInvalid = false;  // what programs do not use may name objects that are gone
+    bool mayChange = false;     // what programs do not use may be written while they run
+    uint32_t firstSlot = 0;     // into DescriptorSet::slots
+    uint32_t firstDynamic = 0;  // into the dynamic offsets of the set, for *_DYNAMIC types
     std::vector<const SamplerState*> immutableSamplers;  // empty or `count`
+    bool operator==(const DescriptorBinding&) const = default;
 };
 
 struct DescriptorSetLayout {
     std::vector<DescriptorBinding> bindings;  // sorted by binding
     uint32_t slotCount = 0;
     uint32_t dynamicCount = 0;
+    uint32_t blockBytes = 0;  // of all inline uniform blocks
+    bool mayChange = false;   // some binding
 
     static DescriptorSetLayout create(std::vector<DescriptorBinding> bindings);
     const DescriptorBinding* find(uint32_t binding) const;
@@ -45,11 +54,23 @@ struct Descriptor {
 
 class DescriptorSet {
   public:
-    explicit DescriptorSet(const DescriptorSetLayout& layout);
+    /// `variableCount`: of the binding that is variable.
+    explicit DescriptorSet(const DescriptorSetLayout& layout, uint32_t variableCount = ~0u);
 
     const DescriptorSetLayout& layout() const { return *layout_; }
-    std::span<Descriptor> slots() { return slots_; }
     std::span<const Descriptor> slots() const { return slots_; }
+    /// Descriptors of a binding that the set has.
+    uint32_t countOf(const DescriptorBinding& binding) const;
+    /// The bytes of an inline uniform block.
+    std::span<std::byte> block(const DescriptorBinding& binding);
+    /// Held while descriptors are written, and while they are read for work: nothing, unless the layout says that both
+    /// may happen at a time.
+    std::unique_lock<std::mutex> lock() const;
+    /// As in `from`, a set of the same layout that will not be written any more and lives as long.
+    void takeSlot(uint32_t slot, const DescriptorSet& from) { slots_[slot] = from.slots_[slot]; }
+    /// As slot `fromSlot` of `from`, but with the immutable sampler if there is one.
+    Status copySlot(uint32_t slot, const DescriptorSet& from, uint32_t fromSlot, const SamplerState* immutable,
+                    Isa isa);
 
     /// `buffer` nullptr: an empty binding. `range` may be VK_WHOLE_SIZE.
     void writeBuffer(uint32_t slot, const Buffer* buffer, VkDeviceSize offset, VkDeviceSize range);
@@ -60,8 +81,21 @@ class DescriptorSet {
     void writeTexelBuffer(uint32_t slot, const TextureView* view, Isa isa);
 
   private:
+    /// What a descriptor names, where the objects may go before it does.
+    struct Kept {
+        TextureView view;
+        SamplerState sampler;
+    };
+    bool keeps(uint32_t slot) const;
+    /// Copies what the descriptor names, and lets it name the copies.
+    void keep(uint32_t slot);
+
     const DescriptorSetLayout* layout_;
+    uint32_t variableCount_;
     std::vector<Descriptor> slots_;
+    std::vector<std::unique_ptr<Kept>> kept_;  // by slot; empty where no binding asks for it
+    std::vector<uint64_t> blocks_;             // of inline uniform blocks
+    std::unique_ptr<std::mutex> mutex_;        // nullptr: the layout does not ask for it
 };
 
 /// What is bound while a draw or dispatch runs.
@@ -76,6 +110,7 @@ struct BoundDescriptorRange {
     std::span<const Descriptor> slots;  // empty: none are bound
     const DescriptorBinding* binding = nullptr;
     std::span<const uint32_t> dynamicOffsets;
+    std::unique_lock<std::mutex> lock;  // of the set
 };
 BoundDescriptorRange findDescriptors(const ir::Resource& resource, const BoundDescriptors& bound);
 /// The buffer of descriptor `index` < slots.size(), with its dynamic offset.
