@@ -154,7 +154,10 @@ VnResult vnCreateImage(VnDevice device, const VnImageDesc* desc, VnImage* image)
         if (desc->cube && (info.type != VK_IMAGE_TYPE_2D || info.arrayLayers % 6 != 0 || desc->width != desc->height))
             return invalid(device, "vnCreateImage", "cube images are 2D, square and have layers in sixes");
         const FormatInfo* format = findFormat(info.format);
-        info.usage = format ? usageOf(*format, info.type) : 0;
+        if (!format)
+            return fail(device, "vnCreateImage",
+                        unsupported("image: format " + std::to_string(info.format) + " is not supported"));
+        info.usage = usageOf(*format, info.type);
         Result<Image> made = Image::create(info);
         if (!made) return fail(device, "vnCreateImage", made.error());
         Result<std::unique_ptr<Memory>> memory = Memory::create(device->runtime->desc().allocator, made->memorySize());

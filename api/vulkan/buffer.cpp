@@ -1,7 +1,9 @@
 // Buffers and buffer views.
 #include "api/vulkan/allocation.h"
+#include "api/vulkan/chain.h"
 #include "api/vulkan/device.h"
 #include "api/vulkan/entry_points.h"
+#include "api/vulkan/external.h"
 #include "api/vulkan/memory.h"
 #include "api/vulkan/resource_limits.h"
 #include "runtime/resource/buffer_view.h"
@@ -14,6 +16,11 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateBuffer(VkDevice device, const VkBufferCreat
         if (pCreateInfo->flags != 0) {
             return object(device)->report("vkCreateBuffer", VK_ERROR_FEATURE_NOT_PRESENT,
                                           "flags: sparse and protected buffers are not supported");
+        }
+        const auto* external = findInChain<VkExternalMemoryBufferCreateInfo>(pCreateInfo->pNext);
+        if (external != nullptr && !areExternalMemoryTypes(external->handleTypes)) {
+            return object(device)->report("vkCreateBuffer", VK_ERROR_FEATURE_NOT_PRESENT,
+                                          "handleTypes: only opaque file descriptors and host memory are supported");
         }
         if (pCreateInfo->size > kMaxAllocation) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
         return createHandle(pAllocator, pBuffer, pCreateInfo->size, pCreateInfo->usage);

@@ -87,7 +87,11 @@ namespace {
     X(VkPhysicalDeviceShaderAtomicInt64Features, shaderBufferInt64Atomics, true)                                      \
     X(VkPhysicalDeviceShaderAtomicInt64Features, shaderSharedInt64Atomics, true)                                      \
     X(VkPhysicalDeviceProtectedMemoryFeatures, protectedMemory, false)                                                \
-    X(VkPhysicalDeviceSamplerYcbcrConversionFeatures, samplerYcbcrConversion, false)                                  \
+    X(VkPhysicalDeviceSamplerYcbcrConversionFeatures, samplerYcbcrConversion, true)                                   \
+    X(VkPhysicalDeviceRobustness2FeaturesEXT, robustBufferAccess2, true)                                              \
+    X(VkPhysicalDeviceRobustness2FeaturesEXT, robustImageAccess2, true)                                               \
+    X(VkPhysicalDeviceRobustness2FeaturesEXT, nullDescriptor, true)                                                   \
+    X(VkPhysicalDeviceImageRobustnessFeatures, robustImageAccess, true)                                               \
     X(VkPhysicalDeviceShaderSubgroupExtendedTypesFeatures, shaderSubgroupExtendedTypes, true)                         \
     X(VkPhysicalDeviceImagelessFramebufferFeatures, imagelessFramebuffer, true)                                       \
     X(VkPhysicalDeviceVariablePointersFeatures, variablePointersStorageBuffer, true)                                  \

@@ -5,9 +5,11 @@
 #include "api/vulkan/chain.h"
 #include "api/vulkan/entry_points.h"
 #include "api/vulkan/enumerate.h"
+#include "api/vulkan/external.h"
 #include "api/vulkan/format_properties.h"
 #include "api/vulkan/physical_device.h"
 #include "api/vulkan/resource_limits.h"
+#include "runtime/format/multi_planar.h"
 #include "runtime/limits.h"
 
 namespace vernier::vulkan {
@@ -44,9 +46,14 @@ constexpr VkImageCreateFlags kKnownFlags =
     VK_IMAGE_CREATE_ALIAS_BIT | VK_IMAGE_CREATE_SAMPLE_LOCATIONS_COMPATIBLE_DEPTH_BIT_EXT |
     VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT | VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT |
     VK_IMAGE_CREATE_BLOCK_TEXEL_VIEW_COMPATIBLE_BIT | VK_IMAGE_CREATE_EXTENDED_USAGE_BIT |
-    VK_IMAGE_CREATE_2D_VIEW_COMPATIBLE_BIT_EXT;
+    VK_IMAGE_CREATE_2D_VIEW_COMPATIBLE_BIT_EXT | VK_IMAGE_CREATE_DISJOINT_BIT;
 // Usages that views of another format may bring to an image whose own format has them not.
 constexpr VkImageUsageFlags kExtendedUsages = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
+
+// What multi-planar images, which are flat and of one layer, cannot be.
+constexpr VkImageCreateFlags kFlagsOfPlain = VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT |
+                                             VK_IMAGE_CREATE_BLOCK_TEXEL_VIEW_COMPATIBLE_BIT |
+                                             VK_IMAGE_CREATE_SAMPLE_LOCATIONS_COMPATIBLE_DEPTH_BIT_EXT;
 
 bool flagsFit(VkImageType type, VkImageCreateFlags flags) {
     if ((flags & ~kKnownFlags) != 0) return false;
@@ -82,6 +89,10 @@ VkFormatFeatureFlags2 wideFeatures(VkFormat format, VkFormatFeatureFlags feature
     return wide;
 }
 
+VkDeviceSize maxResourceSize(const PhysicalDevice& device) {
+    return std::max(device.memory.memoryHeaps[0].size, VkDeviceSize{1} << 31);
+}
+
 VkExtent3D maxExtent(VkImageType type) {
     switch (type) {
         case VK_IMAGE_TYPE_1D:
@@ -96,6 +107,7 @@ VkExtent3D maxExtent(VkImageType type) {
 }  // namespace
 
 VkFormatProperties formatProperties(VkFormat format) {
+    if (findMultiPlanar(format) != nullptr) return {kMultiPlanarFeatures, kMultiPlanarFeatures, 0};
     const FormatInfo* info = findFormat(format);
     if (info == nullptr) return {};
     return {info->linearTilingFeatures, info->optimalTilingFeatures, info->bufferFeatures};
@@ -125,12 +137,18 @@ VkResult imageFormatProperties(const PhysicalDevice& device, VkFormat format, Vk
     const bool depthStencil = (features & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT) != 0;
     if (depthStencil && type == VK_IMAGE_TYPE_3D) return VK_ERROR_FORMAT_NOT_SUPPORTED;
 
+    if (findMultiPlanar(format) != nullptr) {
+        if (type != VK_IMAGE_TYPE_2D || (flags & kFlagsOfPlain) != 0) return VK_ERROR_FORMAT_NOT_SUPPORTED;
+        properties = {maxExtent(type), 1, 1, VK_SAMPLE_COUNT_1_BIT, maxResourceSize(device)};
+        return VK_SUCCESS;
+    }
+    if ((flags & VK_IMAGE_CREATE_DISJOINT_BIT) != 0) return VK_ERROR_FORMAT_NOT_SUPPORTED;
     properties.maxExtent = maxExtent(type);
     const auto largest = std::max(properties.maxExtent.width, properties.maxExtent.depth);
     properties.maxMipLevels = linear ? 1 : static_cast<uint32_t>(std::bit_width(largest));
     properties.maxArrayLayers = linear || type == VK_IMAGE_TYPE_3D ? 1 : kMaxArrayLayers;
     properties.sampleCounts = sampleCounts(features, type, tiling, usage, flags);
-    properties.maxResourceSize = std::max(device.memory.memoryHeaps[0].size, VkDeviceSize{1} << 31);
+    properties.maxResourceSize = maxResourceSize(device);
     return VK_SUCCESS;
 }
 
@@ -160,8 +178,10 @@ VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties(VkPhysical
 VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties2(
     VkPhysicalDevice physicalDevice, const VkPhysicalDeviceImageFormatInfo2* pImageFormatInfo,
     VkImageFormatProperties2* pImageFormatProperties) {
+    const auto* external = findInChain<VkPhysicalDeviceExternalImageFormatInfo>(pImageFormatInfo->pNext);
+    const VkExternalMemoryHandleTypeFlags handleType = external != nullptr ? external->handleType : 0;
     if (auto* p = findInChain<VkExternalImageFormatProperties>(pImageFormatProperties->pNext)) {
-        p->externalMemoryProperties = {};
+        p->externalMemoryProperties = externalMemoryProperties(handleType);
     }
     if (auto* p = findInChain<VkSamplerYcbcrConversionImageFormatProperties>(pImageFormatProperties->pNext)) {
         p->combinedImageSamplerDescriptorCount = 1;
@@ -174,8 +194,7 @@ VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties2(
                                   VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_CUBIC_BIT_EXT) != 0;
         p->filterCubicMinmax = VK_FALSE;
     }
-    const auto* external = findInChain<VkPhysicalDeviceExternalImageFormatInfo>(pImageFormatInfo->pNext);
-    if (external != nullptr && external->handleType != 0) {
+    if (handleType != 0 && externalMemoryProperties(handleType).compatibleHandleTypes == 0) {
         pImageFormatProperties->imageFormatProperties = {};
         return VK_ERROR_FORMAT_NOT_SUPPORTED;
     }

@@ -17,6 +17,7 @@ class ImageView;
 class QueryPool;
 class BinarySignal;
 struct SamplerState;
+struct YcbcrConversion;
 }  // namespace vernier
 
 namespace vernier::vulkan {
@@ -68,6 +69,7 @@ VERNIER_HANDLE(VkBufferView, vernier::BufferView)
 VERNIER_HANDLE(VkImage, vernier::Image)
 VERNIER_HANDLE(VkImageView, vernier::ImageView)
 VERNIER_HANDLE(VkSampler, vernier::SamplerState)
+VERNIER_HANDLE(VkSamplerYcbcrConversion, vernier::YcbcrConversion)
 VERNIER_HANDLE(VkShaderModule, ShaderModule)
 VERNIER_HANDLE(VkPipelineCache, PipelineCache)
 VERNIER_HANDLE(VkPipelineLayout, PipelineLayout)

@@ -5,6 +5,7 @@
 #include "api/vulkan/chain.h"
 #include "api/vulkan/device.h"
 #include "api/vulkan/entry_points.h"
+#include "api/vulkan/external.h"
 #include "api/vulkan/format_properties.h"
 #include "api/vulkan/memory.h"
 #include "api/vulkan/swapchain.h"
@@ -70,12 +71,30 @@ VkResult bindToSwapchain(const Device& device, Image& image, const VkBindImageMe
     return VK_SUCCESS;
 }
 
+VkResult bindPlane(const Device& device, const VkBindImageMemoryInfo& bind, VkImageAspectFlags aspect) {
+    Image& image = *object(bind.image);
+    const VkDeviceSize size = image.ofAspect(aspect).memorySize();
+    if (planeOfAspect(aspect) >= image.planes().size()) {
+        return device.report("vkBindImageMemory2", VK_ERROR_UNKNOWN, "the image has no such plane");
+    }
+    if (const Status fits = checkBinding(object(bind.memory), bind.memoryOffset, size); !fits) {
+        return device.report("vkBindImageMemory2", fits.error());
+    }
+    image.bindPlane(planeOfAspect(aspect), *object(bind.memory)->memory, bind.memoryOffset);
+    return VK_SUCCESS;
+}
+
 }  // namespace
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateImage(VkDevice device, const VkImageCreateInfo* pCreateInfo,
                                            const VkAllocationCallbacks* pAllocator, VkImage* pImage) {
     return guarded([&] {
         const Device& owner = *object(device);
+        const auto* external = findInChain<VkExternalMemoryImageCreateInfo>(pCreateInfo->pNext);
+        if (external != nullptr && !areExternalMemoryTypes(external->handleTypes)) {
+            return owner.report("vkCreateImage", VK_ERROR_FEATURE_NOT_PRESENT,
+                                "handleTypes: only opaque file descriptors and host memory are supported");
+        }
         Result<Image> image = makeImage(owner.physicalDevice, *pCreateInfo);
         if (!image) return owner.report("vkCreateImage", image.error());
         return createHandle(pAllocator, pImage, std::move(image).value());
@@ -93,7 +112,9 @@ VKAPI_ATTR void VKAPI_CALL GetImageMemoryRequirements(VkDevice, VkImage image,
 
 VKAPI_ATTR void VKAPI_CALL GetImageMemoryRequirements2(VkDevice, const VkImageMemoryRequirementsInfo2* pInfo,
                                                        VkMemoryRequirements2* pMemoryRequirements) {
-    pMemoryRequirements->memoryRequirements = memoryRequirements(object(pInfo->image)->memorySize());
+    const auto* plane = findInChain<VkImagePlaneMemoryRequirementsInfo>(pInfo->pNext);
+    const Image& image = object(pInfo->image)->ofAspect(plane != nullptr ? plane->planeAspect : 0);
+    pMemoryRequirements->memoryRequirements = memoryRequirements(image.memorySize());
     fillRequirementChain(pMemoryRequirements->pNext);
 }
 
@@ -144,8 +165,11 @@ VKAPI_ATTR VkResult VKAPI_CALL BindImageMemory2(VkDevice device, uint32_t bindIn
     for (uint32_t i = 0; i < bindInfoCount; ++i) {
         const VkBindImageMemoryInfo& bind = pBindInfos[i];
         const auto* shown = findInChain<VkBindImageMemorySwapchainInfoKHR>(bind.pNext);
+        const auto* plane = findInChain<VkBindImagePlaneMemoryInfo>(bind.pNext);
         const VkResult one = shown != nullptr && shown->swapchain != VK_NULL_HANDLE
                                  ? bindToSwapchain(*object(device), *object(bind.image), *shown)
+                             : plane != nullptr
+                                 ? guarded([&] { return bindPlane(*object(device), bind, plane->planeAspect); })
                                  : BindImageMemory(device, bind.image, bind.memory, bind.memoryOffset);
         if (one != VK_SUCCESS) result = one;
     }
@@ -154,9 +178,11 @@ VKAPI_ATTR VkResult VKAPI_CALL BindImageMemory2(VkDevice device, uint32_t bindIn
 
 VKAPI_ATTR void VKAPI_CALL GetImageSubresourceLayout(VkDevice, VkImage image, const VkImageSubresource* pSubresource,
                                                      VkSubresourceLayout* pLayout) {
-    const Image& of = *object(image);
+    const Image& whole = *object(image);
+    const Image& of = whole.ofAspect(pSubresource->aspectMask);
     const LevelLayout& level = of.level(std::min(pSubresource->mipLevel, of.info().mipLevels - 1));
-    pLayout->offset = of.layerPitch() * pSubresource->arrayLayer + level.offset;
+    pLayout->offset =
+        whole.planeOffset(pSubresource->aspectMask) + of.layerPitch() * pSubresource->arrayLayer + level.offset;
     pLayout->size = level.slicePitch * level.extent.depth;
     pLayout->rowPitch = level.rowPitch;
     pLayout->arrayPitch = of.layerPitch();
@@ -194,22 +220,13 @@ VKAPI_ATTR void VKAPI_CALL DestroyImageView(VkDevice, VkImageView imageView, con
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateSampler(VkDevice, const VkSamplerCreateInfo* pCreateInfo,
                                              const VkAllocationCallbacks* pAllocator, VkSampler* pSampler) {
-    return guarded([&] { return createHandle(pAllocator, pSampler, makeSamplerState(*pCreateInfo)); });
-}
-
-VKAPI_ATTR VkResult VKAPI_CALL CreateSamplerYcbcrConversion(VkDevice device, const VkSamplerYcbcrConversionCreateInfo*,
-                                                            const VkAllocationCallbacks*,
-                                                            VkSamplerYcbcrConversion* pYcbcrConversion) {
     return guarded([&] {
-        *pYcbcrConversion = VK_NULL_HANDLE;
-        return object(device)->report("vkCreateSamplerYcbcrConversion", VK_ERROR_FEATURE_NOT_PRESENT,
-                                      "samplerYcbcrConversion is not supported");
+        SamplerState state = makeSamplerState(*pCreateInfo);
+        const auto* converts = findInChain<VkSamplerYcbcrConversionInfo>(pCreateInfo->pNext);
+        if (converts != nullptr) state.ycbcr = *object(converts->conversion);
+        return createHandle(pAllocator, pSampler, state);
     });
 }
-
-// There are none.
-VKAPI_ATTR void VKAPI_CALL DestroySamplerYcbcrConversion(VkDevice, VkSamplerYcbcrConversion,
-                                                         const VkAllocationCallbacks*) {}
 
 VKAPI_ATTR void VKAPI_CALL DestroySampler(VkDevice, VkSampler sampler, const VkAllocationCallbacks* pAllocator) {
     destroyHandle(pAllocator, sampler);

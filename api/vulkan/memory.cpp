@@ -4,6 +4,7 @@
 #include "api/vulkan/chain.h"
 #include "api/vulkan/device.h"
 #include "api/vulkan/entry_points.h"
+#include "api/vulkan/external.h"
 #include "api/vulkan/resource_limits.h"
 
 namespace vernier::vulkan {
@@ -56,9 +57,9 @@ VKAPI_ATTR VkResult VKAPI_CALL AllocateMemory(VkDevice device, const VkMemoryAll
             return owner.report("vkAllocateMemory", VK_ERROR_UNKNOWN, "there is one memory type, 0");
         }
         if (size > kMaxAllocation || !reserve(owner, size)) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
-        Result<std::unique_ptr<Memory>> made = Memory::create(owner.runtime->desc().allocator, size);
-        VkResult result = made.ok() ? VK_SUCCESS : VK_ERROR_OUT_OF_DEVICE_MEMORY;
-        if (result == VK_SUCCESS) result = createHandle(pAllocator, pMemory, std::move(made).value());
+        std::unique_ptr<Memory> made;
+        VkResult result = makeMemory(owner, *pAllocateInfo, made);
+        if (result == VK_SUCCESS) result = createHandle(pAllocator, pMemory, std::move(made));
         if (result != VK_SUCCESS) owner.allocated -= size;
         return result;
     });

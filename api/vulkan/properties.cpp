@@ -2,6 +2,7 @@
 #include <cstring>
 
 #include "api/vulkan/chain.h"
+#include "api/vulkan/external.h"
 #include "api/vulkan/physical_device.h"
 #include "api/vulkan/resource_limits.h"
 #include "runtime/plan/sample_positions.h"
@@ -121,6 +122,13 @@ void fillPropertyChain(const PhysicalDevice& device, void* chain) {
     if (auto* p = findInChain<VkPhysicalDeviceMaintenance3Properties>(chain)) {
         p->maxPerSetDescriptors = kMaxDescriptorsPerSet;
         p->maxMemoryAllocationSize = kMaxAllocation;
+    }
+    if (auto* p = findInChain<VkPhysicalDeviceRobustness2PropertiesEXT>(chain)) {
+        // Buffers end with the last byte of their range.
+        p->robustStorageBufferAccessSizeAlignment = p->robustUniformBufferAccessSizeAlignment = 1;
+    }
+    if (auto* p = findInChain<VkPhysicalDeviceExternalMemoryHostPropertiesEXT>(chain)) {
+        p->minImportedHostPointerAlignment = hostPointerAlignment();
     }
     if (auto* p = findInChain<VkPhysicalDeviceTimelineSemaphoreProperties>(chain)) {
         p->maxTimelineSemaphoreValueDifference = UINT64_MAX;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <thread>
+#include <utility>
 
 #include "api/vulkan/allocation.h"
 #include "api/vulkan/chain.h"
@@ -46,11 +47,17 @@ bool waitAnyCounter(const VkSemaphoreWaitInfo& info, uint64_t timeout) {
 
 }  // namespace
 
-VKAPI_ATTR VkResult VKAPI_CALL CreateSemaphore(VkDevice, const VkSemaphoreCreateInfo* pCreateInfo,
+VKAPI_ATTR VkResult VKAPI_CALL CreateSemaphore(VkDevice device, const VkSemaphoreCreateInfo* pCreateInfo,
                                                const VkAllocationCallbacks* pAllocator, VkSemaphore* pSemaphore) {
     const auto* type = findInChain<VkSemaphoreTypeCreateInfo>(pCreateInfo->pNext);
     const bool timeline = type != nullptr && type->semaphoreType == VK_SEMAPHORE_TYPE_TIMELINE;
-    return createHandle(pAllocator, pSemaphore, timeline, timeline ? type->initialValue : 0);
+    const uint64_t value = timeline ? type->initialValue : 0;
+    const VkResult result = createHandle(pAllocator, pSemaphore, timeline, value);
+    if (result != VK_SUCCESS) return result;
+    const VkResult shared =
+        guarded([&] { return shareSemaphore(*object(device), *object(*pSemaphore), pCreateInfo->pNext, value); });
+    if (shared != VK_SUCCESS) destroyHandle(pAllocator, std::exchange(*pSemaphore, VkSemaphore{VK_NULL_HANDLE}));
+    return shared;
 }
 
 VKAPI_ATTR void VKAPI_CALL DestroySemaphore(VkDevice, VkSemaphore semaphore, const VkAllocationCallbacks* pAllocator) {

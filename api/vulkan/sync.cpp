@@ -1,6 +1,7 @@
 // Fences and events.
 #include "api/vulkan/sync.h"
 
+#include <utility>
 #include <vector>
 
 #include "api/vulkan/allocation.h"
@@ -9,9 +10,13 @@
 
 namespace vernier::vulkan {
 
-VKAPI_ATTR VkResult VKAPI_CALL CreateFence(VkDevice, const VkFenceCreateInfo* pCreateInfo,
+VKAPI_ATTR VkResult VKAPI_CALL CreateFence(VkDevice device, const VkFenceCreateInfo* pCreateInfo,
                                            const VkAllocationCallbacks* pAllocator, VkFence* pFence) {
-    return createHandle(pAllocator, pFence, (pCreateInfo->flags & VK_FENCE_CREATE_SIGNALED_BIT) != 0);
+    const VkResult result = createHandle(pAllocator, pFence, (pCreateInfo->flags & VK_FENCE_CREATE_SIGNALED_BIT) != 0);
+    if (result != VK_SUCCESS) return result;
+    const VkResult shared = guarded([&] { return shareFence(*object(device), *object(*pFence), pCreateInfo->pNext); });
+    if (shared != VK_SUCCESS) destroyHandle(pAllocator, std::exchange(*pFence, VkFence{VK_NULL_HANDLE}));
+    return shared;
 }
 
 VKAPI_ATTR void VKAPI_CALL DestroyFence(VkDevice, VkFence fence, const VkAllocationCallbacks* pAllocator) {

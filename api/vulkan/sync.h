@@ -20,4 +20,9 @@ struct Event {
     std::atomic<bool> set{false};
 };
 
+/// Makes the payload of a new semaphore or fence one that can be exported, if the structures in the chain of its
+/// creation ask for that. VK_SUCCESS, or what the creation returns; errors have been reported.
+VkResult shareSemaphore(const Device& device, Semaphore& semaphore, const void* chain, uint64_t value);
+VkResult shareFence(const Device& device, BinarySignal& fence, const void* chain);
+
 }  // namespace vernier::vulkan

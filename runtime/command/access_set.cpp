@@ -136,8 +136,11 @@ void addAccesses(const ir::Program& program, const BoundDescriptors& bound, Acce
                 const BufferBinding binding = boundBuffer(found, n);
                 add(resource.readOnly, binding.data, binding.size);
             } else if (const TextureView* view = found.slots[n].texture.view; view != nullptr) {
-                const std::span<const std::byte> bytes = bytesOf(*view);
-                add(resource.readOnly, bytes.data(), bytes.size());
+                const uint32_t planes = view->planar != nullptr ? view->planar->format->planeCount : 1;
+                for (uint32_t p = 0; p < planes; ++p) {
+                    const std::span<const std::byte> bytes = bytesOf(p == 0 ? *view : view->planar->planes[p]);
+                    add(resource.readOnly, bytes.data(), bytes.size());
+                }
             }
         }
     }

@@ -13,7 +13,8 @@ Bytes bytesOf(const Buffer& buffer, VkDeviceSize offset, VkDeviceSize size) {
 }
 
 /// All layers and slices that a region may reach, whole.
-Bytes bytesOf(const Image& image, const VkImageSubresourceLayers& layers, uint32_t depth) {
+Bytes bytesOf(const Image& whole, const VkImageSubresourceLayers& layers, uint32_t depth) {
+    const Image& image = whole.ofAspect(layers.aspectMask);
     if (image.info().type == VK_IMAGE_TYPE_3D) return layersOf(image, layers.mipLevel, 0, image.info().extent.depth);
     return layersOf(image, layers.mipLevel, layers.baseArrayLayer, std::max(layers.layerCount, depth));
 }

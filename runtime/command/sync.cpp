@@ -25,46 +25,85 @@ bool waitFor(std::unique_lock<std::mutex>& lock, std::condition_variable& change
 
 uint64_t Timeline::value() const {
     const std::lock_guard lock(mutex_);
-    return value_;
+    return payload_ ? payload_->value() : value_;
 }
 
 void Timeline::signal(uint64_t value) {
     // Notified under the lock: whoever waits may destroy the timeline as soon as it sees the value.
     const std::lock_guard lock(mutex_);
+    if (payload_) return payload_->raise(value);
     value_ = std::max(value_, value);
     changed_.notify_all();
 }
 
 bool Timeline::wait(uint64_t value, uint64_t timeoutNanoseconds) const {
     std::unique_lock lock(mutex_);
+    if (const std::shared_ptr<SharedSignal> payload = payload_) {
+        lock.unlock();
+        return payload->wait(value, timeoutNanoseconds);
+    }
     return waitFor(lock, changed_, timeoutNanoseconds, [&] { return value_ >= value; });
+}
+
+void Timeline::share(std::shared_ptr<SharedSignal> payload) {
+    const std::lock_guard lock(mutex_);
+    payload_ = std::move(payload);
+}
+
+std::shared_ptr<SharedSignal> Timeline::payload() const {
+    const std::lock_guard lock(mutex_);
+    return payload_;
 }
 
 bool BinarySignal::signalled() const {
     const std::lock_guard lock(mutex_);
-    return signalled_;
+    return current() ? current()->value() != 0 : signalled_;
 }
 
 void BinarySignal::signal() {
     const std::lock_guard lock(mutex_);
+    if (current()) return current()->raise(1);
     signalled_ = true;
     changed_.notify_all();
 }
 
 void BinarySignal::reset() {
     const std::lock_guard lock(mutex_);
+    temporary_.reset();
+    if (payload_) payload_->reset();
     signalled_ = false;
 }
 
 bool BinarySignal::wait(uint64_t timeoutNanoseconds) const {
     std::unique_lock lock(mutex_);
+    if (const std::shared_ptr<SharedSignal> payload = current()) {
+        lock.unlock();
+        return payload->wait(1, timeoutNanoseconds);
+    }
     return waitFor(lock, changed_, timeoutNanoseconds, [&] { return signalled_; });
 }
 
 void BinarySignal::consume() {
     std::unique_lock lock(mutex_);
+    if (const std::shared_ptr<SharedSignal> payload = current()) {
+        lock.unlock();
+        payload->consume();
+        lock.lock();
+        temporary_.reset();
+        return;
+    }
     changed_.wait(lock, [&] { return signalled_; });
     signalled_ = false;
+}
+
+void BinarySignal::share(std::shared_ptr<SharedSignal> payload, bool temporarily) {
+    const std::lock_guard lock(mutex_);
+    (temporarily ? temporary_ : payload_) = std::move(payload);
+}
+
+std::shared_ptr<SharedSignal> BinarySignal::payload() const {
+    const std::lock_guard lock(mutex_);
+    return current();
 }
 
 bool waitSignals(const BinarySignal* const* signals, uint32_t count, bool all, uint64_t timeoutNanoseconds) {

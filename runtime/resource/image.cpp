@@ -57,6 +57,7 @@ Status checkInfo(const ImageInfo& info) {
 }  // namespace
 
 Result<Image> Image::create(const ImageInfo& info) {
+    if (const MultiPlanarFormat* planar = findMultiPlanar(info.format)) return createPlanar(info, *planar);
     Image image;
     image.info_ = info;
     image.format_ = findFormat(info.format);
@@ -85,6 +86,63 @@ Result<Image> Image::create(const ImageInfo& info) {
     }
     image.layerPitch_ = offset;
     return image;
+}
+
+Result<Image> Image::createPlanar(const ImageInfo& info, const MultiPlanarFormat& format) {
+    if (info.type != VK_IMAGE_TYPE_2D || info.mipLevels != 1 || info.arrayLayers != 1 || info.samples != 1)
+        return invalidArgument(std::string("image: of ") + format.name +
+                               " there are 2D images of one level, layer "
+                               "and sample");
+    if (info.extent.width % format.chromaWidthDivisor != 0 || info.extent.height % format.chromaHeightDivisor != 0)
+        return invalidArgument(std::string("image: width and height of ") + format.name +
+                               " must be multiples of those of its chroma");
+    Image image;
+    VkDeviceSize size = 0;
+    for (uint32_t plane = 0; plane < format.planeCount; ++plane) {
+        ImageInfo of = info;
+        of.format = format.planes[plane];
+        of.extent.width /= format.widthDivisor(plane);
+        of.extent.height /= format.heightDivisor(plane);
+        Result<Image> made = create(of);
+        if (!made) return made.error();
+        size += made->memorySize();  // whole alignments: levels are
+        image.planes_.push_back(std::move(made).value());
+    }
+    image.info_ = info;
+    image.format_ = image.planes_[0].format_;
+    image.levels_ = image.planes_[0].levels_;
+    image.layerPitch_ = size;
+    return image;
+}
+
+void Image::bind(Memory& memory, VkDeviceSize offset) {
+    data_ = memory.data() + offset;
+    for (Image& plane : planes_) {
+        plane.bind(memory, offset);
+        offset += plane.memorySize();
+    }
+}
+
+bool Image::bound() const {
+    return data_ != nullptr && std::all_of(planes_.begin(), planes_.end(), [](const Image& p) { return p.bound(); });
+}
+
+const Image& Image::ofAspect(VkImageAspectFlags aspect) const {
+    const uint32_t plane = planeOfAspect(aspect);
+    return plane < planes_.size() ? planes_[plane] : *this;
+}
+
+VkDeviceSize Image::planeOffset(VkImageAspectFlags aspect) const {
+    const uint32_t plane = planeOfAspect(aspect);
+    VkDeviceSize offset = 0;
+    for (uint32_t i = 0; plane < planes_.size() && i < plane; ++i) offset += planes_[i].memorySize();
+    return offset;
+}
+
+void Image::bindPlane(uint32_t plane, Memory& memory, VkDeviceSize offset) {
+    if (plane >= planes_.size()) return;
+    planes_[plane].bind(memory, offset);
+    if (plane == 0) data_ = planes_[0].data_;
 }
 
 std::byte* Image::address(uint32_t mip, uint32_t layer, uint32_t z, uint32_t sample) const {

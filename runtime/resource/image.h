@@ -5,6 +5,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "base/result.h"
@@ -51,8 +53,19 @@ class Image {
     VkDeviceSize layerPitch() const { return layerPitch_; }
     VkDeviceSize memorySize() const { return layerPitch_ * info_.arrayLayers; }
 
-    void bind(Memory& memory, VkDeviceSize offset) { data_ = memory.data() + offset; }
-    bool bound() const { return data_ != nullptr; }
+    void bind(Memory& memory, VkDeviceSize offset);
+    bool bound() const;
+
+    /// Of a multi-planar format: its planes, images of one level and layer; this one stands for plane 0 then. Otherwise
+    /// empty.
+    std::span<const Image> planes() const { return planes_; }
+    /// What the aspect of a copy, a view or a question names: a plane, or this image.
+    const Image& ofAspect(VkImageAspectFlags aspect) const;
+    /// Of ofAspect(aspect), from the start of the memory that the whole image is bound to.
+    VkDeviceSize planeOffset(VkImageAspectFlags aspect) const;
+    /// Binds a plane of a disjoint image, whose planes() may lie anywhere.
+    void bindPlane(uint32_t plane, Memory& memory, VkDeviceSize offset);
+
     /// Texel (0, 0, z) of a sample of a subresource.
     std::byte* address(uint32_t mip, uint32_t layer, uint32_t z = 0, uint32_t sample = 0) const;
 
@@ -62,6 +75,9 @@ class Image {
     std::vector<LevelLayout> levels_;
     VkDeviceSize layerPitch_ = 0;
     std::byte* data_ = nullptr;
+    std::vector<Image> planes_;
+
+    static Result<Image> createPlanar(const ImageInfo& info, const MultiPlanarFormat& format);
 };
 
 struct ImageViewInfo {
@@ -91,6 +107,9 @@ class ImageView {
     const Image* image_ = nullptr;
     ImageViewInfo info_;
     TextureView texture_;
+    std::shared_ptr<const PlanarView> planar_;  // of all planes of a multi-planar image
+
+    static Result<ImageView> createPlanar(const Image& image, const ImageViewInfo& info, Isa isa);
 };
 
 }  // namespace vernier

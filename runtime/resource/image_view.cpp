@@ -71,7 +71,39 @@ bool seesSlices(const Image& image, VkImageViewType type) {
     return image.info().type == VK_IMAGE_TYPE_3D && type != VK_IMAGE_VIEW_TYPE_3D;
 }
 
+/// A plane of a multi-planar image, or all of them; planes are seen with formats of their own.
+Result<ImageView> ImageView::createPlanar(const Image& image, const ImageViewInfo& info, Isa isa) {
+    const MultiPlanarFormat& format = *findMultiPlanar(image.info().format);
+    ImageViewInfo one = info;
+    one.range.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT;
+    if (planeOfAspect(info.range.aspectMask) < format.planeCount)
+        return create(image.ofAspect(info.range.aspectMask), one, isa);
+    if (info.range.aspectMask != VK_IMAGE_ASPECT_COLOR_BIT || info.format != format.format)
+        return wrong(std::string("of ") + format.name +
+                     " there are views of one plane, and views of all in that format");
+    if (info.type != VK_IMAGE_VIEW_TYPE_2D && info.type != VK_IMAGE_VIEW_TYPE_2D_ARRAY)
+        return wrong("view type " + std::to_string(info.type) + " does not fit the image's type");
+    one.components = {};
+    auto planar = std::make_shared<PlanarView>();
+    planar->format = &format;
+    ImageView view;
+    for (uint32_t plane = 0; plane < format.planeCount; ++plane) {
+        one.format = format.planes[plane];
+        Result<ImageView> made = create(image.planes()[plane], one, isa);
+        if (!made) return made.error();
+        planar->planes[plane] = made->texture_;
+        if (plane == 0) view = std::move(made).value();
+    }
+    planar->queryLod = selectQueryLod(view.texture_, {}, isa);
+    view.image_ = &image;
+    view.info_ = info;
+    view.planar_ = std::move(planar);
+    view.texture_.planar = view.planar_.get();
+    return view;
+}
+
 Result<ImageView> ImageView::create(const Image& image, const ImageViewInfo& info, Isa isa) {
+    if (!image.planes().empty()) return createPlanar(image, info, isa);
     const FormatInfo* format = findFormat(info.format);
     if (!format) return unsupported("image view: format " + std::to_string(info.format) + " is not supported");
     if (!formatFits(image, *format))

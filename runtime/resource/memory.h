@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "base/result.h"
+#include "base/shared_pages.h"
 
 namespace vernier {
 
@@ -28,19 +29,36 @@ class Memory {
   public:
     static constexpr size_t kSlack = 64;
     static Result<std::unique_ptr<Memory>> create(const HostAllocator& allocator, VkDeviceSize size);
+    /// Memory that other processes can have, too, through exportFd().
+    static Result<std::unique_ptr<Memory>> createShared(VkDeviceSize size);
+    /// What exportFd() of some process gave, of the size that it was created with. Owns the descriptor if, and only if,
+    /// it succeeds.
+    static Result<std::unique_ptr<Memory>> import(int fd, VkDeviceSize size);
+    /// Whole pages of the caller's, who keeps them as long as the memory. Fails when the page after them cannot be read
+    /// and cannot be made readable either.
+    static Result<std::unique_ptr<Memory>> wrap(void* pages, VkDeviceSize size);
     ~Memory();
     Memory(const Memory&) = delete;
     Memory& operator=(const Memory&) = delete;
 
     std::byte* data() const { return data_; }
     VkDeviceSize size() const { return size_; }
+    /// Whether exportFd() has something to give.
+    bool shared() const { return pages_ != nullptr; }
+    /// A new descriptor, which the caller owns; -1 when the process has no more.
+    int exportFd() const { return pages_->exportFd(); }
 
   private:
     Memory(const HostAllocator& allocator, VkDeviceSize size) : allocator_(allocator), size_(size) {}
+    static Result<std::unique_ptr<Memory>> of(std::unique_ptr<SharedPages> pages);
+
+    enum class Origin : uint8_t { allocator, system, elsewhere };
     HostAllocator allocator_;
     std::byte* data_ = nullptr;
     VkDeviceSize size_;
-    bool mapped_ = false;  // pages of the system's
+    Origin origin_ = Origin::elsewhere;  // who gets the bytes back
+    std::unique_ptr<SharedPages> pages_;
+    void* guard_ = nullptr;  // a page behind those of the caller, made only to be readable
 };
 
 /// A range of memory with a usage. Unbound until bind(): data() is nullptr then.

@@ -5,6 +5,7 @@
 #include <bit>
 #include <optional>
 
+#include "runtime/texture/ycbcr.h"
 #include "spirv_interp/atomic.h"
 
 namespace vernier {
@@ -235,7 +236,12 @@ Result<TextureUnit> makeTextureUnit(const TextureView* view, const SamplerState*
     unit.fetch = selectFetch(*view, isa);
     if (!sampler) return unit;
     if (Status status = checkSampling(*view, *sampler); !status) return status.error();
-    unit.sample = selectSampler(*view, *sampler, isa);
+    if (convertsYcbcr(*view, *sampler)) {
+        if (Status status = checkYcbcr(*view, *sampler); !status) return status.error();
+        unit.sample = sampleYcbcr;
+    } else {
+        unit.sample = selectSampler(*view, *sampler, isa);
+    }
     unit.gather = selectGather(*view, *sampler, isa);
     unit.queryLod = selectQueryLod(*view, *sampler, isa);
     return unit;

@@ -28,6 +28,7 @@
 #include "base/result.h"
 #include "base/simd.h"
 #include "runtime/format/format.h"
+#include "runtime/format/multi_planar.h"
 
 namespace vernier {
 
@@ -42,6 +43,8 @@ struct TextureLevel {
     uint64_t slicePitch = 0;                    // bytes from an array layer, cube face or z slice to the next
 };
 
+struct PlanarView;
+
 /// An image view, filled when it is written into a descriptor. Plain data; refers to the image's memory.
 struct TextureView {
     VkImageViewType type = VK_IMAGE_VIEW_TYPE_2D;
@@ -51,13 +54,25 @@ struct TextureView {
     uint32_t levelCount = 1;
     uint32_t layerCount = 1;  // array layers of the view; 6 per cube
     uint32_t samples = 1;
-    uint32_t texelPitch = 0;            // bytes from a texel to its right neighbour: bytesPerTexel unless samples are
-                                        // interleaved; of a compressed format from a block to the next
-    const BlockCodec* block = nullptr;  // of a compressed format
-    uint64_t samplePitch = 0;           // bytes from a sample of a texel to the next
+    uint32_t texelPitch = 0;             // bytes from a texel to its right neighbour: bytesPerTexel unless samples are
+                                         // interleaved; of a compressed format from a block to the next
+    const BlockCodec* block = nullptr;   // of a compressed format
+    uint64_t samplePitch = 0;            // bytes from a sample of a texel to the next
+    const PlanarView* planar = nullptr;  // of all planes of a multi-planar format: the view itself is plane 0
     float minLod = 0;  // levels below are not sampled; a fetch of a level below floor(minLod) reads nothing
     std::array<TextureLevel, kMaxTextureLevels> levels;  // [0] is the view's base level
     FormatOps ops;  // formatOps(format, aspect, isa), the isa given to the select functions
+};
+
+/// VkSamplerYcbcrConversionCreateInfo.
+struct YcbcrConversion {
+    VkFormat format = VK_FORMAT_UNDEFINED;  // none: nothing is converted
+    VkSamplerYcbcrModelConversion model = VK_SAMPLER_YCBCR_MODEL_CONVERSION_RGB_IDENTITY;
+    VkSamplerYcbcrRange range = VK_SAMPLER_YCBCR_RANGE_ITU_FULL;
+    VkComponentMapping components{};
+    VkChromaLocation xChromaOffset = VK_CHROMA_LOCATION_COSITED_EVEN;
+    VkChromaLocation yChromaOffset = VK_CHROMA_LOCATION_COSITED_EVEN;
+    VkFilter chromaFilter = VK_FILTER_NEAREST;
 };
 
 /// The fields of VkSamplerCreateInfo that matter here.
@@ -75,6 +90,7 @@ struct SamplerState {
     bool unnormalizedCoordinates = false;
     float maxAnisotropy = 1;  // more than 1: anisotropic filtering; at most kMaxSamplerAnisotropy
     VkSamplerReductionMode reduction = VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE;
+    YcbcrConversion ycbcr;
     bool nonSeamlessCube = false;  // the faces of a cube are wrapped by the address modes, as if each were alone
 };
 
@@ -125,6 +141,13 @@ struct FetchRequest {
 };
 
 using FetchFn = void (*)(const TextureView&, const FetchRequest&);
+
+/// The planes of a view of a multi-planar format, each a 2D view of one level and layer.
+struct PlanarView {
+    const MultiPlanarFormat* format = nullptr;
+    std::array<TextureView, kMaxPlanes> planes;
+    SampleFn queryLod = nullptr;  // selectQueryLod() of plane 0
+};
 
 /// What of a view and a sampler cannot be sampled, in words. Call when a descriptor is written.
 Status checkView(const TextureView& view);

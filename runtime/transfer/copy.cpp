@@ -22,11 +22,19 @@ void copyTexelRow(const FormatInfo& source, const FormatInfo& destination, VkIma
     }
 }
 
-/// The rows of a buffer-image copy in both directions.
+/// The image that the aspect of a region names; a plane has its one aspect, colour.
+const Image& takePlane(const Image& image, VkImageSubresourceLayers& layers) {
+    const Image& plane = image.ofAspect(layers.aspectMask);
+    if (&plane != &image) layers.aspectMask = VK_IMAGE_ASPECT_COLOR_BIT;
+    return plane;
+}
+
+/// The rows of a buffer-image copy in both directions: copyRow(image or plane, aspect, texels, bytes, count).
 template <class CopyRow>
-void forEachBufferRow(const TransferContext& context, const Image& image, const Buffer& buffer,
-                      const VkBufferImageCopy& region, CopyRow copyRow) {
-    const VkImageSubresourceLayers& sub = region.imageSubresource;
+void forEachBufferRow(const TransferContext& context, const Image& whole, const Buffer& buffer,
+                      VkBufferImageCopy region, CopyRow copyRow) {
+    VkImageSubresourceLayers& sub = region.imageSubresource;
+    const Image& image = takePlane(whole, sub);
     if (!checkBufferImageCopy(image, buffer.size(), region)) return;
     const TexelBox box = clipBox(image, sub, region.imageOffset, region.imageExtent);
     const uint64_t texel = bufferTexelBytes(image.format(), sub.aspectMask);
@@ -37,7 +45,8 @@ void forEachBufferRow(const TransferContext& context, const Image& image, const 
     forEachRow(context, box, [&](uint32_t y, uint32_t z) {
         std::byte* texels =
             rowAddress(image, sub.mipLevel, box.y + y, box.z + z, 0) + uint64_t{box.x} * image.format().bytesPerTexel;
-        copyRow(texels, buffer.data() + region.bufferOffset + z * slicePitch + y * rowPitch, box.width);
+        std::byte* bytes = buffer.data() + region.bufferOffset + z * slicePitch + y * rowPitch;
+        copyRow(format, sub.aspectMask, texels, bytes, box.width);
     });
 }
 
@@ -58,8 +67,11 @@ void copyBuffer(const TransferContext& context, const Buffer& source, const Buff
     });
 }
 
-void copyImage(const TransferContext& context, const Image& source, const Image& destination,
-               const VkImageCopy& region) {
+void copyImage(const TransferContext& context, const Image& wholeSource, const Image& wholeDestination,
+               const VkImageCopy& asked) {
+    VkImageCopy region = asked;
+    const Image& source = takePlane(wholeSource, region.srcSubresource);
+    const Image& destination = takePlane(wholeDestination, region.dstSubresource);
     TexelBox from = clipBox(source, region.srcSubresource, region.srcOffset, region.extent);
     // The extent is in texels of the source; a block of a compressed image corresponds to a texel of another one.
     const FormatInfo& target = destination.format();
@@ -87,16 +99,16 @@ void copyImage(const TransferContext& context, const Image& source, const Image&
 
 void copyBufferToImage(const TransferContext& context, const Buffer& buffer, const Image& image,
                        const VkBufferImageCopy& region) {
-    forEachBufferRow(context, image, buffer, region, [&](std::byte* texels, const std::byte* bytes, uint32_t n) {
-        copyTexelsFromBuffer(image.format(), region.imageSubresource.aspectMask, bytes, n, texels);
-    });
+    forEachBufferRow(context, image, buffer, region,
+                     [](const FormatInfo& format, VkImageAspectFlags aspect, std::byte* texels, const std::byte* bytes,
+                        uint32_t n) { copyTexelsFromBuffer(format, aspect, bytes, n, texels); });
 }
 
 void copyImageToBuffer(const TransferContext& context, const Image& image, const Buffer& buffer,
                        const VkBufferImageCopy& region) {
-    forEachBufferRow(context, image, buffer, region, [&](const std::byte* texels, std::byte* bytes, uint32_t n) {
-        copyTexelsToBuffer(image.format(), region.imageSubresource.aspectMask, texels, n, bytes);
-    });
+    forEachBufferRow(context, image, buffer, region,
+                     [](const FormatInfo& format, VkImageAspectFlags aspect, const std::byte* texels, std::byte* bytes,
+                        uint32_t n) { copyTexelsToBuffer(format, aspect, texels, n, bytes); });
 }
 
 }  // namespace vernier

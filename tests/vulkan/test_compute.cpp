@@ -6,7 +6,8 @@ VkDescriptorSet ComputeTest::makeSet(const std::vector<TestDescriptor>& descript
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     std::vector<VkDescriptorPoolSize> sizes;
     for (const TestDescriptor& descriptor : descriptors) {
-        bindings.push_back({static_cast<uint32_t>(bindings.size()), descriptor.type, 1, VK_SHADER_STAGE_ALL, nullptr});
+        bindings.push_back({static_cast<uint32_t>(bindings.size()), descriptor.type, 1, descriptor.stages,
+                            descriptor.sampler != VK_NULL_HANDLE ? &descriptor.sampler : nullptr});
         sizes.push_back({descriptor.type, 1});
     }
     auto info = make<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
@@ -31,7 +32,7 @@ VkDescriptorSet ComputeTest::makeSet(const std::vector<TestDescriptor>& descript
 
     for (uint32_t i = 0; i < descriptors.size(); ++i) {
         const TestDescriptor& descriptor = descriptors[i];
-        const VkDescriptorBufferInfo buffer{descriptor.buffer, 0, VK_WHOLE_SIZE};
+        const VkDescriptorBufferInfo buffer{descriptor.buffer, 0, descriptor.range};
         const VkDescriptorImageInfo image{VK_NULL_HANDLE, descriptor.image, VK_IMAGE_LAYOUT_GENERAL};
         auto write = make<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
         write.dstSet = set;

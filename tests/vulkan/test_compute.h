@@ -11,17 +11,47 @@ struct TestDescriptor {
     VkBuffer buffer = VK_NULL_HANDLE;
     VkBufferView texels = VK_NULL_HANDLE;
     VkImageView image = VK_NULL_HANDLE;  // in VK_IMAGE_LAYOUT_GENERAL
+    VkSampler sampler = VK_NULL_HANDLE;  // of a combined image sampler; immutable
+    VkShaderStageFlags stages = VK_SHADER_STAGE_ALL;
+    VkDeviceSize range = VK_WHOLE_SIZE;  // of a buffer
 };
 
 inline TestDescriptor storageBuffer(const TestBuffer& buffer) {
-    return {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, buffer.buffer, VK_NULL_HANDLE, VK_NULL_HANDLE};
+    return {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+            buffer.buffer,
+            VK_NULL_HANDLE,
+            VK_NULL_HANDLE,
+            VK_NULL_HANDLE,
+            VK_SHADER_STAGE_ALL,
+            VK_WHOLE_SIZE};
 }
 inline TestDescriptor texelBuffer(VkBufferView view, bool storage) {
-    return {storage ? VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER : VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_NULL_HANDLE,
-            view, VK_NULL_HANDLE};
+    return {storage ? VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER : VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
+            VK_NULL_HANDLE,
+            view,
+            VK_NULL_HANDLE,
+            VK_NULL_HANDLE,
+            VK_SHADER_STAGE_ALL,
+            VK_WHOLE_SIZE};
 }
 inline TestDescriptor storageImage(const TestImage& image) {
-    return {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_NULL_HANDLE, VK_NULL_HANDLE, image.view};
+    return {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+            VK_NULL_HANDLE,
+            VK_NULL_HANDLE,
+            image.view,
+            VK_NULL_HANDLE,
+            VK_SHADER_STAGE_ALL,
+            VK_WHOLE_SIZE};
+}
+
+inline TestDescriptor sampledImage(VkImageView view, VkSampler sampler) {
+    return {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+            VK_NULL_HANDLE,
+            VK_NULL_HANDLE,
+            view,
+            sampler,
+            VK_SHADER_STAGE_ALL,
+            VK_WHOLE_SIZE};
 }
 
 class ComputeTest : public DrawTest {
