@@ -125,7 +125,9 @@ VKAPI_ATTR void VKAPI_CALL GetDeviceImageMemoryRequirements(VkDevice device,
     (void)guarded([&] {
         const Result<Image> image = makeImage(object(device)->physicalDevice, *pInfo->pCreateInfo);
         if (!image) return object(device)->report("vkGetDeviceImageMemoryRequirements", image.error());
-        pMemoryRequirements->memoryRequirements = memoryRequirements(image->memorySize());
+        const bool disjoint = (pInfo->pCreateInfo->flags & VK_IMAGE_CREATE_DISJOINT_BIT) != 0;
+        const Image& part = image->ofAspect(disjoint ? pInfo->planeAspect : 0);
+        pMemoryRequirements->memoryRequirements = memoryRequirements(part.memorySize());
         return VK_SUCCESS;
     });
     fillRequirementChain(pMemoryRequirements->pNext);
