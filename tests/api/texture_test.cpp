@@ -177,8 +177,8 @@ void main() {
     uint32_t result[16];
     ASSERT_EQ(vnReadBuffer(context_, numbers, 0, result, sizeof result), VN_SUCCESS);
     EXPECT_THAT(result, testing::ElementsAre(0, 0, 0, 0, 100, 50, 7, 7, 0, 0, 0, 0, 0, 0, 0, 0));
-    EXPECT_NE(vnBindTexelBuffer(context_, 0, 0, 0, colors, VK_FORMAT_R32_UINT, 8, 0), VN_SUCCESS);
-    EXPECT_THAT(lastError(), HasSubstr("offset 8"));
+    EXPECT_NE(vnBindTexelBuffer(context_, 0, 0, 0, colors, VK_FORMAT_R32_UINT, 2, 0), VN_SUCCESS);
+    EXPECT_THAT(lastError(), HasSubstr("offset 2"));
     EXPECT_NE(vnBindTexelBuffer(context_, 0, 0, 0, colors, VK_FORMAT_D16_UNORM, 0, 0), VN_SUCCESS);
     EXPECT_THAT(lastError(), HasSubstr("cannot be that of a texel buffer"));
 }

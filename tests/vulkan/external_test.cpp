@@ -280,7 +280,7 @@ TEST_F(ExternalTest, imagesLieInSharedMemory) {
         image.format = info.format;
         image.extent = {info.extent.width, info.extent.height};
         ASSERT_EQ(vkCreateImage(device, &info, nullptr, &image.image), VK_SUCCESS);
-        defer([this, &image] { vkDestroyImage(device, image.image, nullptr); });
+        defer([this, made = image.image] { vkDestroyImage(device, made, nullptr); });
         VkMemoryRequirements needs{};
         vkGetImageMemoryRequirements(device, image.image, &needs);
         auto dedicated = make<VkMemoryDedicatedAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_DEDICATED_ALLOCATE_INFO);
