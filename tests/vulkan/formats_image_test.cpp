@@ -123,6 +123,7 @@ TEST_F(FormatImages, minimumAndMaximumFiltersChoose) {
 }
 
 TEST_F(FormatImages, cubicFiltersKeepConstants) {
+    if (validated()) GTEST_SKIP() << "the validation layer 1.3.239 crashes where compute shaders use cubic filters";
     const VkSampler cubic = makeSampler(VK_FILTER_CUBIC_EXT, VK_SAMPLER_REDUCTION_MODE_WEIGHTED_AVERAGE);
     forEachImageCase(VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_CUBIC_BIT_EXT, [&](const Case& of) {
         if (of.aspect == VK_IMAGE_ASPECT_STENCIL_BIT) return;

@@ -189,8 +189,10 @@ class YcbcrTest : public ComputeTest {
         EXPECT_EQ(vkBindImageMemory(device, image, memory, 0), VK_SUCCESS);
         return memory;
     }
-    /// Each plane to an allocation of its own.
+    /// Each plane to an allocation of its own, all in one call.
     void bindPlanes(VkImage image, uint32_t planes) {
+        VkBindImagePlaneMemoryInfo bindPlanes[3];
+        VkBindImageMemoryInfo binds[3];
         for (uint32_t plane = 0; plane < planes; ++plane) {
             auto which =
                 make<VkImagePlaneMemoryRequirementsInfo>(VK_STRUCTURE_TYPE_IMAGE_PLANE_MEMORY_REQUIREMENTS_INFO);
@@ -200,14 +202,14 @@ class YcbcrTest : public ComputeTest {
             info.image = image;
             auto needs = make<VkMemoryRequirements2>(VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2);
             vkGetImageMemoryRequirements2(device, &info, &needs);
-            auto bindPlane = make<VkBindImagePlaneMemoryInfo>(VK_STRUCTURE_TYPE_BIND_IMAGE_PLANE_MEMORY_INFO);
-            bindPlane.planeAspect = kAspects[plane];
-            auto bind = make<VkBindImageMemoryInfo>(VK_STRUCTURE_TYPE_BIND_IMAGE_MEMORY_INFO);
-            bind.pNext = &bindPlane;
-            bind.image = image;
-            bind.memory = allocate(needs.memoryRequirements.size);
-            ASSERT_EQ(vkBindImageMemory2(device, 1, &bind), VK_SUCCESS);
+            bindPlanes[plane] = make<VkBindImagePlaneMemoryInfo>(VK_STRUCTURE_TYPE_BIND_IMAGE_PLANE_MEMORY_INFO);
+            bindPlanes[plane].planeAspect = kAspects[plane];
+            binds[plane] = make<VkBindImageMemoryInfo>(VK_STRUCTURE_TYPE_BIND_IMAGE_MEMORY_INFO);
+            binds[plane].pNext = &bindPlanes[plane];
+            binds[plane].image = image;
+            binds[plane].memory = allocate(needs.memoryRequirements.size);
         }
+        ASSERT_EQ(vkBindImageMemory2(device, planes, binds), VK_SUCCESS);
     }
 
     static VkBufferImageCopy regionOf(const Planar& format, uint32_t plane) {
@@ -455,7 +457,7 @@ TEST_F(YcbcrTest, planesAreCopiedViewedAndLaidOut) {
     const VkExtent2D extent{kWidth / 2, kHeight / 2};
 
     // A plane as an image of its own: copied from, and sampled.
-    const TestImage copy = makeImage(VK_FORMAT_R8G8_UNORM, extent, 0);
+    const TestImage copy = makeImage(VK_FORMAT_R8G8_UNORM, extent, VK_IMAGE_USAGE_SAMPLED_BIT);
     const TestBuffer back = makeBuffer(chroma.size(), VK_BUFFER_USAGE_TRANSFER_DST_BIT);
     const VkCommandBuffer commands = begin();
     toGeneral(commands, copy);
