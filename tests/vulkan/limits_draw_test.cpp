@@ -111,6 +111,7 @@ TEST_F(DrawLimitsTest, interfacesOfAllComponents) {
     PipelineDesc desc;
     desc.vertex =
         makeShader(VK_SHADER_STAGE_VERTEX_BIT, outputs +
+                                                   "out gl_PerVertex { vec4 gl_Position; };\n"
                                                    "void main() { gl_Position = vec4(gl_VertexIndex == 1 ? 3 : -1,"
                                                    " gl_VertexIndex == 2 ? 3 : -1, 0, 1);\n" +
                                                    writes + "}");
