@@ -107,8 +107,12 @@ Result<Configuration> readConfiguration() {
     if (!skips) return invalidArgument("VERNIER_SKIP: " + skips.error().message);
     result.skips = *skips;
     result.explain = variable("VERNIER_EXPLAIN");
-    const auto log = variable("VERNIER_LOG");
-    result.log = !log.empty() && log != "0";
+    const auto isSet = [](const char* name) {
+        const auto text = variable(name);
+        return !text.empty() && text != "0";
+    };
+    result.validate = isSet("VERNIER_VALIDATE");
+    result.log = result.validate || isSet("VERNIER_LOG");
     return result;
 }
 

@@ -14,6 +14,11 @@
 //   VERNIER_REFRESH      how often a second swapchains show an image in the modes FIFO and MAILBOX, 0 to 1000; default
 //                        60, 0: at once
 //   VERNIER_LOG          set and not 0: messages go to stderr, too
+//   VERNIER_VALIDATE     set and not 0: wrong use that does no harm here, but does elsewhere, is told as well, on
+//   stderr,
+//                        too: descriptors that are not bound, fences that are signalled when they are submitted, memory
+//                        mapped twice or left when the device is destroyed. Less than the Khronos validation layer, and
+//                        as fast as without
 #pragma once
 
 #include <vulkan/vulkan_core.h>
@@ -43,7 +48,7 @@ struct Configuration {
     Skips skips;
     std::string explain;
     uint32_t refreshRate = 60;  // of swapchains, in Hz; 0: they do not wait
-    bool log = false;
+    bool log = false, validate = false;
 };
 
 /// An unknown value is an error: a picture of another accuracy than the one asked for must not go unnoticed.

@@ -57,6 +57,13 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateDevice(VkPhysicalDevice physicalDevice, con
             desc.report = [&log](const SubmissionReport& ran) {
                 log.submission(frameFacts(ran.commands, ran.statistics));
             };
+        if (parent.configuration.validate) {
+            desc.misuse = [&parent](const std::string& text) {
+                const auto handle = reinterpret_cast<uint64_t>(&parent);
+                parent.instance.messages.error("vkCmdDraw, vkCmdDispatch", {VK_OBJECT_TYPE_PHYSICAL_DEVICE, handle},
+                                               text);
+            };
+        }
         Result<std::unique_ptr<vernier::Device>> made = vernier::Device::create(desc);
         if (!made) return refuse(resultOf(made.error()), made.error().message);
         return createHandle(pAllocator, pDevice, parent, extensions, std::move(made).value());
@@ -64,6 +71,13 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateDevice(VkPhysicalDevice physicalDevice, con
 }
 
 VKAPI_ATTR void VKAPI_CALL DestroyDevice(VkDevice device, const VkAllocationCallbacks* pAllocator) {
+    if (device != VK_NULL_HANDLE && object(device)->validates()) {
+        const VkDeviceSize left = object(device)->allocated;
+        if (left != 0) {
+            (void)object(device)->report("vkDestroyDevice", VK_SUCCESS,
+                                         std::to_string(left) + " bytes of device memory are still allocated");
+        }
+    }
     destroyHandle(pAllocator, device);
 }
 

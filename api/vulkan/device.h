@@ -34,6 +34,8 @@ struct Device : Dispatchable {
     /// Sends the error as a message about the device and returns the result code for it.
     VkResult report(const char* command, const Error& error) const;
     VkResult report(const char* command, VkResult result, std::string_view text) const;
+    /// Whether wrong use is to be told that needs no error: VERNIER_VALIDATE.
+    bool validates() const { return physicalDevice.configuration.validate; }
 };
 
 }  // namespace vernier::vulkan

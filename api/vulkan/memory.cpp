@@ -1,5 +1,7 @@
 #include "api/vulkan/memory.h"
 
+#include <utility>
+
 #include "api/vulkan/allocation.h"
 #include "api/vulkan/chain.h"
 #include "api/vulkan/device.h"
@@ -74,6 +76,9 @@ VKAPI_ATTR VkResult VKAPI_CALL MapMemory(VkDevice device, VkDeviceMemory memory,
                                          VkMemoryMapFlags, void** ppData) {
     return guarded([&] {
         const Memory& mapped = *object(memory)->memory;
+        if (std::exchange(object(memory)->mapped, true) && object(device)->validates()) {
+            (void)object(device)->report("vkMapMemory", VK_SUCCESS, "the memory is mapped already");
+        }
         const bool whole = size == VK_WHOLE_SIZE;
         if (offset > mapped.size() || (!whole && size > mapped.size() - offset)) {
             return object(device)->report("vkMapMemory", VK_ERROR_MEMORY_MAP_FAILED, "the range is outside the memory");
@@ -83,7 +88,11 @@ VKAPI_ATTR VkResult VKAPI_CALL MapMemory(VkDevice device, VkDeviceMemory memory,
     });
 }
 
-VKAPI_ATTR void VKAPI_CALL UnmapMemory(VkDevice, VkDeviceMemory) {}
+VKAPI_ATTR void VKAPI_CALL UnmapMemory(VkDevice device, VkDeviceMemory memory) {
+    if (!std::exchange(object(memory)->mapped, false) && object(device)->validates()) {
+        (void)object(device)->report("vkUnmapMemory", VK_SUCCESS, "the memory is not mapped");
+    }
+}
 
 // The one memory type is coherent: there is nothing to flush.
 

@@ -13,6 +13,7 @@ namespace vernier::vulkan {
 struct DeviceMemory {
     explicit DeviceMemory(std::unique_ptr<Memory> made) : memory(std::move(made)) {}
     std::unique_ptr<Memory> memory;
+    bool mapped = false;  // externally synchronised, as the mapping is
 };
 
 /// The requirements of something of `size` bytes: one memory type, and whole cache lines.

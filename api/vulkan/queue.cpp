@@ -79,6 +79,9 @@ VkResult submit(VkQueue queue, const char* command, uint32_t count, const Info* 
                 return device.report(command, VK_ERROR_UNKNOWN, "a command buffer is not in the executable state");
             }
         }
+        if (fence != VK_NULL_HANDLE && device.validates() && object(fence)->signalled()) {
+            (void)device.report(command, VK_SUCCESS, "the fence is signalled already");
+        }
         std::vector<Submission> batches;
         for (uint32_t i = 0; i < count; ++i) batches.push_back(makeSubmission(infos[i]));
         if (batches.empty()) batches.emplace_back();

@@ -39,6 +39,8 @@ struct DeviceDesc {
     HostAllocator allocator;
     /// Called on the queue's thread after each submission that was run to its end.
     std::function<void(const SubmissionReport&)> report;
+    /// Called on the queue's thread with what a draw or dispatch does wrong that does no harm; empty: not looked for.
+    std::function<void(const std::string&)> misuse;
 };
 
 /// One batch of work: waits, runs the command buffers in order, signals. Everything named stays alive until it is done.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "runtime/command/buffer_range.h"
+#include "runtime/command/misuse.h"
 #include "runtime/command/query_pool.h"
 #include "runtime/resource/texture_unit.h"
 
@@ -206,17 +207,28 @@ void Executor::run(const command::SetStencil& command) {
     dynamicSnapshot_ = nullptr;
 }
 
+/// The same thing again and again is told once.
+void Executor::checkBindings(const ir::Program& program, const BoundDescriptors& bound) {
+    if (!device_.desc().misuse) return;
+    std::string text = missingDescriptor(program, bound);
+    if (text.empty() || text == misuseTold_) return;
+    misuseTold_ = std::move(text);
+    device_.desc().misuse(misuseTold_);
+}
+
 void Executor::refreshDrawBindings() {
     if (!drawBindings_.changed) return;
     drawBindings_.changed = false;
     BoundDescriptors& bound = drawBindings_.bound;
     Arena& arena = pass_->arena;
     bound.pushConstants = arena.copy(std::span<const std::byte>(drawBindings_.pushConstants));
+    checkBindings(pipeline_->vertexIr(), bound);
     vertexResources_ = resolveBindings(pipeline_->vertexIr(), bound, pipeline_->accuracy(), arena);
     addAccesses(pipeline_->vertexIr(), bound, pass_->geometry);
     pass_->writesVertices |= pipeline_->vertexIr().hasSideEffects;
     fragmentResources_ = {};
     if (pipeline_->fragmentIr() == nullptr) return;
+    checkBindings(*pipeline_->fragmentIr(), bound);
     fragmentResources_ = resolveBindings(*pipeline_->fragmentIr(), bound, pipeline_->accuracy(), arena);
     needsLevels_ =
         pipeline_->planWithoutQuads() == nullptr || needsLevels(*pipeline_->fragmentIr(), fragmentResources_);
@@ -320,6 +332,7 @@ void Executor::dispatch(const DispatchWork& work) {
     if (computeBindings_.changed) {
         computeBindings_.changed = false;
         bound.pushConstants = dispatchArena_.copy(std::span<const std::byte>(computeBindings_.pushConstants));
+        checkBindings(computePipeline_->ir(), bound);
         computeResources_ =
             resolveBindings(computePipeline_->ir(), bound, computePipeline_->accuracy(), dispatchArena_);
     }

@@ -10,6 +10,7 @@
 #include <initializer_list>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <vector>
 
 #include "base/arena.h"
@@ -74,6 +75,7 @@ class Executor {
     void draw(const command::Draw& command);
     void awaitWrites(std::initializer_list<VertexStream> streams);
     const CaptureTarget* placeCapture(const DrawCall& call);
+    void checkBindings(const ir::Program& program, const BoundDescriptors& bound);
     void refreshDrawBindings();
     void dispatch(const DispatchWork& work);
     PassStatistics runDispatch(const DispatchWork& work);
@@ -116,6 +118,7 @@ class Executor {
     const DynamicState* dynamicSnapshot_ = nullptr;  // in the pass's arena; nullptr after a change
     ResourceBindings vertexResources_, fragmentResources_;
     bool needsLevels_ = true;
+    std::string misuseTold_;
     std::array<VertexStream, kMaxVertexBindings> vertexStreams_{};
     IndexStream indices_;
     bool streamsChanged_ = true;  // since they were last added to the accesses of the pass

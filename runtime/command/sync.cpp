@@ -29,9 +29,13 @@ uint64_t Timeline::value() const {
 }
 
 void Timeline::signal(uint64_t value) {
-    // Notified under the lock: whoever waits may destroy the timeline as soon as it sees the value.
-    const std::lock_guard lock(mutex_);
-    if (payload_) return payload_->raise(value);
+    // Notified under the lock, and a payload raised after it: whoever waits may destroy the timeline as soon as it sees
+    // the value.
+    std::unique_lock lock(mutex_);
+    if (const std::shared_ptr<SharedSignal> payload = payload_) {
+        lock.unlock();
+        return payload->raise(value);
+    }
     value_ = std::max(value_, value);
     changed_.notify_all();
 }
@@ -61,8 +65,11 @@ bool BinarySignal::signalled() const {
 }
 
 void BinarySignal::signal() {
-    const std::lock_guard lock(mutex_);
-    if (current()) return current()->raise(1);
+    std::unique_lock lock(mutex_);
+    if (const std::shared_ptr<SharedSignal> payload = current()) {
+        lock.unlock();
+        return payload->raise(1);
+    }
     signalled_ = true;
     changed_.notify_all();
 }

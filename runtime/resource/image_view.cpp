@@ -71,7 +71,8 @@ bool seesSlices(const Image& image, VkImageViewType type) {
     return image.info().type == VK_IMAGE_TYPE_3D && type != VK_IMAGE_VIEW_TYPE_3D;
 }
 
-/// A plane of a multi-planar image, or all of them; planes are seen with formats of their own.
+/// A plane of a multi-planar image, seen with a format of its own; or all of them, which is plane 0 to whoever does not
+/// convert.
 Result<ImageView> ImageView::createPlanar(const Image& image, const ImageViewInfo& info, Isa isa) {
     const MultiPlanarFormat& format = *findMultiPlanar(image.info().format);
     ImageViewInfo one = info;
@@ -95,8 +96,6 @@ Result<ImageView> ImageView::createPlanar(const Image& image, const ImageViewInf
         if (plane == 0) view = std::move(made).value();
     }
     planar->queryLod = selectQueryLod(view.texture_, {}, isa);
-    view.image_ = &image;
-    view.info_ = info;
     view.planar_ = std::move(planar);
     view.texture_.planar = view.planar_.get();
     return view;

@@ -1,4 +1,7 @@
 // Null descriptors, and the edges of buffers and images: VK_EXT_robustness2, VK_EXT_image_robustness.
+#include <algorithm>
+#include <cstdlib>
+
 #include "tests/vulkan/test_compute.h"
 
 namespace vernier::test {
@@ -209,6 +212,50 @@ TEST_F(RobustnessTest, texelsOutsideAreZeros) {
         EXPECT_EQ(values[4 * 6 + c], 1.0f);
         EXPECT_EQ(values[4 * 7 + c], 3.0f);
     }
+}
+
+/// With VERNIER_VALIDATE.
+class ValidateTest : public ComputeTest {
+  protected:
+    void SetUp() override {
+        setenv("VERNIER_VALIDATE", "1", 1);
+        ComputeTest::SetUp();
+        unsetenv("VERNIER_VALIDATE");
+    }
+    bool told(const std::string& text) const {
+        return std::any_of(messages.begin(), messages.end(),
+                           [&](const std::string& message) { return message.find(text) != std::string::npos; });
+    }
+};
+
+TEST_F(ValidateTest, harmlessMisuseIsTold) {
+    VERNIER_SKIP_WHEN_VALIDATED();
+    const TestBuffer buffer = makeStorage(4);  // which is mapped
+    const Compute compute = makeCompute(R"(#version 450
+        layout(set = 0, binding = 0) buffer Out { uint value; };
+        void main() { value = 5; })",
+                                        {storageBuffer(buffer)});
+    run(compute, 1);
+    EXPECT_TRUE(messages.empty());
+    EXPECT_EQ(words(buffer)[0], 5u);
+    const VkCommandBuffer commands = begin();
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, compute.pipeline);
+    vkCmdDispatch(commands, 1, 1, 1);
+    submit(commands);
+    EXPECT_TRUE(told("set 0, binding 0, but no descriptor set is bound"));
+    void* again = nullptr;
+    EXPECT_EQ(vkMapMemory(device, buffer.memory, 0, VK_WHOLE_SIZE, 0, &again), VK_SUCCESS);
+    EXPECT_TRUE(told("mapped already"));
+    vkUnmapMemory(device, buffer.memory);
+    vkUnmapMemory(device, buffer.memory);
+    EXPECT_TRUE(told("not mapped"));
+    auto info = make<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
+    info.flags = VK_FENCE_CREATE_SIGNALED_BIT;
+    VkFence fence = VK_NULL_HANDLE;
+    ASSERT_EQ(vkCreateFence(device, &info, nullptr, &fence), VK_SUCCESS);
+    defer([this, fence] { vkDestroyFence(device, fence, nullptr); });
+    EXPECT_EQ(vkQueueSubmit(queue, 0, nullptr, fence), VK_SUCCESS);
+    EXPECT_TRUE(told("signalled already"));
 }
 
 }  // namespace

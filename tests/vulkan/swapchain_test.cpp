@@ -113,6 +113,29 @@ TEST_F(SwapchainTest, imagesGoRoundWithSemaphores) {
     }
 }
 
+// VK_KHR_incremental_present: a hint that presentations take.
+TEST_F(SwapchainTest, presentationsMaySayWhatChanged) {
+    const VkSwapchainKHR swapchain = makeSwapchain(swapchainInfo(VK_PRESENT_MODE_FIFO_KHR));
+    const std::vector<VkImage> images = imagesOf(swapchain);
+    const VkFence fence = makeFence();
+    for (uint32_t rectangles = 0; rectangles < 3; ++rectangles) {
+        const uint32_t index = acquire(swapchain, fence);
+        submit(recordClear(images.at(index), 1));
+        const VkRectLayerKHR changed[] = {{{0, 0}, {8, 8}, 0}, {{16, 16}, {20, 4}, 0}};
+        const VkPresentRegionKHR region{rectangles, changed};
+        auto regions = make<VkPresentRegionsKHR>(VK_STRUCTURE_TYPE_PRESENT_REGIONS_KHR);
+        regions.swapchainCount = 1;
+        regions.pRegions = &region;
+        auto info = make<VkPresentInfoKHR>(VK_STRUCTURE_TYPE_PRESENT_INFO_KHR);
+        info.pNext = &regions;
+        info.swapchainCount = 1;
+        info.pSwapchains = &swapchain;
+        info.pImageIndices = &index;
+        EXPECT_EQ(vkQueuePresentKHR(queue, &info), VK_SUCCESS);
+    }
+    EXPECT_EQ(vkDeviceWaitIdle(device), VK_SUCCESS);
+}
+
 TEST_F(SwapchainTest, whatIsDrawnIsWhatIsThere) {
     for (const VkFormat format : {VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB}) {
         auto info = swapchainInfo(VK_PRESENT_MODE_FIFO_KHR);

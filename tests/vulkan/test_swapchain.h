@@ -17,7 +17,7 @@ class PresentTest : public DrawTest {
     virtual VkSurfaceKHR createSurface() = 0;
     std::vector<const char*> moreExtensions() override {
         return {VK_KHR_SWAPCHAIN_EXTENSION_NAME, VK_KHR_SWAPCHAIN_MUTABLE_FORMAT_EXTENSION_NAME,
-                VK_KHR_IMAGE_FORMAT_LIST_EXTENSION_NAME};
+                VK_KHR_INCREMENTAL_PRESENT_EXTENSION_NAME, VK_KHR_IMAGE_FORMAT_LIST_EXTENSION_NAME};
     }
     void SetUp() override {
         DrawTest::SetUp();
