@@ -82,8 +82,9 @@ VkFormatFeatureFlags2 wideFeatures(VkFormat format, VkFormatFeatureFlags feature
         wide |=
             VK_FORMAT_FEATURE_2_STORAGE_READ_WITHOUT_FORMAT_BIT | VK_FORMAT_FEATURE_2_STORAGE_WRITE_WITHOUT_FORMAT_BIT;
     }
-    if ((features & VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT) != 0 &&
-        (findFormat(format)->aspects & VK_IMAGE_ASPECT_DEPTH_BIT) != 0) {
+    const FormatInfo* info = findFormat(format);  // of several planes: none
+    if ((features & VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT) != 0 && info != nullptr &&
+        (info->aspects & VK_IMAGE_ASPECT_DEPTH_BIT) != 0) {
         wide |= VK_FORMAT_FEATURE_2_SAMPLED_IMAGE_DEPTH_COMPARISON_BIT;
     }
     return wide;
