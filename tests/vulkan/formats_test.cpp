@@ -138,8 +138,11 @@ std::vector<uint8_t> FormatsTest::packed(const Case& of, const VkClearColorValue
 }
 
 ComputeTest::Compute FormatsTest::computeFor(const std::string& glsl, const std::vector<TestDescriptor>& descriptors) {
-    const auto found = pipelines_.find(glsl);
-    if (found == pipelines_.end()) return pipelines_[glsl] = makeCompute(glsl, descriptors);
+    // Immutable samplers are part of the layout.
+    std::pair<std::string, std::vector<VkSampler>> key{glsl, {}};
+    for (const TestDescriptor& descriptor : descriptors) key.second.push_back(descriptor.sampler);
+    const auto found = pipelines_.find(key);
+    if (found == pipelines_.end()) return pipelines_[key] = makeCompute(glsl, descriptors);
     Compute compute = found->second;
     VkDescriptorSetLayout layout = VK_NULL_HANDLE;
     compute.set = makeSet(descriptors, &layout);

@@ -69,7 +69,7 @@ class FormatsTest : public ComputeTest {
     static constexpr const char* kPrefix[] = {"", "u", "i"};  // by ValueType, of sampler and image types
 
   private:
-    std::map<std::string, Compute> pipelines_;
+    std::map<std::pair<std::string, std::vector<VkSampler>>, Compute> pipelines_;
 };
 
 /// Equal bits, or both of them NaN where they stand for floats.
