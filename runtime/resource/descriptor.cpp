@@ -158,10 +158,13 @@ Status DescriptorSet::writeImage(uint32_t slot, const TextureView* view, const S
     descriptor.sampler = sampler;
     descriptor.texture = {};
     Result<TextureUnit> unit = makeTextureUnit(view, sampler, isa);
-    if (!unit) return unit.error();
-    descriptor.texture = *unit;
+    if (unit) {
+        descriptor.texture = *unit;
+    } else if (const Result<TextureUnit> fetched = makeTextureUnit(view, nullptr, isa)) {
+        descriptor.texture = *fetched;  // fetches do not mind a sampler that does not go with the view
+    }
     if (keeps(slot)) keep(slot);
-    return {};
+    return unit ? Status() : unit.error();
 }
 
 void DescriptorSet::writeTexelBuffer(uint32_t slot, const TextureView* view, Isa isa) {

@@ -234,7 +234,9 @@ Result<TextureUnit> makeTextureUnit(const TextureView* view, const SamplerState*
     if (!view) return unit;
     if (Status status = checkView(*view); !status) return status.error();
     unit.fetch = selectFetch(*view, isa);
-    if (!sampler) return unit;
+    // Multisampled images have combined descriptors, too, but are fetched from alone.
+    if (view->samples != 1) unit.sampler = nullptr;
+    if (!unit.sampler) return unit;
     if (Status status = checkSampling(*view, *sampler); !status) return status.error();
     if (convertsYcbcr(*view, *sampler)) {
         if (Status status = checkYcbcr(*view, *sampler); !status) return status.error();

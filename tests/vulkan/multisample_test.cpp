@@ -118,5 +118,81 @@ TEST_F(SampleCountTest, programmedPositions) {
     EXPECT_EQ(resolvedLeftOf(3.25f, 1, {{{0.25f, 0.5f}}, false}), 0u);
 }
 
+// Its sampler does not count: the image is fetched from.
+TEST_F(SampleCountTest, combinedDescriptorOfAMultisampledImage) {
+    const auto usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+    const TestImage samples = makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, usage, VK_SAMPLE_COUNT_4_BIT);
+    const TestImage resolved = makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
+    const TestImage color = makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
+    Pass clearing = makePass(samples, nullptr, &resolved, VK_SAMPLE_COUNT_4_BIT);
+    clearing.clears[0].color = {{0.2f, 0.4f, 0.6f, 1}};
+    const Pass pass = makePass(color);
+
+    auto samplerInfo = make<VkSamplerCreateInfo>(VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO);
+    samplerInfo.magFilter = samplerInfo.minFilter = VK_FILTER_LINEAR;
+    VkSampler sampler = VK_NULL_HANDLE;
+    ASSERT_EQ(vkCreateSampler(device, &samplerInfo, nullptr, &sampler), VK_SUCCESS);
+    defer([this, sampler] { vkDestroySampler(device, sampler, nullptr); });
+    const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1,
+                                               VK_SHADER_STAGE_FRAGMENT_BIT, nullptr};
+    auto layoutInfo = make<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
+    layoutInfo.bindingCount = 1;
+    layoutInfo.pBindings = &binding;
+    VkDescriptorSetLayout layout = VK_NULL_HANDLE;
+    ASSERT_EQ(vkCreateDescriptorSetLayout(device, &layoutInfo, nullptr, &layout), VK_SUCCESS);
+    defer([this, layout] { vkDestroyDescriptorSetLayout(device, layout, nullptr); });
+    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1};
+    auto poolInfo = make<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
+    poolInfo.maxSets = poolInfo.poolSizeCount = 1;
+    poolInfo.pPoolSizes = &size;
+    VkDescriptorPool sets = VK_NULL_HANDLE;
+    ASSERT_EQ(vkCreateDescriptorPool(device, &poolInfo, nullptr, &sets), VK_SUCCESS);
+    defer([this, sets] { vkDestroyDescriptorPool(device, sets, nullptr); });
+    auto setInfo = make<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
+    setInfo.descriptorPool = sets;
+    setInfo.descriptorSetCount = 1;
+    setInfo.pSetLayouts = &layout;
+    VkDescriptorSet set = VK_NULL_HANDLE;
+    ASSERT_EQ(vkAllocateDescriptorSets(device, &setInfo, &set), VK_SUCCESS);
+    const VkDescriptorImageInfo image{sampler, samples.view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    auto write = make<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
+    write.dstSet = set;
+    write.descriptorCount = 1;
+    write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    write.pImageInfo = &image;
+    vkUpdateDescriptorSets(device, 1, &write, 0, nullptr);
+
+    PipelineDesc desc;
+    desc.extent = kExtent;
+    desc.layout = makeLayout({layout}, 0);
+    desc.vertex = fullScreen();
+    desc.fragment = makeShader(VK_SHADER_STAGE_FRAGMENT_BIT, R"(#version 450
+layout(set = 0, binding = 0) uniform sampler2DMS image;
+layout(location = 0) out vec4 color;
+void main() { color = texelFetch(image, ivec2(gl_FragCoord.xy), 3); })");
+    const VkPipeline pipeline = makePipeline(pass.pass, desc);
+    const VkCommandBuffer commands = begin();
+    beginPass(commands, clearing);
+    vkCmdEndRenderPass(commands);
+    auto barrier = make<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
+    barrier.srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
+    barrier.dstAccessMask = VK_ACCESS_SHADER_READ_BIT;
+    barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+    barrier.newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.image = samples.image;
+    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+                         0, 0, nullptr, 0, nullptr, 1, &barrier);
+    beginPass(commands, pass);
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, desc.layout, 0, 1, &set, 0, nullptr);
+    vkCmdDraw(commands, 3, 1, 0, 0);
+    vkCmdEndRenderPass(commands);
+    submit(commands);
+    EXPECT_EQ(pixelAt(readImage(color, VK_IMAGE_ASPECT_COLOR_BIT, 4), color, 5, 9), 0xFF996633u);
+    EXPECT_TRUE(messages.empty()) << messages.front();
+}
+
 }  // namespace
 }  // namespace vernier::test
