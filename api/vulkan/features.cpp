@@ -70,6 +70,7 @@ namespace {
     X(VkPhysicalDeviceMultiviewFeatures, multiview, true)                                                             \
     X(VkPhysicalDeviceMultiviewFeatures, multiviewGeometryShader, false)                                              \
     X(VkPhysicalDeviceMultiviewFeatures, multiviewTessellationShader, false)                                          \
+    X(VkPhysicalDeviceFragmentShaderBarycentricFeaturesKHR, fragmentShaderBarycentric, true)                          \
     X(VkPhysicalDeviceProvokingVertexFeaturesEXT, provokingVertexLast, true)                                          \
     X(VkPhysicalDeviceProvokingVertexFeaturesEXT, transformFeedbackPreservesProvokingVertex, true)                    \
     X(VkPhysicalDeviceTransformFeedbackFeaturesEXT, transformFeedback, true)                                          \

@@ -133,6 +133,9 @@ void fillPropertyChain(const PhysicalDevice& device, void* chain) {
     if (auto* p = findInChain<VkPhysicalDeviceTimelineSemaphoreProperties>(chain)) {
         p->maxTimelineSemaphoreValueDifference = UINT64_MAX;
     }
+    if (auto* p = findInChain<VkPhysicalDeviceFragmentShaderBarycentricPropertiesKHR>(chain)) {
+        p->triStripVertexOrderIndependentOfProvokingVertex = VK_FALSE;
+    }
     if (auto* p = findInChain<VkPhysicalDeviceProvokingVertexPropertiesEXT>(chain)) {
         p->provokingVertexModePerPipeline = VK_TRUE;
         p->transformFeedbackPreservesTriangleFanProvokingVertex = VK_TRUE;

@@ -27,6 +27,9 @@ namespace vernier::conformance {
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_ATOMIC_FLOAT_FEATURES_EXT)                                        \
     X(floatAtomics2, VK_EXT_SHADER_ATOMIC_FLOAT_2_EXTENSION_NAME, VkPhysicalDeviceShaderAtomicFloat2FeaturesEXT, \
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_ATOMIC_FLOAT_2_FEATURES_EXT)                                      \
+    X(barycentric, VK_KHR_FRAGMENT_SHADER_BARYCENTRIC_EXTENSION_NAME,                                            \
+      VkPhysicalDeviceFragmentShaderBarycentricFeaturesKHR,                                                      \
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FRAGMENT_SHADER_BARYCENTRIC_FEATURES_KHR)                                \
     X(multiview, VK_KHR_MULTIVIEW_EXTENSION_NAME, VkPhysicalDeviceMultiviewFeatures,                             \
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MULTIVIEW_FEATURES)
 

@@ -59,6 +59,8 @@ Status VulkanPassBuilder::checkFeatures(const ScenePipeline& scene, const SceneD
     } uses[] = {{"gl_ViewportIndex", extensions.viewportIndexLayer, "VK_EXT_shader_viewport_index_layer"},
                 {"gl_Layer", extensions.viewportIndexLayer, "VK_EXT_shader_viewport_index_layer"},
                 {"gl_FragStencilRefARB", extensions.stencilExport, "VK_EXT_shader_stencil_export"},
+                {"GL_EXT_fragment_shader_barycentric", extensions.barycentric.fragmentShaderBarycentric,
+                 "fragmentShaderBarycentric"},
                 {"float16_t", extensions.float16.shaderFloat16, "shaderFloat16"},
                 {"GL_EXT_shader_atomic_float ", extensions.floatAtomics.shaderBufferFloat32AtomicAdd,
                  "shaderBufferFloat32AtomicAdd"},

@@ -1,4 +1,5 @@
 // I: interpolation and perspective.
+#include "conformance/hardcases/barycentric_case.h"
 #include "conformance/hardcases/groups.h"
 #include "conformance/hardcases/homogeneous_input.h"
 #include "conformance/hardcases/judges.h"
@@ -429,10 +430,10 @@ const std::vector<HardCase> kCases{
     {"I09", "FragCoord in perspective", "x.5 and y.5 exactly; the interpolated depth and 1/w.", "Vulkan, FragCoord",
      i09},
     {.id = "I10",
-     .title = "Barycentric coordinates as inputs",
-     .rule = "They sum to 1.",
-     .source = "VK_KHR_fragment_shader_barycentric",
-     .unreachable = "needs VK_KHR_fragment_shader_barycentric, which the driver does not offer"},
+     .title = "Barycentric coordinates as inputs, through near plane and eye",
+     .rule = "The primitive's weights, in the order of the provoking vertex; they sum to 1.",
+     .source = "Vulkan, Barycentric Interpolation",
+     .build = barycentricCase},
     {"I11", "interpolateAtOffset at the ends of its range and between", "The attribute's value there.",
      "Vulkan, Interpolation Decorations; SPIR-V InterpolateAtOffset", i11},
     {"I12", "One attribute infinite, NaN or the largest float", "The other attributes are unaffected.",

@@ -99,6 +99,46 @@ Result<Scene> provoking_vertex() {
     return record.finish();
 }
 
+Result<Scene> barycentrics() {
+    SceneRecorder record(
+        "barycentrics",
+        "Barycentric coordinates of strips, lists, fans and lines, and colours mixed by them from the "
+        "values of single vertices; the first vertex is the provoking one on the left, the last one on "
+        "the right.");
+    const uint32_t weights = record.colorTarget("weights", kRgba8, {320, 160});
+    const uint32_t mixed = record.colorTarget("mixed", kRgba8, {320, 160});
+    const auto strip = band(9, -0.95f), list = band(9, -0.45f), fan = wheel(7, 0.2f), line = band(6, 0.85f);
+    constexpr const char* kFragment = R"(#version 450
+#extension GL_EXT_fragment_shader_barycentric : require
+layout(location = 0) pervertexEXT in vec3 corners[];
+layout(location = 0) out vec4 weights;
+layout(location = 1) out vec4 mixed;
+void main() {
+    weights = vec4(gl_BaryCoordEXT, 1.0);
+    mixed = vec4(corners[0] * gl_BaryCoordNoPerspEXT.x + corners[1].bgr * gl_BaryCoordNoPerspEXT.y, 1.0);
+}
+)";
+    record.pass({320, 160}).color(weights, kDark).color(mixed, kDark);
+    for (const bool last : {false, true}) {
+        const auto draw = [&](VkPrimitiveTopology topology, const std::vector<DepthColorVertex>& vertices) {
+            PipelineRecorder state =
+                depthColorPipeline(record, kFlatVertexGlsl, kFragment).topology(topology).targets(2);
+            if (last) state.provokingVertexLast();
+            record.draw(state, static_cast<uint32_t>(vertices.size()))
+                .vertices(record.vertexBuffer("vertices", vertices))
+                .viewport(last ? 160.0f : 0.0f, 0, 160, 160)
+                .scissor(last ? 160 : 0, 0, 160, 160);
+        };
+        draw(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP, strip);
+        draw(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST, list);
+        draw(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN, fan);
+        draw(VK_PRIMITIVE_TOPOLOGY_LINE_STRIP, line);
+    }
+    record.output(weights);
+    record.output(mixed);
+    return record.finish();
+}
+
 Result<Scene> primitive_restart() {
     SceneRecorder record("primitive_restart",
                          "A strip and a fan cut by restart indices of 16 and 32 bits, twice in a row and after too few "

@@ -35,6 +35,7 @@
     X(polygon_modes)           \
     /* primitives.cpp */       \
     X(provoking_vertex)        \
+    X(barycentrics)            \
     X(primitive_restart)       \
     X(adjacency)               \
     X(depth_bias)              \

@@ -309,6 +309,38 @@ void Assembler::assemble(const PreparedDraw& draw, uint32_t drawIndex, Chunk& ch
     }
 }
 
+/// Gives every primitive copies of its vertices with what is of the primitive alone: weights, and values of its other
+/// vertices. Vulkan, "Barycentric Interpolation", numbers vertices so that the provoking one comes first, or last where
+/// it is the last of a primitive; the others follow in the order of the topology.
+void Assembler::giveOwnVertices(const PreparedDraw& draw, uint32_t vertexCount, Chunk& chunk) {
+    std::vector<uint32_t> chosen;
+    chosen.reserve(primitives_.size() * vertexCount);
+    for (LocalPrimitive& primitive : primitives_) {
+        for (uint32_t n = 0; n < vertexCount; ++n) {
+            chosen.push_back(primitive.vertex[n]);
+            primitive.vertex[n] = static_cast<uint32_t>(chosen.size() - 1);
+        }
+    }
+    vertices_.choose(chosen, *draw.plan, chunk);
+    const std::vector<Varying>& varyings = draw.plan->varyings;
+    for (const LocalPrimitive& primitive : primitives_) {
+        const uint32_t first = primitive.provoking + (draw.state->provokingVertexLast ? 1 : 0);
+        std::array<float*, 3> numbered{};
+        for (uint32_t n = 0; n < vertexCount; ++n)
+            numbered[n] = chunk.attributes.data() + attributesOf(primitive.vertex[(first + n) % vertexCount]);
+        for (size_t k = 0; k < varyings.size(); ++k) {
+            if (varyings[k].source == Varying::Source::vertex) continue;
+            const bool weight = varyings[k].source == Varying::Source::weight;
+            float value;  // whatever its type is
+            std::memcpy(&value, numbered[std::min<uint32_t>(varyings[k].number, vertexCount - 1)] + k, sizeof value);
+            for (uint32_t n = 0; n < vertexCount; ++n) {
+                if (weight) value = n == varyings[k].number ? 1.0f : 0.0f;
+                std::memcpy(numbered[n] + k, &value, sizeof value);
+            }
+        }
+    }
+}
+
 bool Assembler::run(std::span<const PreparedDraw> draws, uint64_t token, std::span<const PrimitiveRange> ranges,
                     const TileGrid& grid, Chunk& chunk) {
     bool finished = true;
@@ -321,6 +353,7 @@ bool Assembler::run(std::span<const PreparedDraw> draws, uint64_t token, std::sp
         const PreparedDraw& draw = draws[range.draw];
         number(draw, range);
         finished &= shadeVertices(draw, token + range.draw, refs_, contexts_, vertices_, chunk);
+        if (draw.plan->ownVertices) giveOwnVertices(draw, verticesPerPrimitive(draw.state->topology), chunk);
         statistics_.inputPrimitives += range.count;
         statistics_.vertexInvocations += refs_.size();
         statistics_.clippingInvocations += range.count;

@@ -61,6 +61,7 @@ class Assembler {
     std::array<WindowVertex, 3> windowVertices(const LocalPrimitive& triangle) const {
         return {windowVertex(triangle.vertex[0]), windowVertex(triangle.vertex[1]), windowVertex(triangle.vertex[2])};
     }
+    void giveOwnVertices(const PreparedDraw& draw, uint32_t vertexCount, Chunk& chunk);
     bool isRouted() const { return !vertices_.layers.empty() || !vertices_.viewports.empty(); }
     uint32_t attributesOf(uint32_t vertex) const { return vertices_.attributesOf(vertex); }
 

@@ -166,6 +166,37 @@ void ContextCache::trim() {
     if (entries_.size() > kMaxKeptContexts) entries_.clear();
 }
 
+void ShadedVertices::choose(const std::vector<uint32_t>& chosen, const Plan& plan, Chunk& chunk) {
+    const auto take = [&chosen](auto& values, size_t each) {
+        if (values.empty()) return;
+        auto taken = values;
+        taken.clear();
+        for (const uint32_t n : chosen) {
+            const auto first = values.begin() + static_cast<ptrdiff_t>(n * each);
+            taken.insert(taken.end(), first, first + static_cast<ptrdiff_t>(each));
+        }
+        values.swap(taken);
+    };
+    for (std::vector<float>& component : clip) take(component, 1);
+    take(x, 1);
+    take(y, 1);
+    take(z, 1);
+    take(inverseW, 1);
+    take(flags, 1);
+    take(culled, 1);
+    take(clipDistances, plan.clipDistanceSlots.size());
+    take(pointSize, 1);
+    take(layers, 1);
+    take(viewports, 1);
+    const auto first = static_cast<uint32_t>(chunk.attributes.size());
+    chunk.attributes.resize(first + chosen.size() * attributeStride);
+    for (size_t n = 0; n < chosen.size(); ++n) {
+        std::memcpy(chunk.attributes.data() + first + n * attributeStride,
+                    chunk.attributes.data() + attributesOf(chosen[n]), attributeStride * sizeof(float));
+    }
+    firstAttribute = first;
+}
+
 void ShadedVertices::resize(uint32_t count, const Plan& plan) {
     const uint32_t padded = (count + 15) / 16 * 16;
     for (auto& plane : clip) plane.resize(padded);

@@ -50,6 +50,8 @@ struct ShadedVertices {
 
     uint32_t attributesOf(uint32_t vertex) const { return firstAttribute + vertex * attributeStride; }
     void resize(uint32_t count, const Plan& plan);
+    /// Replaces them by copies: vertex n by that with the number chosen[n].
+    void choose(const std::vector<uint32_t>& chosen, const Plan& plan, Chunk& chunk);
 };
 
 /// Runs `draw`'s vertex program for `refs`. `token` identifies the draw's bindings for ContextCache. Returns

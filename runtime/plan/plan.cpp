@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "runtime/plan/facts.h"
+#include "spirv_interp/ir/primitive_inputs.h"
 #include "spirv_interp/ir/split_samples.h"
 
 namespace vernier {
@@ -104,28 +105,35 @@ bool drawsLines(const GraphicsState& state) {
     }
 }
 
-/// Inputs that the vertex stage writes and interpolation carries over; the others are made by the rasteriser.
+/// Inputs that come from a primitive's vertices; the others are made by the rasteriser.
 bool isInterpolated(ir::Builtin builtin) {
     return builtin == ir::Builtin::user || builtin == ir::Builtin::clipDistance || builtin == ir::Builtin::cullDistance;
 }
 
 /// The varying of an input; made if there is none.
 Varying& varyingOf(const ir::Program& vertex, const ir::InterfaceSlot& input, Plan& plan) {
-    uint32_t vertexSlot = kNoSlot;
+    Varying varying;
+    varying.interpolation = input.interpolation;
+    varying.sampling = input.sampling;
+    if (ir::isBaryCoord(input)) {
+        varying.source = Varying::Source::weight;
+        varying.number = input.component;
+    } else if (ir::isPerVertex(input)) {
+        varying.source = Varying::Source::ofVertex;
+        varying.number = static_cast<uint8_t>(ir::vertexNumber(input));
+    }
     for (uint32_t out = 0; out < vertex.outputs.size(); ++out) {
         const ir::InterfaceSlot& output = vertex.outputs[out];
         if (output.builtin == input.builtin && output.location == input.location && output.component == input.component)
-            vertexSlot = out;
+            varying.vertexSlot = out;
     }
     const auto found = std::find_if(plan.varyings.begin(), plan.varyings.end(), [&](const Varying& v) {
-        return vertexSlot != kNoSlot && v.vertexSlot == vertexSlot && v.interpolation == input.interpolation &&
-               v.sampling == input.sampling;
+        const bool known = varying.vertexSlot != kNoSlot || varying.source != Varying::Source::vertex;
+        return known && v.vertexSlot == varying.vertexSlot && v.interpolation == varying.interpolation &&
+               v.sampling == varying.sampling && v.source == varying.source && v.number == varying.number;
     });
     if (found != plan.varyings.end()) return *found;
-    Varying varying;
-    varying.vertexSlot = vertexSlot;
-    varying.interpolation = input.interpolation;
-    varying.sampling = input.sampling;
+    plan.ownVertices |= varying.source != Varying::Source::vertex;
     return plan.varyings.emplace_back(varying);
 }
 
@@ -333,7 +341,7 @@ bool canShadeCoarsely(const Plan& plan, const ir::Program& fragment) {
 }
 
 bool packsSmall(const Plan& plan) {
-    if (plan.coarse) return false;
+    if (plan.coarse || plan.ownVertices) return false;
     if (plan.samples != 1 || (plan.sampleMask & 1) == 0 || plan.preciseInterpolation || plan.smoothLines) return false;
     if (plan.depth.bounds || plan.depth.stencil || (plan.depth.any() && !plan.depth.early)) return false;
     return !plan.runsFragments || (plan.coverageIsFull && plan.fragmentBuiltins.empty() && !plan.interpolates);

@@ -41,13 +41,21 @@ struct BuiltinSlot {
     uint32_t slot = 0;
 };
 
-/// One scalar that travels from the vertex to the fragment program.
+/// One scalar that travels from the vertex to the fragment program, or that each primitive gives its own copies of its
+/// vertices for the fragment program.
 struct Varying {
+    enum class Source : uint8_t {
+        vertex,    // what the vertex program writes
+        weight,    // BaryCoordKHR: 1 at the vertex with the number, 0 at the others
+        ofVertex,  // PerVertexKHR: at all of them what the vertex program wrote for that vertex
+    };
     uint32_t vertexSlot = kNoSlot;    // kNoSlot: nobody writes it, it reads as 0
     uint32_t fragmentSlot = kNoSlot;  // of the fragment program, or of the part of it that runs per sample
     uint32_t pixelSlot = kNoSlot;     // of the part that runs per pixel
     ir::Interpolation interpolation = ir::Interpolation::smooth;
     ir::Sampling sampling = ir::Sampling::center;
+    Source source = Source::vertex;
+    uint8_t number = 0;  // of the vertex, unless `source` is vertex
 };
 
 enum class DepthStorage : uint8_t { none, d16, d24, d32f, d32fs8 };
@@ -105,6 +113,7 @@ struct Plan {
     uint32_t layerSlot = kNoSlot, viewportIndexSlot = kNoSlot;
     std::vector<uint32_t> clipDistanceSlots, cullDistanceSlots;
     std::vector<Varying> varyings;  // smooth first, then noPerspective, then flat
+    bool ownVertices = false;       // some are of the primitive
     uint32_t smoothCount = 0, linearCount = 0;
 
     // Fragments.

@@ -4,6 +4,7 @@
 #include "spirv_interp/front/lowering.h"
 #include "spirv_interp/front/spelling.h"
 #include "spirv_interp/ir/ops.h"
+#include "spirv_interp/ir/primitive_inputs.h"
 
 namespace vernier {
 namespace {
@@ -49,6 +50,13 @@ constexpr BuiltinEntry kBuiltins[] = {
 };
 
 constexpr uint32_t kMaxLocalWords = 1u << 16;
+
+/// The decoration is the variable's or that of a block's members.
+bool isPerVertex(const Module& module, uint32_t variable, const SpirvType& type) {
+    return module.hasDecoration(variable, spv::Decoration::PerVertexKHR) ||
+           (type.kind == SpirvType::Kind::array &&
+            module.findDecoration(type.element, spv::Decoration::PerVertexKHR, 0) != nullptr);
+}
 
 }  // namespace
 
@@ -137,7 +145,20 @@ void Lowering::lowerStageVariable(const Instruction& inst, bool input) {
     const SlotPlace place{id, 0, Decoration::kNoMember, input};
     decorateSlot(place, slot, at);
     leafTypes(pointer.type);  // refuses what is too large
-    appendSlots(pointer.type, place, slot, at, slots);
+    if (input && isPerVertex(module_, id, typeInfo(pointer.type))) {
+        // SPV_KHR_fragment_shader_barycentric: the first index is the vertex's number and takes no locations.
+        const SpirvType& type = typeInfo(pointer.type);
+        if (type.kind != SpirvType::Kind::array || type.count > 3)
+            refuseId(id, "is decorated PerVertexKHR, but is no array of up to three");
+        slot.interpolation = ir::Interpolation::flat;
+        for (uint32_t vertex = 0; vertex < type.count; ++vertex) {
+            slot.index = static_cast<uint8_t>(vertex + 1);
+            SlotCursor ofVertex = at;
+            appendSlots(type.element, place, slot, ofVertex, slots);
+        }
+    } else {
+        appendSlots(pointer.type, place, slot, at, slots);
+    }
     if (input) {
         pointer.base = Pointer::Base::input;
         pointer.root = first;
@@ -172,8 +193,15 @@ void Lowering::decorateSlot(const SlotPlace& place, ir::InterfaceSlot& slot, Slo
     const uint32_t id = place.member == Decoration::kNoMember ? place.variable : place.structure;
     const auto find = [&](spv::Decoration kind) { return module_.findDecoration(id, kind, place.member); };
     if (const Decoration* d = find(spv::Decoration::BuiltIn)) {
-        slot.builtin = builtinOf(place, d->value);
         at.location = at.component = 0;
+        const auto builtin = static_cast<spv::BuiltIn>(d->value);
+        const bool noPersp = builtin == spv::BuiltIn::BaryCoordNoPerspKHR;
+        if (noPersp || builtin == spv::BuiltIn::BaryCoordKHR) {
+            at.location = noPersp ? ir::kBaryCoordNoPerspLocation : ir::kBaryCoordLocation;
+            if (noPersp) slot.interpolation = ir::Interpolation::noPerspective;
+        } else {
+            slot.builtin = builtinOf(place, d->value);
+        }
     }
     if (const Decoration* d = find(spv::Decoration::XfbBuffer)) at.buffer = d->value;
     if (const Decoration* d = find(spv::Decoration::XfbStride)) at.stride = d->value;
@@ -195,9 +223,8 @@ void Lowering::decorateSlot(const SlotPlace& place, ir::InterfaceSlot& slot, Slo
     if (find(spv::Decoration::NoPerspective) != nullptr) slot.interpolation = ir::Interpolation::noPerspective;
     if (find(spv::Decoration::Centroid) != nullptr) slot.sampling = ir::Sampling::centroid;
     if (find(spv::Decoration::Sample) != nullptr) slot.sampling = ir::Sampling::sample;
-    if (find(spv::Decoration::PerPrimitiveNV) != nullptr || find(spv::Decoration::PerVertexKHR) != nullptr) {
-        refuseId(place.variable, "has a decoration that is not supported (PerPrimitive or PerVertex)");
-    }
+    if (find(spv::Decoration::PerPrimitiveNV) != nullptr)
+        refuseId(place.variable, "has a decoration that is not supported (PerPrimitive)");
 }
 
 // Locations: "Location Assignment" in the chapter "Shader Interfaces" of the Vulkan specification. A scalar or vector

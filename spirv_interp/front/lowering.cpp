@@ -50,6 +50,7 @@ constexpr Capability kCapabilities[] = {
     Capability::ImageQuery,
     Capability::DerivativeControl,
     Capability::InterpolationFunction,
+    Capability::FragmentBarycentricKHR,
     Capability::StorageImageReadWithoutFormat,
     Capability::StorageImageWriteWithoutFormat,
     Capability::MultiViewport,

@@ -5,6 +5,7 @@
 
 #include "spirv_interp/ir/cost.h"
 #include "spirv_interp/ir/ops.h"
+#include "spirv_interp/ir/primitive_inputs.h"
 
 namespace vernier::ir {
 namespace {
@@ -105,6 +106,7 @@ class Lifter {
         const InterfaceSlot& slot = fragment_.inputs[inst.imm];
         size_t index = 0;
         if (slot.builtin != Builtin::user || outputOf(slot, index) == nullptr || stored_[index] == kNoValue) return {};
+        if (isPerVertex(slot)) return {};
         if (slot.interpolation == Interpolation::flat) return {Form::flat, {}};
         if (!linear_ || slot.type != Type::f32) return {};
         InterfaceSlot like;

@@ -4,6 +4,7 @@
 
 #include "spirv_interp/ir/ops.h"
 #include "spirv_interp/ir/optimise.h"
+#include "spirv_interp/ir/primitive_inputs.h"
 
 namespace vernier::ir {
 namespace {
@@ -14,6 +15,7 @@ bool samePlace(const InterfaceSlot& output, const InterfaceSlot& input) {
 
 /// Whether a fragment input is fed by a vertex output, rather than by the rasteriser.
 bool isVarying(const InterfaceSlot& slot) {
+    if (isBaryCoord(slot)) return false;
     return slot.builtin == Builtin::user || slot.builtin == Builtin::clipDistance ||
            slot.builtin == Builtin::cullDistance;
 }
@@ -63,6 +65,7 @@ void writeZero(Program& vertex, const InterfaceSlot& slot) {
     InterfaceSlot output = slot;
     output.interpolation = Interpolation::smooth;
     output.sampling = Sampling::center;
+    output.index = 0;
     vertex.outputs.push_back(output);
     for (Block& block : vertex.blocks) {
         if (block.insts.back().op != Op::ret) continue;

@@ -10,15 +10,25 @@ namespace vernier::tool {
 namespace {
 
 constexpr std::pair<spv::BuiltIn, const char*> kBuiltins[] = {
-    {spv::BuiltInPosition, "Position"},         {spv::BuiltInPointSize, "PointSize"},
-    {spv::BuiltInClipDistance, "ClipDistance"}, {spv::BuiltInCullDistance, "CullDistance"},
-    {spv::BuiltInVertexIndex, "VertexIndex"},   {spv::BuiltInInstanceIndex, "InstanceIndex"},
-    {spv::BuiltInBaseVertex, "BaseVertex"},     {spv::BuiltInBaseInstance, "BaseInstance"},
-    {spv::BuiltInDrawIndex, "DrawIndex"},       {spv::BuiltInFragCoord, "FragCoord"},
-    {spv::BuiltInFrontFacing, "FrontFacing"},   {spv::BuiltInPointCoord, "PointCoord"},
-    {spv::BuiltInSampleId, "SampleId"},         {spv::BuiltInSamplePosition, "SamplePosition"},
-    {spv::BuiltInSampleMask, "SampleMask"},     {spv::BuiltInPrimitiveId, "PrimitiveId"},
+    {spv::BuiltInPosition, "Position"},
+    {spv::BuiltInPointSize, "PointSize"},
+    {spv::BuiltInClipDistance, "ClipDistance"},
+    {spv::BuiltInCullDistance, "CullDistance"},
+    {spv::BuiltInVertexIndex, "VertexIndex"},
+    {spv::BuiltInInstanceIndex, "InstanceIndex"},
+    {spv::BuiltInBaseVertex, "BaseVertex"},
+    {spv::BuiltInBaseInstance, "BaseInstance"},
+    {spv::BuiltInDrawIndex, "DrawIndex"},
+    {spv::BuiltInFragCoord, "FragCoord"},
+    {spv::BuiltInFrontFacing, "FrontFacing"},
+    {spv::BuiltInPointCoord, "PointCoord"},
+    {spv::BuiltInSampleId, "SampleId"},
+    {spv::BuiltInSamplePosition, "SamplePosition"},
+    {spv::BuiltInSampleMask, "SampleMask"},
+    {spv::BuiltInPrimitiveId, "PrimitiveId"},
     {spv::BuiltInFragDepth, "FragDepth"},
+    {spv::BuiltInBaryCoordKHR, "BaryCoord"},
+    {spv::BuiltInBaryCoordNoPerspKHR, "BaryCoordNoPersp"},
 };
 
 std::vector<std::string> split(const std::string& text) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <tuple>
 
+#include "spirv_interp/ir/primitive_inputs.h"
 #include "spirv_interp/reference/module_data.h"
 #include "spirv_interp/reference/number_ops.h"
 #include "spirv_interp/tool/bindings.h"
@@ -127,8 +128,14 @@ bool hasDoubles(const reference::Module& module) {
 
 uint32_t inputWord(const ir::InterfaceSlot& slot, const Words& words) {
     uint32_t word = 0;
-    if (slot.builtin == ir::Builtin::user) {
-        const auto found = words.locations.find({slot.location, slot.index, slot.component});
+    if (ir::isBaryCoord(slot)) {
+        const bool linear = slot.location == ir::kBaryCoordNoPerspLocation;
+        const auto found =
+            words.builtins.find({linear ? spv::BuiltInBaryCoordNoPerspKHR : spv::BuiltInBaryCoordKHR, slot.component});
+        if (found != words.builtins.end()) word = found->second;
+    } else if (slot.builtin == ir::Builtin::user) {
+        const uint32_t index = ir::isPerVertex(slot) ? ir::vertexNumber(slot) : slot.index;
+        const auto found = words.locations.find({slot.location, index, slot.component});
         if (found != words.locations.end()) word = found->second;
     }
     for (const auto& [ours, theirs] : kBuiltins) {

@@ -138,6 +138,25 @@ input 9 i32 sampleMaskIn 0.0 flat center
     EXPECT_FALSE(program.usesQuads || program.canDiscard || program.hasSideEffects);
 }
 
+TEST_F(Lowering, PrimitiveInputs) {
+    const ir::Program program = fragment(R"(
+#extension GL_EXT_fragment_shader_barycentric : require
+layout(location=2) pervertexEXT in vec2 corners[]; layout(location=3) pervertexEXT in Block { uint k; float f; } blocks[3];
+layout(location=0) out vec4 o;
+void main() {
+  o = vec4(gl_BaryCoordEXT.xz, gl_BaryCoordNoPerspEXT.y, corners[0].y + corners[2].x + float(blocks[1].k) + blocks[2].f);
+})");
+    // Weights have a location of their own; behind a location the number of the vertex, counted from one.
+    EXPECT_EQ(linesOf(program, "input"), R"(input 0 f32 user 2.1.1 flat center
+input 1 f32 user 2.0.3 flat center
+input 2 i32 user 3.0.2 flat center
+input 3 f32 user 4.0.3 flat center
+input 4 f32 user 65406.0 smooth center
+input 5 f32 user 65406.2 smooth center
+input 6 f32 user 65407.1 noPerspective center
+)");
+}
+
 constexpr const char* kImages = R"(
 layout(location=0) in vec3 c; layout(location=1) in flat ivec2 k; layout(location=0) out vec4 o;
 layout(set=1,binding=2) uniform sampler2D tex; layout(set=1,binding=3) uniform texture2DArray ta[4];
