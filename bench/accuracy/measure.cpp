@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "bench/accuracy/removed.h"
 #include "bench/speed/machine.h"
 #include "conformance/drivers/try.h"
 #include "conformance/tool/render_scene.h"
@@ -144,6 +145,12 @@ std::string runJson(const AccuracyRun& run) {
     for (const MeasuredScene& scene : run.scenes)
         for (const auto& [label, figures] : scene.figures)
             json["scenes"][scene.scene->name][label] = figuresJson(figures);
+    for (const RemovedPosition& position : removedPositions())
+        json["removed"].push_back({{"axis", position.axis},
+                                   {"position", position.position},
+                                   {"saved", position.saved},
+                                   {"error", position.error},
+                                   {"verdict", position.verdict}});
     return json.dump(2) + "\n";
 }
 

@@ -5,6 +5,7 @@
 
 #include "bench/accuracy/chart.h"
 #include "bench/accuracy/choose.h"
+#include "bench/accuracy/removed.h"
 #include "bench/svg/svg.h"
 #include "conformance/report/html.h"
 #include "conformance/report/picture.h"
@@ -116,6 +117,19 @@ std::string verdicts(const AccuracyRun& run) {
     return html + ".</p>\n";
 }
 
+/// What the dial does not have, with the figures that decided it.
+std::string removed() {
+    std::string html =
+        "<h2>Removed positions</h2><table><tr><th>axis<th>position<th>would save<th>error<th>verdict</tr>";
+    for (const RemovedPosition& position : removedPositions()) {
+        html += "<tr>";
+        for (const char* text : {position.axis, position.position, position.saved, position.error, position.verdict})
+            html += "<td>" + escapeHtml(text);
+        html += "</tr>";
+    }
+    return html + "</table>\n";
+}
+
 }  // namespace
 
 Result<std::string> accuracyPage(const AccuracyRun& run) {
@@ -139,7 +153,7 @@ Result<std::string> accuracyPage(const AccuracyRun& run) {
         body += paretoSvg(run, scene) + axesSvg(run, scene) + errorBarSvg(run, scene) + figuresTable(run, scene) +
                 maps(run, scene);
     }
-    return page("What accuracy costs", body);
+    return page("What accuracy costs", body + removed());
 }
 
 }  // namespace vernier::bench

@@ -11,6 +11,7 @@
 #include "bench/accuracy/choose.h"
 #include "bench/accuracy/figures.h"
 #include "bench/accuracy/page.h"
+#include "bench/accuracy/removed.h"
 #include "conformance/drivers/api_driver.h"
 #include "conformance/tool/driver_choice.h"
 
@@ -226,6 +227,10 @@ TEST(AccuracyPage, ShowsEveryPositionOfEveryScene) {
     ASSERT_TRUE(page.ok()) << page.error().message;
     for (const AccuracyPosition& position : run.positions) EXPECT_THAT(*page, HasSubstr(position.label));
     EXPECT_THAT(*page, HasSubstr("no &lt;end&gt; after 120 s"));
+    for (const RemovedPosition& position : removedPositions()) {
+        EXPECT_THAT(*page, HasSubstr(position.verdict));
+        EXPECT_THAT(runJson(run), HasSubstr(position.axis));
+    }
     EXPECT_THAT(runCsv(run), HasSubstr("far_triangles,math=fine,api,2.5,0.3,0.3,0,0,0,0,0,0\n"));
     EXPECT_THAT(runCsv(run), Not(HasSubstr("fast")));
 }
