@@ -9,6 +9,13 @@
 #include "runtime/resource/buffer_view.h"
 
 namespace vernier::vulkan {
+namespace {
+
+bool hasAddress(const Buffer& buffer) {
+    return buffer.data() != nullptr && (buffer.usage() & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT) != 0;
+}
+
+}  // namespace
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateBuffer(VkDevice device, const VkBufferCreateInfo* pCreateInfo,
                                             const VkAllocationCallbacks* pAllocator, VkBuffer* pBuffer) {
@@ -27,7 +34,9 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateBuffer(VkDevice device, const VkBufferCreat
     });
 }
 
-VKAPI_ATTR void VKAPI_CALL DestroyBuffer(VkDevice, VkBuffer buffer, const VkAllocationCallbacks* pAllocator) {
+VKAPI_ATTR void VKAPI_CALL DestroyBuffer(VkDevice device, VkBuffer buffer, const VkAllocationCallbacks* pAllocator) {
+    if (const Buffer* of = object(buffer); of != nullptr && hasAddress(*of))
+        object(device)->runtime->addresses().remove(of->data(), of->size());
     destroyHandle(pAllocator, buffer);
 }
 
@@ -70,9 +79,26 @@ VKAPI_ATTR VkResult VKAPI_CALL BindBufferMemory(VkDevice device, VkBuffer buffer
         if (const Status fits = checkBinding(object(memory), memoryOffset, object(buffer)->size()); !fits) {
             return object(device)->report("vkBindBufferMemory", fits.error());
         }
-        object(buffer)->bind(*object(memory)->memory, memoryOffset);
+        Buffer& bound = *object(buffer);
+        bound.bind(*object(memory)->memory, memoryOffset);
+        if (hasAddress(bound)) object(device)->runtime->addresses().add(bound.data(), bound.size());
         return VK_SUCCESS;
     });
+}
+
+VKAPI_ATTR VkDeviceAddress VKAPI_CALL GetBufferDeviceAddress(VkDevice, const VkBufferDeviceAddressInfo* pInfo) {
+    return reinterpret_cast<uintptr_t>(object(pInfo->buffer)->data());
+}
+
+// Addresses cannot be asked for when they are captured (bufferDeviceAddressCaptureReplay).
+
+VKAPI_ATTR uint64_t VKAPI_CALL GetBufferOpaqueCaptureAddress(VkDevice, const VkBufferDeviceAddressInfo*) {
+    return 0;
+}
+
+VKAPI_ATTR uint64_t VKAPI_CALL GetDeviceMemoryOpaqueCaptureAddress(VkDevice,
+                                                                   const VkDeviceMemoryOpaqueCaptureAddressInfo*) {
+    return 0;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL BindBufferMemory2(VkDevice device, uint32_t bindInfoCount,

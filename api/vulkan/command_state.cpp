@@ -69,7 +69,7 @@ bool CommandBuffer::choosePlan(const char* command) {
         counted.viewportCount = set.viewportCount;
         fixed = stream.arena().create(counted);
     }
-    stream.record(command::BindPipeline{plan->get(), fixed, pipeline->dynamicMask});
+    stream.record(pipeline->binding(**plan, *fixed));
     if (plans.empty() || plans.back() != *plan) plans.push_back(std::move(*plan));
     pipelineFits = true;
     return true;
@@ -86,12 +86,12 @@ VKAPI_ATTR void VKAPI_CALL CmdBindPipeline(VkCommandBuffer commandBuffer, VkPipe
         }
         if (isCompute) {
             buffer.computePipeline = &bound;
-            return buffer.stream.record(command::BindComputePipeline{bound.compute.get()});
+            return buffer.stream.record(command::BindComputePipeline{bound.compute.get(), bound.computeAddresses});
         }
         buffer.pipeline = &bound;
         buffer.checkPipeline();
         if (bound.plans != nullptr) return;  // a draw will choose the plan
-        buffer.stream.record(command::BindPipeline{bound.graphics.get(), &bound.fixed, bound.dynamicMask});
+        buffer.stream.record(bound.binding(*bound.graphics, bound.fixed));
     });
 }
 

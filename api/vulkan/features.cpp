@@ -1,5 +1,9 @@
 // Which features of Vulkan the device has: what the runtime does, no more.
+#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <iterator>
 
 #include "api/vulkan/chain.h"
@@ -215,7 +219,70 @@ namespace {
     X(VkPhysicalDeviceDescriptorIndexingFeatures, descriptorBindingUpdateUnusedWhilePending, true)                    \
     X(VkPhysicalDeviceDescriptorIndexingFeatures, descriptorBindingPartiallyBound, true)                              \
     X(VkPhysicalDeviceDescriptorIndexingFeatures, descriptorBindingVariableDescriptorCount, true)                     \
-    X(VkPhysicalDeviceDescriptorIndexingFeatures, runtimeDescriptorArray, true)
+    X(VkPhysicalDeviceDescriptorIndexingFeatures, runtimeDescriptorArray, true)                                       \
+    X(VkPhysicalDeviceBufferDeviceAddressFeatures, bufferDeviceAddress, true)                                         \
+    X(VkPhysicalDeviceBufferDeviceAddressFeatures, bufferDeviceAddressCaptureReplay, false)                           \
+    X(VkPhysicalDeviceBufferDeviceAddressFeatures, bufferDeviceAddressMultiDevice, false)                             \
+    X(VkPhysicalDeviceVulkanMemoryModelFeatures, vulkanMemoryModel, true)                                             \
+    X(VkPhysicalDeviceVulkanMemoryModelFeatures, vulkanMemoryModelDeviceScope, true)                                  \
+    X(VkPhysicalDeviceVulkanMemoryModelFeatures, vulkanMemoryModelAvailabilityVisibilityChains, true)                 \
+    X(VkPhysicalDeviceImageRobustnessFeatures, robustImageAccess, true)                                               \
+    X(VkPhysicalDeviceTextureCompressionASTCHDRFeatures, textureCompressionASTC_HDR, false)                           \
+    X(VkPhysicalDeviceVulkan12Features, samplerMirrorClampToEdge, true)                                               \
+    X(VkPhysicalDeviceVulkan12Features, drawIndirectCount, true)                                                      \
+    X(VkPhysicalDeviceVulkan12Features, descriptorIndexing, true)                                                     \
+    X(VkPhysicalDeviceVulkan12Features, samplerFilterMinmax, true)                                                    \
+    X(VkPhysicalDeviceVulkan12Features, shaderOutputViewportIndex, true)                                              \
+    X(VkPhysicalDeviceVulkan12Features, shaderOutputLayer, true)                                                      \
+    X(VkPhysicalDeviceVulkan12Features, subgroupBroadcastDynamicId, true)
+
+/// One of these, and where its value lies: in the structure of its extension, and in those that core versions have
+/// (Vulkan 1.1 to 1.3) if they have a member of its name.
+struct FeatureRow {
+    VkStructureType type;
+    uint16_t offset;
+    std::array<uint16_t, 3> coreOffsets;  // 0: none
+    bool supported;
+    const char* name;
+};
+
+#define VERNIER_OFFSET_IN(core, member)                        \
+    []<class S>(const S*) constexpr->uint16_t {                \
+        if constexpr (requires(S s) { s.member; }) {           \
+            return static_cast<uint16_t>(offsetof(S, member)); \
+        } else {                                               \
+            return 0;                                          \
+        }                                                      \
+    }                                                          \
+    (static_cast<const core*>(nullptr))
+#define VERNIER_FEATURE_ROW(type, member, supported)                \
+    {kStructureType<type>,                                          \
+     static_cast<uint16_t>(offsetof(type, member)),                 \
+     {VERNIER_OFFSET_IN(VkPhysicalDeviceVulkan11Features, member),  \
+      VERNIER_OFFSET_IN(VkPhysicalDeviceVulkan12Features, member),  \
+      VERNIER_OFFSET_IN(VkPhysicalDeviceVulkan13Features, member)}, \
+     supported,                                                     \
+     #member},
+constexpr FeatureRow kFeatureRows[] = {VERNIER_EXTENSION_FEATURES(VERNIER_FEATURE_ROW)};
+#undef VERNIER_FEATURE_ROW
+#undef VERNIER_OFFSET_IN
+
+constexpr VkStructureType kCoreFeatures[] = {VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES,
+                                             VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
+                                             VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+
+/// Calls visit(row, offset in the structure) for every feature that the structure has.
+template <class Visit>
+void forEachFeature(VkStructureType structure, Visit&& visit) {
+    const auto* core = std::ranges::find(kCoreFeatures, structure);
+    for (const FeatureRow& row : kFeatureRows) {
+        if (row.type == structure) {
+            visit(row, row.offset);
+        } else if (core != std::end(kCoreFeatures) && row.coreOffsets[core - kCoreFeatures] != 0) {
+            visit(row, row.coreOffsets[core - kCoreFeatures]);
+        }
+    }
+}
 
 // VkPhysicalDeviceFeatures is nothing but VkBool32 members.
 constexpr size_t kFeatureCount = sizeof(VkPhysicalDeviceFeatures) / sizeof(VkBool32);
@@ -237,10 +304,12 @@ VkPhysicalDeviceFeatures supportedFeatures() {
 }
 
 void fillFeatureChain(void* chain) {
-#define VERNIER_FILL_FEATURE(type, member, supported) \
-    if (auto* structure = findInChain<type>(chain)) structure->member = (supported) ? VK_TRUE : VK_FALSE;
-    VERNIER_EXTENSION_FEATURES(VERNIER_FILL_FEATURE)
-#undef VERNIER_FILL_FEATURE
+    for (auto* node = static_cast<VkBaseOutStructure*>(chain); node != nullptr; node = node->pNext) {
+        forEachFeature(node->sType, [node](const FeatureRow& row, uint32_t offset) {
+            const VkBool32 value = row.supported ? VK_TRUE : VK_FALSE;
+            std::memcpy(reinterpret_cast<std::byte*>(node) + offset, &value, sizeof value);
+        });
+    }
 }
 
 VkResult checkFeatures(const VkDeviceCreateInfo& info, const char*& missing) {
@@ -255,12 +324,13 @@ VkResult checkFeatures(const VkDeviceCreateInfo& info, const char*& missing) {
             if (want[i] != VK_FALSE && have[i] == VK_FALSE) missing = kFeatureNames[i];
         }
     }
-#define VERNIER_CHECK_FEATURE(type, member, supported)                        \
-    if (const auto* structure = findInChain<type>(info.pNext)) {              \
-        if (structure->member != VK_FALSE && !(supported)) missing = #member; \
+    for (auto* node = static_cast<const VkBaseInStructure*>(info.pNext); node != nullptr; node = node->pNext) {
+        forEachFeature(node->sType, [&](const FeatureRow& row, uint32_t offset) {
+            VkBool32 value = VK_FALSE;
+            std::memcpy(&value, reinterpret_cast<const std::byte*>(node) + offset, sizeof value);
+            if (value != VK_FALSE && !row.supported) missing = row.name;
+        });
     }
-    VERNIER_EXTENSION_FEATURES(VERNIER_CHECK_FEATURE)
-#undef VERNIER_CHECK_FEATURE
     return missing != nullptr ? VK_ERROR_FEATURE_NOT_PRESENT : VK_SUCCESS;
 }
 

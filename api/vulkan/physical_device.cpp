@@ -92,6 +92,7 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceProperties2(VkPhysicalDevice physica
                                                         VkPhysicalDeviceProperties2* pProperties) {
     pProperties->properties = object(physicalDevice)->properties;
     fillPropertyChain(*object(physicalDevice), pProperties->pNext);
+    fillCoreProperties(*object(physicalDevice), pProperties->pNext);
 }
 
 VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceQueueFamilyProperties(VkPhysicalDevice, uint32_t* pQueueFamilyPropertyCount,

@@ -35,8 +35,11 @@ VkResult checkFeatures(const VkDeviceCreateInfo& info, const char*& missing);
 
 /// The limits of the specification's table "Required Limits" (limits.cpp).
 VkPhysicalDeviceLimits deviceLimits(const VkPhysicalDeviceFeatures& features, const Accuracy& accuracy);
-/// Fills every property structure of the chain that the driver knows (properties.cpp).
+/// Fills every property structure of the chain that the driver knows, but for those of whole core versions
+/// (properties.cpp).
 void fillPropertyChain(const PhysicalDevice& device, void* chain);
+/// Fills those (core_properties.cpp).
+void fillCoreProperties(const PhysicalDevice& device, void* chain);
 /// The position of every axis of accuracy, two bits each.
 uint16_t axisBits(const Accuracy& accuracy);
 

@@ -10,6 +10,8 @@
 #include "api/vulkan/allocation.h"
 #include "api/vulkan/handle.h"
 #include "api/vulkan/plan_cache.h"
+#include "runtime/command/access_set.h"
+#include "runtime/command/commands.h"
 #include "runtime/plan/compute_pipeline.h"
 #include "runtime/plan/pipeline.h"
 #include "spirv_interp/capture.h"
@@ -34,14 +36,23 @@ struct Pipeline {
           fixed(values),
           dynamicMask(mask),
           viewportCountDynamic(countsViewports),
-          plans(std::move(cache)) {}
-    explicit Pipeline(std::shared_ptr<const ComputePipeline> made) : compute(std::move(made)) {}
+          plans(std::move(cache)),
+          vertexAddresses(usesAddresses(graphics->vertexIr())),
+          fragmentAddresses(graphics->fragmentIr() != nullptr && usesAddresses(*graphics->fragmentIr())) {}
+    explicit Pipeline(std::shared_ptr<const ComputePipeline> made)
+        : compute(std::move(made)), computeAddresses(usesAddresses(compute->ir())) {}
+    /// The command that binds it, with this plan.
+    command::BindPipeline binding(const GraphicsPipeline& plan, const DynamicState& values) const {
+        return {&plan, &values, dynamicMask, vertexAddresses, fragmentAddresses};
+    }
     std::shared_ptr<const GraphicsPipeline> graphics;  // with `plans`: an example, which tells of the programs
     DynamicState fixed;
     uint32_t dynamicMask = 0;
     bool viewportCountDynamic = false;
     std::unique_ptr<PlanCache> plans;  // nullptr: `graphics` is the only one
+    bool vertexAddresses = false, fragmentAddresses = false;
     std::shared_ptr<const ComputePipeline> compute;
+    bool computeAddresses = false;
 };
 
 /// Loads the program of a stage with its specialization (pipeline.cpp).

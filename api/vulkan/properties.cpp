@@ -1,4 +1,5 @@
 // The properties of core versions after 1.0 and of extensions.
+#include <cstdio>
 #include <cstring>
 
 #include "api/vulkan/chain.h"
@@ -51,6 +52,16 @@ void setTransformFeedback(VkPhysicalDeviceTransformFeedbackPropertiesEXT& p) {
         p.maxTransformFeedbackBufferDataStride = kMaxInterfaceComponents * sizeof(float);
     p.transformFeedbackQueries = p.transformFeedbackDraw = VK_TRUE;
     p.transformFeedbackStreamsLinesTriangles = p.transformFeedbackRasterizationStreamSelect = VK_FALSE;
+}
+
+/// Khronos gives out VkDriverId; this driver has none, and has passed no conformance tests.
+void setDriver(const PhysicalDevice& device, VkPhysicalDeviceDriverProperties& p) {
+    const uint32_t version = device.properties.driverVersion;
+    p.driverID = VkDriverId{};
+    std::snprintf(p.driverName, sizeof p.driverName, "Vernier");
+    std::snprintf(p.driverInfo, sizeof p.driverInfo, "%u.%u.%u", VK_API_VERSION_MAJOR(version),
+                  VK_API_VERSION_MINOR(version), VK_API_VERSION_PATCH(version));
+    p.conformanceVersion = {};
 }
 
 void setInlineBlocks(VkPhysicalDeviceInlineUniformBlockProperties& p) {
@@ -176,6 +187,7 @@ void fillPropertyChain(const PhysicalDevice& device, void* chain) {
         p->filterMinmaxImageComponentMapping = VK_TRUE;
     }
     if (auto* p = findInChain<VkPhysicalDeviceFloatControlsProperties>(chain)) setFloatControls(*p);
+    if (auto* p = findInChain<VkPhysicalDeviceDriverProperties>(chain)) setDriver(device, *p);
     if (auto* p = findInChain<VkPhysicalDevicePushDescriptorPropertiesKHR>(chain)) {
         p->maxPushDescriptors = kMaxPushDescriptors;
     }

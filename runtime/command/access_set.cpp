@@ -146,4 +146,23 @@ void addAccesses(const ir::Program& program, const BoundDescriptors& bound, Acce
     }
 }
 
+bool usesAddresses(const ir::Program& program) {
+    const auto byAddress = [](const ir::Inst& inst) {
+        return inst.op == ir::Op::loadAddress || inst.op == ir::Op::storeAddress || inst.op == ir::Op::atomicAddress;
+    };
+    return std::any_of(program.blocks.begin(), program.blocks.end(), [&](const ir::Block& block) {
+        return std::any_of(block.insts.begin(), block.insts.end(), byAddress);
+    });
+}
+
+void addAddressAccesses(const ir::Program& program, const AddressSpace& addresses, AccessSet& accesses) {
+    addresses.forEach([&](const std::byte* data, uint64_t bytes) {
+        if (program.hasSideEffects) {
+            accesses.write(data, bytes);
+        } else {
+            accesses.read(data, bytes);
+        }
+    });
+}
+
 }  // namespace vernier

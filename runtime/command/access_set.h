@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "runtime/resource/address_space.h"
 #include "runtime/resource/descriptor.h"
 #include "runtime/resource/image.h"
 #include "runtime/resource/memory.h"
@@ -42,5 +43,10 @@ std::span<std::byte> layersOf(const Image& image, uint32_t mip, uint32_t first, 
 
 /// What a program may read and write through the descriptors it finds in `bound`.
 void addAccesses(const ir::Program& program, const BoundDescriptors& bound, AccessSet& accesses);
+
+/// Whether a program reaches memory by address.
+bool usesAddresses(const ir::Program& program);
+/// What such a program may read and write beyond that: nobody knows where its addresses lead.
+void addAddressAccesses(const ir::Program& program, const AddressSpace& addresses, AccessSet& accesses);
 
 }  // namespace vernier

@@ -60,9 +60,12 @@ struct BindPipeline {
     // Values the pipeline fixes; applied to the dynamic state for the bits not set in `dynamicMask`.
     const DynamicState* fixed = nullptr;
     uint32_t dynamicMask = 0;  // of dynamicStateBit(): left as set by commands
+    // Whether the stages reach memory by address (usesAddresses()).
+    bool vertexAddresses = false, fragmentAddresses = false;
 };
 struct BindComputePipeline {
     const ComputePipeline* pipeline = nullptr;
+    bool addresses = false;
 };
 /// Draws and dispatches have descriptor sets and push constants of their own.
 enum class BindPoint : uint8_t { graphics, compute };

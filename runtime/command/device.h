@@ -16,6 +16,7 @@
 #include "runtime/command/command_buffer.h"
 #include "runtime/command/sync.h"
 #include "runtime/raster/frame_facts.h"
+#include "runtime/resource/address_space.h"
 #include "runtime/resource/memory.h"
 #include "runtime/skips.h"
 
@@ -86,12 +87,15 @@ class Device {
     Isa isa() const { return isa_; }
     ThreadPool& pool() { return pool_; }
     Queue& queue() { return *queue_; }
+    /// The buffers that programs may reach by address.
+    AddressSpace& addresses() { return addresses_; }
 
   private:
     explicit Device(const DeviceDesc& desc);
     DeviceDesc desc_;
     Isa isa_;
     ThreadPool pool_;
+    AddressSpace addresses_;
     std::unique_ptr<Queue> queue_;
 };
 

@@ -101,6 +101,8 @@ void Executor::runAll(const CommandBuffer& commands) {
 
 void Executor::run(const command::BindPipeline& command) {
     pipeline_ = command.pipeline;
+    vertexAddresses_ = command.vertexAddresses;
+    fragmentAddresses_ = command.fragmentAddresses;
     if (command.fixed) applyFixedState(*command.fixed, command.dynamicMask, dynamic_);
     dynamicSnapshot_ = nullptr;
     drawBindings_.changed = true;
@@ -108,6 +110,7 @@ void Executor::run(const command::BindPipeline& command) {
 
 void Executor::run(const command::BindComputePipeline& command) {
     computePipeline_ = command.pipeline;
+    computeAddresses_ = command.addresses;
     computeBindings_.changed = true;
 }
 
@@ -225,6 +228,10 @@ void Executor::refreshDrawBindings() {
     checkBindings(pipeline_->vertexIr(), bound);
     vertexResources_ = resolveBindings(pipeline_->vertexIr(), bound, pipeline_->accuracy(), arena);
     addAccesses(pipeline_->vertexIr(), bound, pass_->geometry);
+    if (vertexAddresses_) {
+        vertexResources_.addresses = device_.addresses().resolver();
+        addAddressAccesses(pipeline_->vertexIr(), device_.addresses(), pass_->geometry);
+    }
     pass_->writesVertices |= pipeline_->vertexIr().hasSideEffects;
     fragmentResources_ = {};
     if (pipeline_->fragmentIr() == nullptr) return;
@@ -233,6 +240,10 @@ void Executor::refreshDrawBindings() {
     needsLevels_ =
         pipeline_->planWithoutQuads() == nullptr || needsLevels(*pipeline_->fragmentIr(), fragmentResources_);
     addAccesses(*pipeline_->fragmentIr(), bound, pass_->rest);
+    if (fragmentAddresses_) {
+        fragmentResources_.addresses = device_.addresses().resolver();
+        addAddressAccesses(*pipeline_->fragmentIr(), device_.addresses(), pass_->rest);
+    }
 }
 
 /// Vertex fetch may read to the end of every buffer that is bound.
@@ -335,8 +346,10 @@ void Executor::dispatch(const DispatchWork& work) {
         checkBindings(computePipeline_->ir(), bound);
         computeResources_ =
             resolveBindings(computePipeline_->ir(), bound, computePipeline_->accuracy(), dispatchArena_);
+        if (computeAddresses_) computeResources_.addresses = device_.addresses().resolver();
     }
     addAccesses(computePipeline_->ir(), bound, accesses);
+    if (computeAddresses_) addAddressAccesses(computePipeline_->ir(), device_.addresses(), accesses);
     if (work.arguments.buffer != nullptr) {
         const VertexStream stream = streamOf(work.arguments);
         accesses.read(stream.data, stream.size);

@@ -114,6 +114,7 @@ class Executor {
     bool leavesOut_ = false;  // by conditional rendering
 
     const GraphicsPipeline* pipeline_ = nullptr;
+    bool vertexAddresses_ = false, fragmentAddresses_ = false;  // of it: memory is reached by address
     DynamicState dynamic_;
     const DynamicState* dynamicSnapshot_ = nullptr;  // in the pass's arena; nullptr after a change
     ResourceBindings vertexResources_, fragmentResources_;
@@ -128,6 +129,7 @@ class Executor {
     /// What dispatches point to until they have run.
     Arena dispatchArena_;
     const ComputePipeline* computePipeline_ = nullptr;
+    bool computeAddresses_ = false;
     ResourceBindings computeResources_;
 
     RunningQueries queries_;

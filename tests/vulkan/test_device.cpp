@@ -147,6 +147,9 @@ TestBuffer VulkanTest::makeBuffer(VkDeviceSize size, VkBufferUsageFlags usage) {
     EXPECT_GE(needs.size, size);
     auto allocation = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
     allocation.allocationSize = needs.size;
+    auto flags = make<VkMemoryAllocateFlagsInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO);
+    flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
+    if ((usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT) != 0) allocation.pNext = &flags;
     EXPECT_EQ(vkAllocateMemory(device, &allocation, nullptr, &result.memory), VK_SUCCESS);
     EXPECT_EQ(vkBindBufferMemory(device, result.buffer, result.memory, 0), VK_SUCCESS);
     EXPECT_EQ(vkMapMemory(device, result.memory, 0, VK_WHOLE_SIZE, 0, &result.data), VK_SUCCESS);
