@@ -17,6 +17,10 @@ constexpr const char* kReference =
 class AddressTest : public ComputeTest {
   protected:
     uint32_t apiVersion() override { return VK_API_VERSION_1_2; }
+    std::vector<const char*> moreExtensions() override {
+        return {VK_GOOGLE_DECORATE_STRING_EXTENSION_NAME, VK_GOOGLE_HLSL_FUNCTIONALITY_1_EXTENSION_NAME,
+                VK_GOOGLE_USER_TYPE_EXTENSION_NAME};
+    }
     void* moreFeatures() override {
         addresses_.bufferDeviceAddress = model_.vulkanMemoryModel = model_.vulkanMemoryModelDeviceScope = VK_TRUE;
         addresses_.pNext = &model_;
@@ -236,10 +240,14 @@ void main() {
     EXPECT_EQ(words(out)[2], 8u * 64 * 65 / 2);
 }
 
-// Modules of SPIR-V 1.4 and 1.5, which name all their variables in the entry point and copy whole blocks.
+// Modules of SPIR-V 1.4 and 1.5, which name all their variables in the entry point and select whole vectors; with
+// decorations for tools (SPV_GOOGLE_*).
 TEST_F(AddressTest, newerModules) {
     constexpr const char* kText = R"(
 OpCapability Shader
+OpExtension "SPV_GOOGLE_decorate_string"
+OpExtension "SPV_GOOGLE_hlsl_functionality1"
+OpExtension "SPV_GOOGLE_user_type"
 OpMemoryModel Logical GLSL450
 OpEntryPoint GLCompute %main "main" %a %b %id
 OpExecutionMode %main LocalSize 4 1 1
@@ -251,6 +259,9 @@ OpDecorate %a DescriptorSet 0
 OpDecorate %a Binding 0
 OpDecorate %b DescriptorSet 0
 OpDecorate %b Binding 1
+OpDecorateString %a UserSemantic "IN"
+OpDecorateString %b UserTypeGOOGLE "rwstructuredbuffer:<uint>"
+OpMemberDecorateString %block 0 UserSemantic "VALUES"
 %void = OpTypeVoid
 %fn = OpTypeFunction %void
 %bool = OpTypeBool

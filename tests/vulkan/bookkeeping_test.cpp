@@ -20,7 +20,10 @@ class BookkeepingTest : public ComputeTest {
                 VK_EXT_SUBGROUP_SIZE_CONTROL_EXTENSION_NAME,
                 VK_EXT_TEXEL_BUFFER_ALIGNMENT_EXTENSION_NAME,
                 VK_KHR_ZERO_INITIALIZE_WORKGROUP_MEMORY_EXTENSION_NAME,
-                VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME};
+                VK_KHR_SYNCHRONIZATION_2_EXTENSION_NAME,
+                VK_EXT_CALIBRATED_TIMESTAMPS_EXTENSION_NAME,
+                VK_EXT_SHADER_SUBGROUP_BALLOT_EXTENSION_NAME,
+                VK_EXT_SHADER_SUBGROUP_VOTE_EXTENSION_NAME};
     }
     void* moreFeatures() override {
         private_.privateData = maintenance_.maintenance4 = cache_.pipelineCreationCacheControl = VK_TRUE;
@@ -249,6 +252,76 @@ void main() {
     size.requiredSubgroupSize = sizes.maxSubgroupSize * 2;
     EXPECT_EQ(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &compute.pipeline),
               VK_ERROR_FEATURE_NOT_PRESENT);
+}
+
+TEST_F(BookkeepingTest, clocksOfHostAndDevice) {
+    const auto domains = reinterpret_cast<PFN_vkGetPhysicalDeviceCalibrateableTimeDomainsEXT>(
+        vkGetInstanceProcAddr(instance, "vkGetPhysicalDeviceCalibrateableTimeDomainsEXT"));
+    uint32_t count = 0;
+    ASSERT_EQ(domains(physicalDevice, &count, nullptr), VK_SUCCESS);
+    std::vector<VkTimeDomainEXT> all(count);
+    ASSERT_EQ(domains(physicalDevice, &count, all.data()), VK_SUCCESS);
+    ASSERT_GE(count, 2u);
+    EXPECT_EQ(all[0], VK_TIME_DOMAIN_DEVICE_EXT);
+    EXPECT_EQ(all[1], VK_TIME_DOMAIN_CLOCK_MONOTONIC_EXT);
+    auto info = make<VkCalibratedTimestampInfoEXT>(VK_STRUCTURE_TYPE_CALIBRATED_TIMESTAMP_INFO_EXT);
+    std::array<VkCalibratedTimestampInfoEXT, 2> infos{info, info};
+    infos[0].timeDomain = all[0];
+    infos[1].timeDomain = all[1];
+    std::array<uint64_t, 2> times{};
+    uint64_t deviation = 0;
+    // A time stamp that the queue takes lies between two that the host takes.
+    const auto now = [&] {
+        EXPECT_EQ(command<PFN_vkGetCalibratedTimestampsEXT>("vkGetCalibratedTimestampsEXT")(device, 2, infos.data(),
+                                                                                            times.data(), &deviation),
+                  VK_SUCCESS);
+        EXPECT_LE(times[1] - times[0], deviation);
+        return times[0];
+    };
+    auto poolInfo = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
+    poolInfo.queryType = VK_QUERY_TYPE_TIMESTAMP;
+    poolInfo.queryCount = 1;
+    VkQueryPool stamps = VK_NULL_HANDLE;
+    ASSERT_EQ(vkCreateQueryPool(device, &poolInfo, nullptr, &stamps), VK_SUCCESS);
+    defer([=, this] { vkDestroyQueryPool(device, stamps, nullptr); });
+    const uint64_t before = now();
+    const VkCommandBuffer commands = begin();
+    vkCmdResetQueryPool(commands, stamps, 0, 1);
+    vkCmdWriteTimestamp(commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, stamps, 0);
+    submit(commands);
+    const uint64_t after = now();
+    uint64_t stamp = 0;
+    ASSERT_EQ(vkGetQueryPoolResults(device, stamps, 0, 1, sizeof stamp, &stamp, sizeof stamp, VK_QUERY_RESULT_64_BIT),
+              VK_SUCCESS);
+    EXPECT_LE(before, stamp);
+    EXPECT_LE(stamp, after);
+}
+
+// The older extensions of subgroups, as shaders for OpenGL's write them.
+TEST_F(BookkeepingTest, olderBallotsAndVotes) {
+    const TestBuffer out = makeStorage(64 * 4);
+    run(makeCompute(R"(#version 450
+#extension GL_ARB_shader_ballot : require
+#extension GL_ARB_shader_group_vote : require
+#extension GL_ARB_gpu_shader_int64 : require
+layout(local_size_x = 64) in;
+layout(set = 0, binding = 0) buffer Out { uvec4 v[64]; };
+void main() {
+    uint n = gl_LocalInvocationIndex;
+    uint64_t odd = ballotARB(n % 2 == 1);
+    v[n] = uvec4(unpackUint2x32(odd).x, readInvocationARB(n, 3), readFirstInvocationARB(n),
+                 (anyInvocationARB(n == 40) ? 1 : 0) + (allInvocationsARB(n < 40) ? 2 : 0) +
+                 (allInvocationsEqualARB(n / 32) ? 4 : 0));
+})",
+                    {storageBuffer(out)}),
+        1);
+    for (uint32_t n = 0; n < 64; ++n) {
+        const uint32_t first = n / 32 * 32;
+        EXPECT_EQ(words(out)[4 * n], 0xAAAAAAAAu) << n;
+        EXPECT_EQ(words(out)[4 * n + 1], first + 3) << n;
+        EXPECT_EQ(words(out)[4 * n + 2], first) << n;
+        EXPECT_EQ(words(out)[4 * n + 3], n < 32 ? 6u : 5u) << n;
+    }
 }
 
 // Views may begin at any texel.
