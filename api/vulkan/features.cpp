@@ -226,7 +226,6 @@ namespace {
     X(VkPhysicalDeviceVulkanMemoryModelFeatures, vulkanMemoryModel, true)                                             \
     X(VkPhysicalDeviceVulkanMemoryModelFeatures, vulkanMemoryModelDeviceScope, true)                                  \
     X(VkPhysicalDeviceVulkanMemoryModelFeatures, vulkanMemoryModelAvailabilityVisibilityChains, true)                 \
-    X(VkPhysicalDeviceImageRobustnessFeatures, robustImageAccess, true)                                               \
     X(VkPhysicalDeviceTextureCompressionASTCHDRFeatures, textureCompressionASTC_HDR, false)                           \
     X(VkPhysicalDeviceVulkan12Features, samplerMirrorClampToEdge, true)                                               \
     X(VkPhysicalDeviceVulkan12Features, drawIndirectCount, true)                                                      \

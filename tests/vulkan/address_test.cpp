@@ -305,5 +305,59 @@ OpFunctionEnd
     }
 }
 
+// From SPIR-V 1.5 on the invocation that broadcasts may be computed (subgroupBroadcastDynamicId).
+TEST_F(AddressTest, broadcastsFromAnyInvocation) {
+    constexpr const char* kText = R"(
+OpCapability Shader
+OpCapability GroupNonUniform
+OpCapability GroupNonUniformBallot
+OpMemoryModel Logical GLSL450
+OpEntryPoint GLCompute %main "main" %a %b %id
+OpExecutionMode %main LocalSize 32 1 1
+OpDecorate %id BuiltIn GlobalInvocationId
+OpDecorate %array ArrayStride 4
+OpDecorate %block Block
+OpMemberDecorate %block 0 Offset 0
+OpDecorate %a DescriptorSet 0
+OpDecorate %a Binding 0
+OpDecorate %b DescriptorSet 0
+OpDecorate %b Binding 1
+%void = OpTypeVoid
+%fn = OpTypeFunction %void
+%uint = OpTypeInt 32 0
+%v3 = OpTypeVector %uint 3
+%pid = OpTypePointer Input %v3
+%id = OpVariable %pid Input
+%array = OpTypeRuntimeArray %uint
+%block = OpTypeStruct %array
+%pblock = OpTypePointer StorageBuffer %block
+%pu = OpTypePointer StorageBuffer %uint
+%a = OpVariable %pblock StorageBuffer
+%b = OpVariable %pblock StorageBuffer
+%c0 = OpConstant %uint 0
+%c3 = OpConstant %uint 3
+%c7 = OpConstant %uint 7
+%main = OpFunction %void None %fn
+%entry = OpLabel
+%gid = OpLoad %v3 %id
+%i = OpCompositeExtract %uint %gid 0
+%pa = OpAccessChain %pu %a %c0 %c0
+%pb = OpAccessChain %pu %b %c0 %i
+%who = OpLoad %uint %pa
+%mine = OpIMul %uint %i %c7
+%got = OpGroupNonUniformBroadcast %uint %c3 %mine %who
+OpStore %pb %got
+OpReturn
+OpFunctionEnd
+)";
+    const TestBuffer a = makeStorage(1), b = makeStorage(32);
+    const Compute compute = makeModule(kText, SPV_ENV_UNIVERSAL_1_5, {storageBuffer(a), storageBuffer(b)});
+    for (const uint32_t who : {0u, 11u, 31u}) {
+        *words(a) = who;
+        run(compute, 1);
+        for (uint32_t n = 0; n < 32; ++n) EXPECT_EQ(words(b)[n], who * 7) << n;
+    }
+}
+
 }  // namespace
 }  // namespace vernier::test

@@ -311,7 +311,7 @@ void main() {
     uint64_t odd = ballotARB(n % 2 == 1);
     v[n] = uvec4(unpackUint2x32(odd).x, readInvocationARB(n, 3), readFirstInvocationARB(n),
                  (anyInvocationARB(n == 40) ? 1 : 0) + (allInvocationsARB(n < 40) ? 2 : 0) +
-                 (allInvocationsEqualARB(n / 32) ? 4 : 0));
+                 (allInvocationsEqualARB(n < 32) ? 4 : 0));
 })",
                     {storageBuffer(out)}),
         1);

@@ -19,9 +19,11 @@ class DescriptorKindsTest : public ComputeTest {
     /// Binding 0: a storage buffer, binding 1: an array of the type. Both are written after the set is bound, and may
     /// name nothing.
     VkDescriptorSetLayout makeArrayLayout(VkDescriptorType type, VkDescriptorBindingFlags flags) {
+        const VkShaderStageFlags stages =
+            type == VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_ALL;
         const std::array<VkDescriptorSetLayoutBinding, 2> bindings{
             {{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_ALL, nullptr},
-             {1, type, kCount, VK_SHADER_STAGE_ALL, nullptr}}};
+             {1, type, kCount, stages, nullptr}}};
         const std::array<VkDescriptorBindingFlags, 2> both{flags, flags};
         auto more = make<VkDescriptorSetLayoutBindingFlagsCreateInfo>(
             VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_BINDING_FLAGS_CREATE_INFO);
