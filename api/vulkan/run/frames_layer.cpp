@@ -1,0 +1,398 @@
+// VK_LAYER_VERNIER_frames: writes what a program presents into files, on whatever driver it runs, for
+// `vernier run --diff`. Loader and layer speak by vk_layer.h.
+//
+//   VERNIER_FRAMES_DIR   the folder: frame-0000.ppm, frame-0001.ppm, ... in the order of presentation
+//   VERNIER_FRAMES       after so many the program is ended, with success
+//
+// Each presentation waits for the device, so that the picture is complete: the layer is for comparing, not for speed.
+#include <vulkan/vk_layer.h>
+#include <vulkan/vulkan_core.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace {
+
+struct SwapchainData {
+    VkFormat format = VK_FORMAT_UNDEFINED;
+    VkExtent2D extent{};
+    std::vector<VkImage> images;
+};
+
+/// Of the next layer, or the driver.
+#define FRAMES_DEVICE_COMMANDS(X)  \
+    X(AllocateCommandBuffers)      \
+    X(AllocateMemory)              \
+    X(BeginCommandBuffer)          \
+    X(BindBufferMemory)            \
+    X(CmdCopyImageToBuffer)        \
+    X(CmdPipelineBarrier)          \
+    X(CreateBuffer)                \
+    X(CreateCommandPool)           \
+    X(CreateSwapchainKHR)          \
+    X(DestroyBuffer)               \
+    X(DestroyCommandPool)          \
+    X(DestroyDevice)               \
+    X(DestroySwapchainKHR)         \
+    X(DeviceWaitIdle)              \
+    X(EndCommandBuffer)            \
+    X(FreeMemory)                  \
+    X(GetBufferMemoryRequirements) \
+    X(GetDeviceQueue)              \
+    X(GetDeviceQueue2)             \
+    X(GetSwapchainImagesKHR)       \
+    X(MapMemory)                   \
+    X(QueuePresentKHR)             \
+    X(QueueSubmit)                 \
+    X(QueueWaitIdle)
+
+struct DeviceData {
+    VkDevice device = VK_NULL_HANDLE;
+    PFN_vkGetDeviceProcAddr next = nullptr;
+    PFN_vkSetDeviceLoaderData setLoaderData = nullptr;
+    VkPhysicalDeviceMemoryProperties memory{};
+#define FRAMES_MEMBER(name) PFN_vk##name name = nullptr;
+    FRAMES_DEVICE_COMMANDS(FRAMES_MEMBER)
+#undef FRAMES_MEMBER
+    std::map<VkQueue, uint32_t> families;
+    std::map<VkSwapchainKHR, SwapchainData> swapchains;
+};
+
+struct InstanceData {
+    VkInstance instance = VK_NULL_HANDLE;
+    PFN_vkGetInstanceProcAddr next = nullptr;
+};
+
+/// Handles belong to others and have no room for what a layer knows: it is kept beside them, by the pointer that all
+/// dispatchable handles of an instance or device start with.
+struct Registry {
+    std::mutex mutex;
+    std::map<void*, InstanceData> instances;
+    std::map<void*, std::unique_ptr<DeviceData>> devices;
+    uint32_t frames = 0;
+};
+
+Registry& registry() {
+    static Registry one;
+    return one;
+}
+
+template <class Handle>
+void* keyOf(Handle handle) {
+    return *reinterpret_cast<void**>(handle);
+}
+
+DeviceData* find(void* key) {
+    const std::lock_guard lock(registry().mutex);
+    const auto found = registry().devices.find(key);
+    return found != registry().devices.end() ? found->second.get() : nullptr;
+}
+
+template <class T>
+T make(VkStructureType type) {
+    T structure{};
+    structure.sType = type;
+    return structure;
+}
+
+/// The link of the loader's that is in the chain of a creation; nullptr: the loader is older than the layer.
+template <class Link>
+Link* findLink(const void* chain, VkStructureType type, VkLayerFunction function) {
+    auto* link = static_cast<Link*>(const_cast<void*>(chain));
+    while (link != nullptr && !(link->sType == type && link->function == function))
+        link = static_cast<Link*>(const_cast<void*>(link->pNext));
+    return link;
+}
+
+// --- Pictures
+
+/// Whether texels have four bytes that are R, G, B or B, G, R and something.
+bool isKnown(VkFormat format) {
+    return format == VK_FORMAT_B8G8R8A8_UNORM || format == VK_FORMAT_B8G8R8A8_SRGB ||
+           format == VK_FORMAT_R8G8B8A8_UNORM || format == VK_FORMAT_R8G8B8A8_SRGB;
+}
+
+void write(const SwapchainData& swapchain, const uint8_t* texels, uint32_t number) {
+    const char* const folder = std::getenv("VERNIER_FRAMES_DIR");
+    char name[32];
+    std::snprintf(name, sizeof name, "/frame-%04u.ppm", number);
+    std::FILE* const file = folder != nullptr ? std::fopen((folder + std::string(name)).c_str(), "wb") : nullptr;
+    if (file == nullptr) return;
+    const bool blueFirst = swapchain.format == VK_FORMAT_B8G8R8A8_UNORM || swapchain.format == VK_FORMAT_B8G8R8A8_SRGB;
+    std::fprintf(file, "P6\n%u %u\n255\n", swapchain.extent.width, swapchain.extent.height);
+    std::vector<uint8_t> row(size_t{swapchain.extent.width} * 3);
+    for (uint32_t y = 0; y < swapchain.extent.height; ++y) {
+        for (uint32_t x = 0; x < swapchain.extent.width; ++x, texels += 4) {
+            for (uint32_t c = 0; c < 3; ++c) row[3 * x + c] = texels[blueFirst ? 2 - c : c];
+        }
+        std::fwrite(row.data(), 1, row.size(), file);
+    }
+    std::fclose(file);
+}
+
+/// Copies the image to memory of the host's and writes it. The device is idle.
+void capture(DeviceData& data, VkQueue queue, const SwapchainData& swapchain, VkImage image, uint32_t number) {
+    const VkDevice device = data.device;
+    auto bufferInfo = make<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
+    bufferInfo.size = VkDeviceSize{4} * swapchain.extent.width * swapchain.extent.height;
+    bufferInfo.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    VkBuffer buffer = VK_NULL_HANDLE;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    VkCommandPool pool = VK_NULL_HANDLE;
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    void* texels = nullptr;
+    const auto run = [&] {
+        if (data.CreateBuffer(device, &bufferInfo, nullptr, &buffer) != VK_SUCCESS) return;
+        VkMemoryRequirements needs{};
+        data.GetBufferMemoryRequirements(device, buffer, &needs);
+        auto allocation = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
+        allocation.allocationSize = needs.size;
+        constexpr VkMemoryPropertyFlags kWanted =
+            VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+        while (allocation.memoryTypeIndex < data.memory.memoryTypeCount &&
+               ((needs.memoryTypeBits >> allocation.memoryTypeIndex & 1) == 0 ||
+                (data.memory.memoryTypes[allocation.memoryTypeIndex].propertyFlags & kWanted) != kWanted))
+            ++allocation.memoryTypeIndex;
+        if (data.AllocateMemory(device, &allocation, nullptr, &memory) != VK_SUCCESS ||
+            data.BindBufferMemory(device, buffer, memory, 0) != VK_SUCCESS)
+            return;
+        auto poolInfo = make<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
+        poolInfo.queueFamilyIndex = data.families[queue];
+        if (data.CreateCommandPool(device, &poolInfo, nullptr, &pool) != VK_SUCCESS) return;
+        auto commandsInfo = make<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
+        commandsInfo.commandPool = pool;
+        commandsInfo.commandBufferCount = 1;
+        if (data.AllocateCommandBuffers(device, &commandsInfo, &commands) != VK_SUCCESS) return;
+        if (data.setLoaderData != nullptr) data.setLoaderData(device, commands);
+        const auto begin = make<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
+        if (data.BeginCommandBuffer(commands, &begin) != VK_SUCCESS) return;
+        auto barrier = make<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
+        barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
+        barrier.dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
+        barrier.oldLayout = VK_IMAGE_LAYOUT_PRESENT_SRC_KHR;
+        barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+        barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+        barrier.image = image;
+        barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+        const auto pass = [&] {
+            data.CmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0,
+                                    0, nullptr, 0, nullptr, 1, &barrier);
+        };
+        pass();
+        VkBufferImageCopy region{};
+        region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+        region.imageExtent = {swapchain.extent.width, swapchain.extent.height, 1};
+        data.CmdCopyImageToBuffer(commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1, &region);
+        std::swap(barrier.oldLayout, barrier.newLayout);
+        std::swap(barrier.srcAccessMask, barrier.dstAccessMask);
+        pass();
+        auto submission = make<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
+        submission.commandBufferCount = 1;
+        submission.pCommandBuffers = &commands;
+        if (data.EndCommandBuffer(commands) != VK_SUCCESS ||
+            data.QueueSubmit(queue, 1, &submission, VK_NULL_HANDLE) != VK_SUCCESS ||
+            data.QueueWaitIdle(queue) != VK_SUCCESS ||
+            data.MapMemory(device, memory, 0, VK_WHOLE_SIZE, 0, &texels) != VK_SUCCESS)
+            return;
+        write(swapchain, static_cast<const uint8_t*>(texels), number);
+    };
+    run();
+    data.DestroyCommandPool(device, pool, nullptr);
+    data.DestroyBuffer(device, buffer, nullptr);
+    data.FreeMemory(device, memory, nullptr);
+}
+
+// --- Commands that the layer takes part in
+
+VKAPI_ATTR VkResult VKAPI_CALL createInstance(const VkInstanceCreateInfo* info, const VkAllocationCallbacks* callbacks,
+                                              VkInstance* instance) {
+    auto* const link = findLink<VkLayerInstanceCreateInfo>(info->pNext, VK_STRUCTURE_TYPE_LOADER_INSTANCE_CREATE_INFO,
+                                                           VK_LAYER_LINK_INFO);
+    if (link == nullptr) return VK_ERROR_INITIALIZATION_FAILED;
+    const PFN_vkGetInstanceProcAddr next = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
+    link->u.pLayerInfo = link->u.pLayerInfo->pNext;
+    const auto create = reinterpret_cast<PFN_vkCreateInstance>(next(VK_NULL_HANDLE, "vkCreateInstance"));
+    const VkResult result = create(info, callbacks, instance);
+    if (result != VK_SUCCESS) return result;
+    const std::lock_guard lock(registry().mutex);
+    registry().instances[keyOf(*instance)] = {*instance, next};
+    return VK_SUCCESS;
+}
+
+VKAPI_ATTR void VKAPI_CALL destroyInstance(VkInstance instance, const VkAllocationCallbacks* callbacks) {
+    if (instance == VK_NULL_HANDLE) return;
+    InstanceData data;
+    {
+        const std::lock_guard lock(registry().mutex);
+        data = registry().instances[keyOf(instance)];
+        registry().instances.erase(keyOf(instance));
+    }
+    reinterpret_cast<PFN_vkDestroyInstance>(data.next(instance, "vkDestroyInstance"))(instance, callbacks);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physicalDevice, const VkDeviceCreateInfo* info,
+                                            const VkAllocationCallbacks* callbacks, VkDevice* device) {
+    auto* const link =
+        findLink<VkLayerDeviceCreateInfo>(info->pNext, VK_STRUCTURE_TYPE_LOADER_DEVICE_CREATE_INFO, VK_LAYER_LINK_INFO);
+    if (link == nullptr) return VK_ERROR_INITIALIZATION_FAILED;
+    auto* const loader = findLink<VkLayerDeviceCreateInfo>(info->pNext, VK_STRUCTURE_TYPE_LOADER_DEVICE_CREATE_INFO,
+                                                           VK_LOADER_DATA_CALLBACK);
+    const VkLayerDeviceLink nexts = *link->u.pLayerInfo;
+    link->u.pLayerInfo = link->u.pLayerInfo->pNext;
+    InstanceData instance;
+    {
+        const std::lock_guard lock(registry().mutex);
+        instance = registry().instances[keyOf(physicalDevice)];
+    }
+    const auto create =
+        reinterpret_cast<PFN_vkCreateDevice>(nexts.pfnNextGetInstanceProcAddr(instance.instance, "vkCreateDevice"));
+    const VkResult result = create(physicalDevice, info, callbacks, device);
+    if (result != VK_SUCCESS) return result;
+    auto data = std::make_unique<DeviceData>();
+    data->device = *device;
+    data->next = nexts.pfnNextGetDeviceProcAddr;
+    if (loader != nullptr) data->setLoaderData = loader->u.pfnSetDeviceLoaderData;
+    const auto memory = reinterpret_cast<PFN_vkGetPhysicalDeviceMemoryProperties>(
+        nexts.pfnNextGetInstanceProcAddr(instance.instance, "vkGetPhysicalDeviceMemoryProperties"));
+    memory(physicalDevice, &data->memory);
+#define FRAMES_LOAD(name) data->name = reinterpret_cast<PFN_vk##name>(data->next(*device, "vk" #name));
+    FRAMES_DEVICE_COMMANDS(FRAMES_LOAD)
+#undef FRAMES_LOAD
+    const std::lock_guard lock(registry().mutex);
+    registry().devices[keyOf(*device)] = std::move(data);
+    return VK_SUCCESS;
+}
+
+VKAPI_ATTR void VKAPI_CALL destroyDevice(VkDevice device, const VkAllocationCallbacks* callbacks) {
+    if (device == VK_NULL_HANDLE) return;
+    std::unique_ptr<DeviceData> data;
+    {
+        const std::lock_guard lock(registry().mutex);
+        data = std::move(registry().devices[keyOf(device)]);
+        registry().devices.erase(keyOf(device));
+    }
+    data->DestroyDevice(device, callbacks);
+}
+
+VKAPI_ATTR void VKAPI_CALL getDeviceQueue(VkDevice device, uint32_t family, uint32_t index, VkQueue* queue) {
+    DeviceData& data = *find(keyOf(device));
+    data.GetDeviceQueue(device, family, index, queue);
+    data.families[*queue] = family;
+}
+
+VKAPI_ATTR void VKAPI_CALL getDeviceQueue2(VkDevice device, const VkDeviceQueueInfo2* info, VkQueue* queue) {
+    DeviceData& data = *find(keyOf(device));
+    data.GetDeviceQueue2(device, info, queue);
+    data.families[*queue] = info->queueFamilyIndex;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL createSwapchain(VkDevice device, const VkSwapchainCreateInfoKHR* info,
+                                               const VkAllocationCallbacks* callbacks, VkSwapchainKHR* swapchain) {
+    DeviceData& data = *find(keyOf(device));
+    VkSwapchainCreateInfoKHR copied = *info;
+    copied.imageUsage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    const VkResult result = data.CreateSwapchainKHR(device, &copied, callbacks, swapchain);
+    if (result != VK_SUCCESS) return result;
+    SwapchainData made{info->imageFormat, info->imageExtent, {}};
+    uint32_t count = 0;
+    (void)data.GetSwapchainImagesKHR(device, *swapchain, &count, nullptr);
+    made.images.resize(count);
+    (void)data.GetSwapchainImagesKHR(device, *swapchain, &count, made.images.data());
+    data.swapchains[*swapchain] = std::move(made);
+    return VK_SUCCESS;
+}
+
+VKAPI_ATTR void VKAPI_CALL destroySwapchain(VkDevice device, VkSwapchainKHR swapchain,
+                                            const VkAllocationCallbacks* callbacks) {
+    DeviceData& data = *find(keyOf(device));
+    data.swapchains.erase(swapchain);
+    data.DestroySwapchainKHR(device, swapchain, callbacks);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL queuePresent(VkQueue queue, const VkPresentInfoKHR* info) {
+    DeviceData& data = *find(keyOf(queue));
+    // All that the semaphores stand for has been submitted, and is done then.
+    data.DeviceWaitIdle(data.device);
+    const char* const limit = std::getenv("VERNIER_FRAMES");
+    const uint32_t most = limit != nullptr ? static_cast<uint32_t>(std::strtoul(limit, nullptr, 10)) : 0;
+    for (uint32_t i = 0; i < info->swapchainCount; ++i) {
+        const SwapchainData& swapchain = data.swapchains[info->pSwapchains[i]];
+        const uint32_t index = info->pImageIndices[i];
+        if (index >= swapchain.images.size() || !isKnown(swapchain.format)) continue;
+        uint32_t number = 0;
+        {
+            const std::lock_guard lock(registry().mutex);
+            number = registry().frames++;
+        }
+        capture(data, queue, swapchain, swapchain.images[index], number);
+        if (most != 0 && number + 1 >= most) std::_Exit(EXIT_SUCCESS);
+    }
+    return data.QueuePresentKHR(queue, info);
+}
+
+struct Intercepted {
+    const char* name;
+    PFN_vkVoidFunction function;
+    bool ofDevice;
+};
+
+PFN_vkVoidFunction intercepted(const char* name, bool devicesOnly);
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getDeviceProcAddr(VkDevice device, const char* name) {
+    if (const PFN_vkVoidFunction own = intercepted(name, true)) return own;
+    return find(keyOf(device))->next(device, name);
+}
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getInstanceProcAddr(VkInstance instance, const char* name) {
+    if (const PFN_vkVoidFunction own = intercepted(name, false)) return own;
+    if (instance == VK_NULL_HANDLE) return nullptr;
+    InstanceData data;
+    {
+        const std::lock_guard lock(registry().mutex);
+        data = registry().instances[keyOf(instance)];
+    }
+    return data.next != nullptr ? data.next(instance, name) : nullptr;
+}
+
+PFN_vkVoidFunction intercepted(const char* name, bool devicesOnly) {
+#define FRAMES_OWN(command, function, ofDevice) \
+    { command, reinterpret_cast<PFN_vkVoidFunction>(&function), ofDevice }
+    static const Intercepted kOwn[] = {
+        FRAMES_OWN("vkCreateInstance", createInstance, false),
+        FRAMES_OWN("vkDestroyInstance", destroyInstance, false),
+        FRAMES_OWN("vkCreateDevice", createDevice, false),
+        FRAMES_OWN("vkGetInstanceProcAddr", getInstanceProcAddr, false),
+        FRAMES_OWN("vkGetDeviceProcAddr", getDeviceProcAddr, true),
+        FRAMES_OWN("vkDestroyDevice", destroyDevice, true),
+        FRAMES_OWN("vkGetDeviceQueue", getDeviceQueue, true),
+        FRAMES_OWN("vkGetDeviceQueue2", getDeviceQueue2, true),
+        FRAMES_OWN("vkCreateSwapchainKHR", createSwapchain, true),
+        FRAMES_OWN("vkDestroySwapchainKHR", destroySwapchain, true),
+        FRAMES_OWN("vkQueuePresentKHR", queuePresent, true),
+    };
+#undef FRAMES_OWN
+    for (const Intercepted& own : kOwn) {
+        if (std::strcmp(own.name, name) == 0 && (own.ofDevice || !devicesOnly)) return own.function;
+    }
+    return nullptr;
+}
+
+}  // namespace
+
+extern "C" VK_LAYER_EXPORT VKAPI_ATTR VkResult VKAPI_CALL
+vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* version);
+
+VkResult vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* version) {
+    if (version == nullptr || version->sType != LAYER_NEGOTIATE_INTERFACE_STRUCT) return VK_ERROR_INITIALIZATION_FAILED;
+    version->loaderLayerInterfaceVersion = 2;
+    version->pfnGetInstanceProcAddr = getInstanceProcAddr;
+    version->pfnGetDeviceProcAddr = getDeviceProcAddr;
+    version->pfnGetPhysicalDeviceProcAddr = nullptr;
+    return VK_SUCCESS;
+}
