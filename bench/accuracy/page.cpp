@@ -45,7 +45,7 @@ std::string figuresTable(const AccuracyRun& run, const MeasuredScene& scene) {
     const AccuracyFigures& base = scene.figures.at(kBaseProfile);
     const std::vector<std::string> front = paretoFront(run, scene);
     std::string html =
-        "<table><tr><th>position<th>ms<th>of standard<th>mean error<th>worst error<th>outside<th>misplaced"
+        "<table class=values><tr><th>position<th>ms<th>of standard<th>mean error<th>worst error<th>outside<th>misplaced"
         "<th>holes<th>doubles<th></tr>";
     for (const AccuracyPosition& position : run.positions) {
         const AccuracyFigures& f = scene.figures.at(position.label);
@@ -68,7 +68,7 @@ std::string figuresTable(const AccuracyRun& run, const MeasuredScene& scene) {
 /// Error maps of the profiles and drivers, and the worst pixel of each magnified.
 std::string maps(const AccuracyRun& run, const MeasuredScene& scene) {
     constexpr uint32_t kSquare = 9, kScale = 16;
-    std::string html = "<div class=pictures>";
+    std::string html = "<div class=row>";
     for (const AccuracyPosition& position : run.positions) {
         const auto image = scene.images.find(position.label);
         if (image == scene.images.end() || !position.axis.empty()) continue;
@@ -85,7 +85,7 @@ std::string maps(const AccuracyRun& run, const MeasuredScene& scene) {
 
 /// Rows: scenes; columns: profiles and drivers; cells: time ratio, worst error, holes and doubles.
 std::string overview(const AccuracyRun& run) {
-    std::string html = "<table><tr><th>scene<th>separates";
+    std::string html = "<table class=values><tr><th>scene<th>separates";
     for (const AccuracyPosition& position : run.positions)
         if (position.axis.empty()) html += "<th>" + escapeHtml(position.label);
     html += "</tr>";
@@ -120,7 +120,7 @@ std::string verdicts(const AccuracyRun& run) {
 /// What the dial does not have, with the figures that decided it.
 std::string removed() {
     std::string html =
-        "<h2>Removed positions</h2><table><tr><th>axis<th>position<th>would save<th>error<th>verdict</tr>";
+        "<h2>Removed positions</h2><table class=values><tr><th>axis<th>position<th>would save<th>error<th>verdict</tr>";
     for (const RemovedPosition& position : removedPositions()) {
         html += "<tr>";
         for (const char* text : {position.axis, position.position, position.saved, position.error, position.verdict})
@@ -134,7 +134,7 @@ std::string removed() {
 
 Result<std::string> accuracyPage(const AccuracyRun& run) {
     std::string body =
-        "<h1>What accuracy costs</h1><p>Each scene is drawn at every position of the dial, with each "
+        "<main><h1>What accuracy costs</h1><p>Each scene is drawn at every position of the dial, with each "
         "axis alone, and by other drivers. Errors are absolute, against the exact values, in units of "
         "1/255 of the full range; pixels whose coverage may legally differ are left out. Misplaced: "
         "pixels that show another surface than the exact geometry, which is not snapped to any grid. "
@@ -153,7 +153,7 @@ Result<std::string> accuracyPage(const AccuracyRun& run) {
         body += paretoSvg(run, scene) + axesSvg(run, scene) + errorBarSvg(run, scene) + figuresTable(run, scene) +
                 maps(run, scene);
     }
-    return page("What accuracy costs", body + removed());
+    return page("What accuracy costs", body + removed() + "</main>");
 }
 
 }  // namespace vernier::bench
