@@ -132,7 +132,7 @@ class Preparer {
         const size_t first = result_.size();
         for (size_t i = 0; i < 3; ++i) {
             const Status status = context_.pipeline.polygonMode == VK_POLYGON_MODE_POINT
-                                      ? addPoint(*vertices[i], source, 1)
+                                      ? addPoint(*vertices[i], source, vertices[i]->pointSize)
                                       : addLine(*vertices[i], *vertices[(i + 1) % 3], source, true);
             if (!status) return status;
         }

@@ -167,7 +167,7 @@ void Assembler::number(const PreparedDraw& draw, const PrimitiveRange& range) {
 }
 
 WindowVertex Assembler::windowVertex(uint32_t v) const {
-    return {vertices_.x[v], vertices_.y[v], vertices_.z[v], vertices_.inverseW[v], attributesOf(v)};
+    return {vertices_.x[v], vertices_.y[v], vertices_.z[v], vertices_.inverseW[v], attributesOf(v), pointSizeOf(v)};
 }
 
 void Assembler::addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, uint32_t v) {
@@ -185,7 +185,7 @@ void Assembler::addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, ui
     const double w = vertices_.clip[3][v];
     const double x = vertices_.clip[0][v] / w * viewport.scale[0] + viewport.offset[0];
     const double y = vertices_.clip[1][v] / w * viewport.scale[1] + viewport.offset[1];
-    setup_.addPoint(draw, info, vertex, x, y, vertices_.pointSize.empty() ? 1.0f : vertices_.pointSize[v]);
+    setup_.addPoint(draw, info, vertex, x, y);
 }
 
 void Assembler::clipAndAdd(const PreparedDraw& draw, const PrimitiveInfo& info, const LocalPrimitive& primitive,
@@ -201,6 +201,7 @@ void Assembler::clipAndAdd(const PreparedDraw& draw, const PrimitiveInfo& info, 
         for (uint32_t k = 0; k < clipCount; ++k)
             vertex.distances[k] = double{vertices_.clipDistances[v * clipCount + k]};
         vertex.attributes = attributesOf(v);
+        vertex.pointSize = pointSizeOf(v);
     }
     const ViewportTransform& viewport = draw.viewport(info.viewport).transform;
     if (clipPolygon(draw, viewport, polygon, chunk)) ++statistics_.clippedPrimitives;
@@ -219,6 +220,7 @@ void Assembler::clipAndAdd(const PreparedDraw& draw, const PrimitiveInfo& info, 
         const ClipVertex& vertex = polygon.vertices[(first + n) % polygon.count];
         if (!projectVertex(draw, viewport, vertex.position, window[n])) return;
         window[n].attributes = vertex.attributes;
+        window[n].pointSize = vertex.pointSize;
         if (vertex.hiddenEdge) hiddenEdges |= 1u << n;
     }
     if (polygon.count == 2 && vertexCount == 2) setup_.addLine(draw, info, window[0], window[1]);

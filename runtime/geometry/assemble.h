@@ -64,6 +64,9 @@ class Assembler {
     void giveOwnVertices(const PreparedDraw& draw, uint32_t vertexCount, Chunk& chunk);
     bool isRouted() const { return !vertices_.layers.empty() || !vertices_.viewports.empty(); }
     uint32_t attributesOf(uint32_t vertex) const { return vertices_.attributesOf(vertex); }
+    float pointSizeOf(uint32_t vertex) const {
+        return vertices_.pointSize.empty() ? 1.0f : vertices_.pointSize[vertex];
+    }
 
     // Reuse of vertices inside a range: by index where these lie close together; else open addressing, twice as many
     // places as a range can have vertices.

@@ -68,6 +68,8 @@ ClipVertex cutEdge(const PreparedDraw& draw, const ClipPlane& plane, const ClipV
     // Linear on the screen: the parameter of the projected segment (specification, "Clipping Shader
     // Outputs").
     const double linear = v.position[3] != 0 ? t * outside.position[3] / v.position[3] : t;
+    v.pointSize =
+        static_cast<float>(double{inside.pointSize} + t * (double{outside.pointSize} - double{inside.pointSize}));
     v.attributes = static_cast<uint32_t>(chunk.attributes.size());
     const uint32_t interpolated = plan.smoothCount + plan.linearCount;
     chunk.attributes.resize(chunk.attributes.size() + plan.varyings.size());

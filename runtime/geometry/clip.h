@@ -14,6 +14,7 @@ struct ClipVertex {
     std::array<double, 4> position;  // clip coordinates
     std::array<double, kMaxClipDistances> distances;
     uint32_t attributes;      // first float in Chunk::attributes
+    float pointSize = 1;      // of polygons drawn as points
     bool hiddenEdge = false;  // the edge to the next vertex lies on a plane of the view volume
 };
 

@@ -93,7 +93,7 @@ void PrimitiveSetup::addPolygon(const PreparedDraw& draw, const PrimitiveInfo& i
             return;
         case VK_POLYGON_MODE_POINT: {
             const double subUnits = static_cast<double>(1u << draw.subPixelBits);
-            for (const WindowVertex& v : polygon) addSquare(draw, info, style, v, v.x / subUnits, v.y / subUnits, 1);
+            for (const WindowVertex& v : polygon) addSquare(draw, info, style, v, v.x / subUnits, v.y / subUnits);
             return;
         }
         default:
@@ -157,10 +157,10 @@ void PrimitiveSetup::addLine(const PreparedDraw& draw, const PrimitiveInfo& info
 }
 
 void PrimitiveSetup::addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& vertex, double x,
-                              double y, float size) {
+                              double y) {
     Style style;
     style.area = &draw.viewport(info.viewport).area;
-    addSquare(draw, info, style, vertex, x, y, size);
+    addSquare(draw, info, style, vertex, x, y);
 }
 
 void PrimitiveSetup::restartStipple() {
@@ -186,7 +186,8 @@ void PrimitiveSetup::addSegment(const PreparedDraw& draw, const PrimitiveInfo& i
 }
 
 void PrimitiveSetup::addSquare(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style,
-                               const WindowVertex& vertex, double x, double y, float size) {
+                               const WindowVertex& vertex, double x, double y) {
+    const float size = vertex.pointSize;
     const double clamped = size >= kMinPointSize ? std::min(size, kMaxPointSize) : kMinPointSize;  // NaN: the least
     const std::array<float, 3> point{static_cast<float>(x), static_cast<float>(y), static_cast<float>(1 / clamped)};
     if (draw.packsSmall && addSmallSquare(draw, info, style, vertex, x, y, clamped)) return;

@@ -35,6 +35,7 @@ struct WindowVertex {
     float z = 0;
     double inverseW = 1;
     uint32_t attributes = 0;
+    float pointSize = 1;  // as the vertex program gives it
 };
 
 /// What all triangles of one primitive of a draw have in common.
@@ -64,8 +65,7 @@ class PrimitiveSetup {
     /// Line stipple starts anew: before every segment of a list, and before a strip.
     void restartStipple();
     /// A square around a centre in pixels, not snapped.
-    void addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& vertex, double x, double y,
-                  float size);
+    void addPoint(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& vertex, double x, double y);
     /// Sorts what was added by tile.
     void finish();
 
@@ -83,7 +83,7 @@ class PrimitiveSetup {
     void addSegment(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style, const WindowVertex& a,
                     const WindowVertex& b);
     void addSquare(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style, const WindowVertex& vertex,
-                   double x, double y, float size);
+                   double x, double y);
     bool addSmallSquare(const PreparedDraw& draw, const PrimitiveInfo& info, const Style& style,
                         const WindowVertex& vertex, double x, double y, double size);
     Primitive& addPrimitive(const PrimitiveInfo& info, const Style& style,

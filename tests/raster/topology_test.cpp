@@ -194,6 +194,23 @@ TEST_F(Topology, PolygonModes) {
     EXPECT_EQ(covered(*points), 3);
 }
 
+// "The size of a point" is the vertex program's for the corners of polygons, too, and between them where one is cut.
+TEST_F(Topology, PolygonsAsPointsOfTheirSizes) {
+    const auto corner = [](double x, double y, float size, float z = 0.5f) {
+        return at(x, y, kSize, kSize, {1, 1, 1, size}, z);
+    };
+    const auto asPoints = [](GraphicsState& s) { s.polygonMode = VK_POLYGON_MODE_POINT; };
+    const auto points =
+        draw(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST, {corner(6.5, 6.5, 5), corner(24.5, 6.5, 1), corner(6.5, 24.5, 3)}, {},
+             asPoints, "color_frag", 1, "point_vert");
+    EXPECT_EQ(covered(*points), 25 + 1 + 9);
+    // The first corner lies before the near plane: the middles of its edges take its place.
+    const auto cut = draw(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
+                          {corner(4.5, 4.5, 5, -0.5f), corner(24.5, 4.5, 1), corner(4.5, 24.5, 1)}, {}, asPoints,
+                          "color_frag", 1, "point_vert");
+    EXPECT_EQ(covered(*cut), 9 + 9 + 1 + 1);
+}
+
 TEST_F(Topology, RefusedStates) {
     GraphicsState state = plainState(kWide);
     PipelineOptions options;
