@@ -160,7 +160,7 @@ void Views::draw(ModelRenderer& model, const ModelLook& look, const Planes& plan
             plain.explain = false;
             drawPicture(model, look, exact, plain, reference_);
             show(view == View::kSplit ? split_ : error_, &seen_, &reference_);
-            judgeErrors();
+            if (view == View::kError) judgeErrors();
             break;
         case View::kWireframe:
             app_.beginPass({app_.color()}, app_.depth(), kBackground);
