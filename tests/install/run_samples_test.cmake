@@ -1,0 +1,30 @@
+# Installs the build into a fresh prefix and builds the samples against it, as a CMake project of their own and with make. What
+# they draw is what the tree's samples draw.
+include(${CMAKE_CURRENT_LIST_DIR}/must.cmake)
+
+file(REMOVE_RECURSE ${WORK})
+set(ENV{CC} ${CC})
+set(ENV{CXX} ${CXX})
+must(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
+file(GLOB_RECURSE pc_files ${WORK}/prefix/vernier.pc)
+list(GET pc_files 0 pc_file)
+get_filename_component(pc_dir ${pc_file} DIRECTORY)
+set(ENV{PKG_CONFIG_PATH} ${pc_dir})
+
+must(${CMAKE_COMMAND} -S ${SAMPLES} -B ${WORK}/cmake -DCMAKE_PREFIX_PATH=${WORK}/prefix)
+must(${CMAKE_COMMAND} --build ${WORK}/cmake --parallel 2)
+must(make -C ${SAMPLES} --jobs=2 BUILD=${WORK}/make)
+
+file(STRINGS ${SAMPLES}/gallery.txt lines REGEX "^(hello_triangle|gears|walker_maze|scene_deferred|viewer|viewer_error) ")
+list(LENGTH lines count)
+if(NOT count EQUAL 6)
+    message(FATAL_ERROR "${count} of the six pictures are in the gallery")
+endif()
+foreach(line IN LISTS lines)
+    separate_arguments(words UNIX_COMMAND "${line}")
+    list(POP_FRONT words name hash program)
+    foreach(way cmake make)
+        must(${WORK}/${way}/${program} --headless ${WORK}/${name}_${way}.png ${words})
+        must(${TOOL} check ${WORK}/${name}_${way}.png ${hash})
+    endforeach()
+endforeach()
