@@ -16,22 +16,23 @@ std::string numbered(const std::string& folder, const char* pattern, int number)
 
 }  // namespace
 
-std::string exportScreenshot(App& app, const std::string& folder, const std::function<void()>& draw) {
+Exported exportScreenshot(App& app, const std::string& folder, const std::function<void()>& draw) {
     int number = 1;
     std::error_code ignored;
     while (std::filesystem::exists(numbered(folder, "viewer-%04d.png", number), ignored) && number < 9999) ++number;
     const std::string path = numbered(folder, "viewer-%04d.png", number);
     draw();
-    return path + (app.save(path) ? " written" : " could not be written");
+    const bool written = app.save(path);
+    return {written, path + (written ? " written" : " could not be written")};
 }
 
-std::string exportTurntable(App& app, const std::string& folder, int count, const std::function<void(double)>& draw) {
+Exported exportTurntable(App& app, const std::string& folder, int count, const std::function<void(double)>& draw) {
     for (int i = 0; i < count; ++i) {
         draw(2 * kPi * i / count);
         const std::string path = numbered(folder, "turntable-%04d.png", i);
-        if (!app.save(path)) return path + " could not be written";
+        if (!app.save(path)) return {false, path + " could not be written"};
     }
-    return std::to_string(count) + " pictures written to " + (folder.empty() ? "the working folder" : folder);
+    return {true, std::to_string(count) + " pictures written to " + (folder.empty() ? "the working folder" : folder)};
 }
 
 }  // namespace samples

@@ -8,11 +8,15 @@
 
 namespace samples {
 
-/// The first of folder/viewer-0001.png, viewer-0002.png, ... that is free. Returns what came of it, in words.
-std::string exportScreenshot(App& app, const std::string& folder, const std::function<void()>& draw);
+struct Exported {
+    bool written;
+    std::string message;  // what came of it, in words
+};
 
-/// folder/turntable-0000.png, ...: `count` pictures; `draw` gets the angle in radians, once round. Returns what came of
-/// it.
-std::string exportTurntable(App& app, const std::string& folder, int count, const std::function<void(double)>& draw);
+/// The first of folder/viewer-0001.png, viewer-0002.png, ... that is free.
+Exported exportScreenshot(App& app, const std::string& folder, const std::function<void()>& draw);
+
+/// folder/turntable-0000.png, ...: `count` pictures; `draw` gets the angle in radians, once round.
+Exported exportTurntable(App& app, const std::string& folder, int count, const std::function<void(double)>& draw);
 
 }  // namespace samples

@@ -73,15 +73,15 @@ class Viewer {
         const samples::UiActions clicked = drawUi(frame, panel);
         const std::string& folder = app_.options().out;
         if (actions.screenshot || clicked.screenshot)
-            message_ = samples::exportScreenshot(app_, folder, [&] { drawClean(); });
-        if (actions.turntable || clicked.turntable) message_ = turntable(36);
+            message_ = samples::exportScreenshot(app_, folder, [&] { drawClean(); }).message;
+        if (actions.turntable || clicked.turntable) message_ = turntable(36).message;
     }
 
     /// Once round, in so many pictures.
-    std::string turntable(int count) {
+    samples::Exported turntable(int count) {
         needUi(1);
         double at = 0;
-        const std::string result = samples::exportTurntable(app_, app_.options().out, count, [&](double angle) {
+        const samples::Exported result = samples::exportTurntable(app_, app_.options().out, count, [&](double angle) {
             rig_.turn(angle - at);
             at = angle;
             drawClean();
@@ -170,8 +170,9 @@ int main(int argc, char** argv) {
     samples::App app(options);
     Viewer viewer(app, settings, std::move(scene));
     if (settings.turntable > 0) {
-        std::printf("%s\n", viewer.turntable(settings.turntable).c_str());
-        return 0;
+        const samples::Exported result = viewer.turntable(settings.turntable);
+        std::fprintf(result.written ? stdout : stderr, "%s\n", result.message.c_str());
+        return result.written ? 0 : 1;
     }
     const int status = app.run([&](const samples::Frame& frame) { viewer.frame(frame); });
     if (settings.view.explain && !app.hasWindow()) std::fputs(viewer.report().explanation.c_str(), stdout);

@@ -81,9 +81,9 @@ class SampleWindow : public ::testing::Test {
     static bool same(const ScreenPicture& a, const ScreenPicture& b) {
         return a.width == b.width && a.height == b.height && a.pixels == b.pixels;
     }
-    /// Looks at the window until it is as wanted, at most ten seconds.
+    /// Looks at the window until it is as wanted, at most half a minute.
     bool becomes(XScreen::WindowId window, const std::function<bool(const ScreenPicture&)>& wanted) {
-        for (const auto end = Clock::now() + std::chrono::seconds(10); Clock::now() < end;) {
+        for (const auto end = Clock::now() + std::chrono::seconds(30); Clock::now() < end;) {
             seen = screen.look(window);
             if (!seen.pixels.empty() && wanted(seen)) return true;
             std::this_thread::sleep_for(std::chrono::milliseconds(50));

@@ -12,7 +12,7 @@ namespace samples::test {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr auto kPatience = std::chrono::seconds(10);
+constexpr auto kPatience = std::chrono::seconds(30);
 
 void rest() {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));

@@ -23,14 +23,16 @@ class XScreen {
     bool open() const { return display_ != nullptr; }
 
     using WindowId = unsigned long;
-    /// The window whose title starts so, once it is there and can be seen; 0 when it does not come within ten seconds.
+    /// The window whose title starts so, once it is there and can be seen; 0 when it does not come within half a
+    /// minute.
     WindowId find(const std::string& title);
     ScreenPicture look(WindowId window);
     /// Down and up. `key` as X names keys: "v", "F1", "Left", "Escape".
     void press(WindowId window, const std::string& key);
     void hold(WindowId window, const std::string& key, bool down);
     void resize(WindowId window, uint32_t width, uint32_t height);
-    /// Lets a file fall on a window, by the protocol XDND 5. False when the window does not take it within ten seconds.
+    /// Lets a file fall on a window, by the protocol XDND 5. False when the window does not take it within half a
+    /// minute.
     bool drop(WindowId window, const std::string& path);
 
   private:
