@@ -2,6 +2,7 @@
 //   vernier-viewer [MODEL.obj|.gltf|.glb] [--profile draft] [--view error] [--headless OUT.png]
 // Everything that keys and the panel set is a switch, too: --help. Models can be dropped on the window. The panel is
 // Dear ImGui's, drawn by Vernier (imgui_vernier.h).
+#include <cmath>
 #include <cstdio>
 
 #include "samples/common/trigonometry.h"
@@ -37,7 +38,7 @@ std::vector<samples::Option> optionsOf(Settings& settings) {
 
 constexpr const char* kOtherKeys =
     "F1  these keys\nF11  turntable: 36 pictures to --out or here\nF12  screenshot, to there, too\n"
-    "arrows, drag, wheel  camera\nescape  ends\n";
+    "arrows, drag, wheel  camera; dragging the line of the split screen moves it\nescape  ends\n";
 
 class Viewer {
   public:
@@ -67,6 +68,7 @@ class Viewer {
             input.dragging = false;
             input.wheel = 0;
         }
+        if (moveDivide(input)) input.dragging = false;
         rig_.update(input, frame.elapsed, settings_.camera.fly != 0);
         const bool panel = app_.hasWindow() ? !settings_.hidden : settings_.panel;
         drawView();
@@ -112,6 +114,18 @@ class Viewer {
         }
     }
 
+    /// The line of the split screen can be taken hold of. Whether it is.
+    bool moveDivide(const samples::Input& input) {
+        const double width = app_.width(), line = settings_.view.divide * width;
+        const bool over = std::abs(double{input.mouse.x - input.mouseMove.x} - line) < double{ui_->unit()};
+        const bool begins = input.dragging && !dragged_;
+        dragged_ = input.dragging;
+        if (begins) holdsDivide_ = settings_.view.kind() == samples::View::kSplit && over;
+        holdsDivide_ = holdsDivide_ && input.dragging;
+        if (holdsDivide_) settings_.view.divide = glm::clamp(double{input.mouse.x} / width, 0.0, 1.0);
+        return holdsDivide_;
+    }
+
     VkExtent2D size() const { return {app_.width(), app_.height()}; }
 
     void drawView() {
@@ -148,7 +162,7 @@ class Viewer {
     float uiScale_ = 0;
     samples::FrameTimes times_;
     std::string keys_, message_;
-    bool help_ = false;
+    bool help_ = false, dragged_ = false, holdsDivide_ = false;
 };
 
 }  // namespace

@@ -169,6 +169,8 @@ TEST_F(SampleWindow, Viewer) {
     EXPECT_TRUE(shows(window, with({"--profile", "draft"})));
     screen.press(window, "v");
     EXPECT_TRUE(shows(window, with({"--profile", "draft", "--view", "split"})));
+    screen.drag(window, 240, 180, 120, 190);
+    EXPECT_TRUE(shows(window, with({"--profile", "draft", "--view", "split", "--divide", "0.25"})));
     screen.press(window, "v");
     EXPECT_TRUE(shows(window, with({"--profile", "draft", "--view", "error"})));
     screen.press(window, "g");

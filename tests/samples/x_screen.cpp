@@ -106,6 +106,26 @@ void XScreen::press(WindowId window, const std::string& key) {
     rest();
 }
 
+void XScreen::drag(WindowId window, int fromX, int fromY, int toX, int toY) {
+    const auto move = [&](int x, int y) {
+        int rootX = 0, rootY = 0;
+        Window child = 0;
+        XTranslateCoordinates(of(display_), window, DefaultRootWindow(of(display_)), x, y, &rootX, &rootY, &child);
+        XTestFakeMotionEvent(of(display_), DefaultScreen(of(display_)), rootX, rootY, CurrentTime);
+        XSync(of(display_), False);
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));  // some frames see it there
+    };
+    const auto button = [&](bool down) {
+        XTestFakeButtonEvent(of(display_), 1, down ? True : False, CurrentTime);
+        XSync(of(display_), False);
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    };
+    move(fromX, fromY);
+    button(true);
+    move(toX, toY);
+    button(false);
+}
+
 void XScreen::resize(WindowId window, uint32_t width, uint32_t height) {
     XResizeWindow(of(display_), window, width, height);
     XSync(of(display_), False);

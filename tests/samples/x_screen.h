@@ -30,6 +30,8 @@ class XScreen {
     /// Down and up. `key` as X names keys: "v", "F1", "Left", "Escape".
     void press(WindowId window, const std::string& key);
     void hold(WindowId window, const std::string& key, bool down);
+    /// Moves the mouse to one place of the window, presses the left button, moves on to another, and lets go.
+    void drag(WindowId window, int fromX, int fromY, int toX, int toY);
     void resize(WindowId window, uint32_t width, uint32_t height);
     /// Lets a file fall on a window, by the protocol XDND 5. False when the window does not take it within half a
     /// minute.
