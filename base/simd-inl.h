@@ -72,6 +72,25 @@ HWY_INLINE V fusedMulAdd(D d, V a, V b, V c) {
 #endif
 }
 
+/// The lesser and the greater of two floats: b if one of them is NaN, or both are zero. So mean minimum and maximum
+/// instructions of x86; those of NEON prefer numbers to NaN, and -0 to 0. Highway's Min and Max are for integers only.
+template <class V>
+HWY_INLINE V minOrSecond(V a, V b) {
+#if HWY_TARGET == HWY_NEON
+    return hn::IfThenElse(hn::Lt(a, b), a, b);
+#else
+    return hn::Min(a, b);
+#endif
+}
+template <class V>
+HWY_INLINE V maxOrSecond(V a, V b) {
+#if HWY_TARGET == HWY_NEON
+    return hn::IfThenElse(hn::Gt(a, b), a, b);
+#else
+    return hn::Max(a, b);
+#endif
+}
+
 /// Towards zero. Values that do not fit, and NaN, become INT32_MIN: without the corrections that ConvertTo makes.
 HWY_INLINE hn::Vec<hn::ScalableTag<int32_t>> truncateInRange(hn::Vec<hn::ScalableTag<float>> x) {
     using V = hn::Vec<hn::ScalableTag<int32_t>>;
@@ -79,8 +98,13 @@ HWY_INLINE hn::Vec<hn::ScalableTag<int32_t>> truncateInRange(hn::Vec<hn::Scalabl
     return V{_mm512_cvttps_epi32(x.raw)};
 #elif HWY_TARGET == HWY_AVX2
     return V{_mm256_cvttps_epi32(x.raw)};
-#else
+#elif HWY_TARGET == HWY_SSE4
     return V{_mm_cvttps_epi32(x.raw)};
+#else
+    const hn::ScalableTag<float> d;
+    const hn::ScalableTag<int32_t> di;
+    const V whole = hn::ConvertTo(di, x);
+    return hn::IfThenElse(hn::RebindMask(di, hn::Lt(x, hn::Set(d, 0x1p31f))), whole, hn::Set(di, INT32_MIN));
 #endif
 }
 

@@ -6,11 +6,20 @@
 namespace vernier {
 namespace {
 
-constexpr std::array<std::string_view, 3> kIsaNames{"sse4", "avx2", "avx512"};
+#define VERNIER_ISA_NAME(name, target, ...) #name,
+constexpr std::array kIsaNames{VERNIER_ISAS(VERNIER_ISA_NAME)};
+#undef VERNIER_ISA_NAME
+#define VERNIER_ISA_NAME(name, target, ...) ", " #name
+constexpr std::string_view kAllNames = VERNIER_ISAS(VERNIER_ISA_NAME);
+#undef VERNIER_ISA_NAME
+#define VERNIER_ISA_VALUE(name, target, ...) Isa::name,
+constexpr std::array kIsas{VERNIER_ISAS(VERNIER_ISA_VALUE)};
+#undef VERNIER_ISA_VALUE
 
 }  // namespace
 
 Isa bestIsa() {
+#if defined(__x86_64__)
     // The sets Highway's targets of the same name are compiled with.
     const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
                       __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("bmi");
@@ -18,10 +27,17 @@ Isa bestIsa() {
                         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
                         __builtin_cpu_supports("avx512cd");
     return avx512 ? Isa::avx512 : avx2 ? Isa::avx2 : Isa::sse4;
+#else
+    return kHighestIsa;
+#endif
 }
 
 Isa bestIsaUpTo(Isa limit) {
     return std::min(bestIsa(), limit);
+}
+
+std::span<const Isa> availableIsas() {
+    return std::span(kIsas).first(static_cast<size_t>(bestIsa()) + 1);
 }
 
 std::string_view isaName(Isa isa) {
@@ -32,6 +48,10 @@ std::optional<Isa> isaFromName(std::string_view name) {
     const auto found = std::find(kIsaNames.begin(), kIsaNames.end(), name);
     if (found == kIsaNames.end()) return std::nullopt;
     return static_cast<Isa>(found - kIsaNames.begin());
+}
+
+std::string_view isaNames() {
+    return kAllNames.substr(2);
 }
 
 }  // namespace vernier

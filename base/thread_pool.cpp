@@ -1,21 +1,17 @@
 #include "base/thread_pool.h"
 
-#include <immintrin.h>
-
 #include <optional>
 
 namespace vernier {
 namespace {
 
-constexpr uint32_t kDefaultMxcsr = 0x1F80;  // all exceptions masked, round to nearest, DAZ and FTZ off
-
 /// Looks at `ready` for about as long as sleeping and waking up would take; returns whether it came true.
 template <class Ready>
 bool awaitBriefly(const Ready& ready) {
-    constexpr int kLooks = 1000;  // of 20 to 70 nanoseconds
+    constexpr int kLooks = 1000;
     for (int n = 0; n < kLooks; ++n) {
         if (ready()) return true;
-        _mm_pause();
+        pauseBriefly();
     }
     return false;
 }
@@ -45,11 +41,11 @@ thread_local Place currentPlace;
 
 }  // namespace
 
-FloatControlScope::FloatControlScope() : saved_(_mm_getcsr()) {
-    _mm_setcsr(kDefaultMxcsr);
+FloatControlScope::FloatControlScope() : saved_(floatControl()) {
+    setFloatControl(kDefaultFloatControl);
 }
 FloatControlScope::~FloatControlScope() {
-    _mm_setcsr(saved_);
+    setFloatControl(saved_);
 }
 
 /// Makes the thread a worker of the pool: the one that it is already, or else worker 0 as soon as nobody is.

@@ -11,6 +11,8 @@
 #include <thread>
 #include <vector>
 
+#include "base/processor.h"
+
 namespace vernier {
 
 class ThreadPool;
@@ -98,8 +100,8 @@ class ThreadPool {
     std::vector<std::thread> workers_;
 };
 
-/// Sets the SSE control word to round-to-nearest with denormals kept and exceptions masked, and restores the caller's
-/// on destruction: an application's own setting must not change a pixel.
+/// Sets the floating-point control word to round-to-nearest with denormals kept and exceptions masked, and restores the
+/// caller's on destruction: an application's own setting must not change a pixel.
 class FloatControlScope {
   public:
     FloatControlScope();
@@ -108,7 +110,7 @@ class FloatControlScope {
     FloatControlScope& operator=(const FloatControlScope&) = delete;
 
   private:
-    uint32_t saved_;
+    FloatControl saved_;
 };
 
 }  // namespace vernier

@@ -68,7 +68,7 @@ Result<ir::Program> loadShader(const ShaderSource& source);
 Status checkModule(std::span<const uint32_t> words);
 
 struct BatchOptions {
-    Isa isa = Isa::sse4;
+    Isa isa = kLowestIsa;
     MathTier tier = MathTier::standard;
     uint32_t lanes = 0;  // at most so many (16, 32, 64 or 128); the instruction set may allow fewer. 0: all it allows
     uint32_t backEdges = 1u << 24;  // budget per lane and run: a loop that goes on for longer loses the device

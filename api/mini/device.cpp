@@ -44,7 +44,9 @@ VnResult createDevice(const VnDeviceDesc& desc, VnDevice* device) {
     runtime.skips = *skips;
     if (desc.maxIsa) {
         const auto isa = isaFromName(desc.maxIsa);
-        if (!isa) return report(desc, VN_ERROR_INVALID_ARGUMENT, std::string("maxIsa is \"") + desc.maxIsa + "\"");
+        if (!isa)
+            return report(desc, VN_ERROR_INVALID_ARGUMENT,
+                          std::string("maxIsa is \"") + desc.maxIsa + "\"; allowed: " + std::string(isaNames()));
         runtime.maxIsa = *isa;
     }
     Result<std::unique_ptr<Device>> created = Device::create(runtime);

@@ -16,8 +16,8 @@ std::string_view variable(const char* name) {
     return text != nullptr ? text : "";
 }
 
-Error badValue(const char* name, std::string_view value, const char* allowed) {
-    return invalidArgument(std::string(name) + " is \"" + std::string(value) + "\"; allowed: " + allowed);
+Error badValue(const char* name, std::string_view value, std::string_view allowed) {
+    return invalidArgument(std::string(name) + " is \"" + std::string(value) + "\"; allowed: " + std::string(allowed));
 }
 
 /// "VERNIER_AXIS_SUBPIXEL" of the axis "subpixel".
@@ -100,7 +100,7 @@ Result<Configuration> readConfiguration() {
     }
     if (const auto text = variable("VERNIER_ISA"); !text.empty()) {
         const auto isa = isaFromName(text);
-        if (!isa) return badValue("VERNIER_ISA", text, "sse4, avx2, avx512");
+        if (!isa) return badValue("VERNIER_ISA", text, isaNames());
         result.maxIsa = *isa;
     }
     Result<Skips> skips = skipsFrom(variable("VERNIER_SKIP"));

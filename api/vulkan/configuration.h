@@ -44,7 +44,7 @@ struct Configuration {
     std::vector<DeviceAccuracy> accuracies;
     VkPhysicalDeviceType deviceType = VK_PHYSICAL_DEVICE_TYPE_CPU;
     uint32_t threads = 0;
-    Isa maxIsa = Isa::avx512;
+    Isa maxIsa = kHighestIsa;
     Skips skips;
     std::string explain;
     uint32_t refreshRate = 60;  // of swapchains, in Hz; 0: they do not wait

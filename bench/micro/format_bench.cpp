@@ -39,8 +39,7 @@ void convert(benchmark::State& state, VkFormat format, bool pack, Isa isa) {
 int main(int argc, char** argv) {
     using namespace vernier;
     benchmark::Initialize(&argc, argv);
-    for (const Isa isa : {Isa::sse4, Isa::avx2, Isa::avx512}) {
-        if (bestIsaUpTo(isa) != isa) continue;
+    for (const Isa isa : availableIsas()) {
         for (const VkFormat format :
              {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_R5G6B5_UNORM_PACK16,
               VK_FORMAT_A2B10G10R10_UNORM_PACK32, VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT,

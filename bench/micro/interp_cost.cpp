@@ -98,7 +98,6 @@ namespace vernier::bench {
 namespace {
 
 constexpr uint32_t kWidths[] = {16, 32, 64};
-constexpr Isa kIsas[] = {Isa::sse4, Isa::avx2, Isa::avx512};
 
 /// The least time of a call, in seconds: the rest is somebody else's.
 double secondsOf(const std::function<void()>& call) {
@@ -229,7 +228,7 @@ ir::Program programOf(const OperationCase& c) {
 
 void printOperations() {
     std::printf("Nanoseconds per operation and lane\n%-24s", "");
-    for (const Isa isa : kIsas) {
+    for (const Isa isa : availableIsas()) {
         for (const uint32_t width : kWidths) {
             const std::string name = std::string(isaName(isa)) + " x" + std::to_string(width);
             std::printf(" %11s", name.c_str());
@@ -240,12 +239,8 @@ void printOperations() {
     for (const OperationCase& c : kOperations) {
         std::printf("%-24s", c.name);
         const ir::Program program = programOf(c);
-        for (const Isa isa : kIsas) {
+        for (const Isa isa : availableIsas()) {
             for (const uint32_t width : kWidths) {
-                if (isa > bestIsa()) {
-                    std::printf(" %11s", "-");
-                    continue;
-                }
                 Running running(program, isa, width, uniforms);
                 if (running.lanes() != width) {
                     std::printf(" %11s", "-");
@@ -329,14 +324,14 @@ ir::Program programOf(const ProgramCase& c) {
 
 void printPrograms(bool listings) {
     std::printf("\nNanoseconds per lane: interpreter, native loop, ratio\n%-24s", "");
-    for (const Isa isa : kIsas) std::printf(" %26s", std::string(isaName(isa)).c_str());
+    for (const Isa isa : availableIsas()) std::printf(" %26s", std::string(isaName(isa)).c_str());
     std::printf("\n");
     std::vector<float> uniforms(4 * kBodies);
     for (size_t k = 0; k < uniforms.size(); ++k) uniforms[k] = Running::value(3, static_cast<uint32_t>(k));
     for (const ProgramCase& c : kPrograms) {
         std::printf("%-24s", c.name);
         const ir::Program program = programOf(c);
-        for (const Isa isa : kIsas) {
+        for (const Isa isa : availableIsas()) {
             if (isa > bestIsa()) {
                 std::printf(" %26s", "-");
                 continue;

@@ -100,8 +100,7 @@ void registerAll() {
         {"repeat", VK_SAMPLER_ADDRESS_MODE_REPEAT},
         {"clamp", VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE},
         {"mirror", VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT}};
-    for (const Isa isa : {Isa::sse4, Isa::avx2, Isa::avx512}) {
-        if (bestIsaUpTo(isa) != isa) continue;
+    for (const Isa isa : availableIsas()) {
         for (const Kind& kind : kKinds) {
             for (const auto& [filterName, filter] : kFilters) {
                 for (const auto& [modeName, mode] : kModes) {

@@ -12,7 +12,7 @@ namespace vernier::conformance {
 struct ApiOptions {
     VnProfile profile = VN_PROFILE_DEFAULT;
     uint32_t threads = 0;          // 0: one per usable CPU
-    const char* maxIsa = nullptr;  // "sse4", "avx2", "avx512"; nullptr: the best of this CPU
+    const char* maxIsa = nullptr;  // as in VnDeviceDesc; nullptr: the best of this CPU
     const char* axes = nullptr;    // VnDeviceDesc::axes
     const char* skips = nullptr;   // VnDeviceDesc::skips
 };

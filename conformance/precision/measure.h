@@ -32,7 +32,7 @@ struct MeasureOptions {
     uint64_t stride = 61;        // of functions of one operand: every stride-th float; 1 = all 2^32
     uint64_t samples = 1 << 18;  // of the others
     uint32_t threads = 2;
-    Isa isa = Isa::sse4;
+    Isa isa = kLowestIsa;
     VulkanRunner* driver = nullptr;  // measured beside, over `driverSamples` calls
     uint64_t driverSamples = 1 << 20;
 };

@@ -34,7 +34,7 @@ struct SubmissionReport {
 
 struct DeviceDesc {
     uint32_t threads = 0;  // 0: as many as there are usable CPUs
-    Isa maxIsa = Isa::avx512;
+    Isa maxIsa = kHighestIsa;
     Accuracy accuracy;
     Skips skips;
     HostAllocator allocator;

@@ -56,10 +56,9 @@ HWY_INLINE VF divideExact(VF n, VF d, VF reciprocal) {
 #endif
 }
 
-/// NaN gives `low`: on x86, a maximum with a NaN is its second operand. So it is of equal operands, such as zeros of
-/// both signs.
+/// NaN gives `low`, and so does what equals it, such as a zero of the other sign.
 HWY_INLINE VF clampOrLowV(VF x, VF low, VF high) {
-    return hn::Min(hn::Max(x, low), high);
+    return minOrSecond(maxOrSecond(x, low), high);
 }
 HWY_INLINE VF zeroIfNaN(VF x) {
     return hn::IfThenElseZero(hn::Eq(x, x), x);
@@ -102,7 +101,7 @@ HWY_INLINE VU encodeUnormV(VF x, int bits) {
 HWY_INLINE VF decodeSnormV(VU code, int bits) {
     const auto max = static_cast<float>(lowBits(static_cast<uint32_t>(bits - 1)));
     const VF value = hn::ConvertTo(F32(), signExtendV(code, bits));
-    return hn::Max(divideExact(value, splatFloat(max), splatFloat(1.0f / max)), splatFloat(-1.0f));
+    return maxOrSecond(divideExact(value, splatFloat(max), splatFloat(1.0f / max)), splatFloat(-1.0f));
 }
 
 HWY_INLINE VU encodeSnormV(VF x, int bits) {
@@ -147,8 +146,10 @@ HWY_INLINE VF decodeHalfV(VU code) {
     const auto halves = hn::DemoteTo(hn::Rebind<uint16_t, I32>(), hn::BitCast(I32(), code));
 #if HWY_TARGET == HWY_AVX3
     const VF value{_mm512_cvtph_ps(halves.raw)};
-#else
+#elif HWY_TARGET == HWY_AVX2
     const VF value{_mm256_cvtph_ps(halves.raw)};
+#else
+    const VF value{vcvt_f32_f16(vreinterpret_f16_u16(halves.raw))};
 #endif
     if (HWY_LIKELY(hn::AllTrue(F32(), hn::Eq(value, value)))) return value;
 #endif
@@ -162,12 +163,15 @@ HWY_INLINE VU encodeHalfV(VF x) {
     const VU sign = hn::And(hn::ShiftRight<16>(bits), splatBits(0x8000u));
     return hn::Or(sign, encodeSmallFloatV<10, true>(hn::And(bits, splatBits(0x7fffffffu))));
 #else
-    // Rounds to the nearest, ties to even, whatever the control word says; NaNs keep the upper bits of their payload.
+    // Rounds to the nearest, ties to even (on x86 whatever the control word says); NaNs keep the upper bits of their
+    // payload.
     const hn::Rebind<uint16_t, U32> half;
 #if HWY_TARGET == HWY_AVX3
     const hn::Vec<decltype(half)> codes{_mm512_cvtps_ph(x.raw, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)};
-#else
+#elif HWY_TARGET == HWY_AVX2
     const hn::Vec<decltype(half)> codes{_mm256_cvtps_ph(x.raw, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)};
+#else
+    const hn::Vec<decltype(half)> codes{vreinterpret_u16_f16(vcvt_f16_f32(x.raw))};
 #endif
     return hn::PromoteTo(U32(), codes);
 #endif

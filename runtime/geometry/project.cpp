@@ -7,6 +7,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/simd-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace vernier {
 namespace HWY_NAMESPACE {
@@ -26,7 +28,7 @@ void windowCoordinates(const ProjectionInput& in, const ProjectionOutput& out) {
         return hn::Add(hn::Mul(value, hn::Set(d, in.viewport.scale[c])), hn::Set(d, in.viewport.offset[c]));
     };
     const auto snap = [&](auto window) HWY_ATTR {
-        const auto bounded = hn::Min(hn::Max(window, low), high);
+        const auto bounded = minOrSecond(maxOrSecond(window, low), high);
         return hn::DemoteTo(i, hn::Round(hn::Mul(bounded, subUnits)));
     };
     for (uint32_t n = 0; n < in.count; n += hn::Lanes(d)) {

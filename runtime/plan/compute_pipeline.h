@@ -18,7 +18,7 @@ namespace vernier {
 struct ComputePipelineDesc {
     const ir::Program* program = nullptr;  // of the compute stage, as loadShader gives it
     Accuracy accuracy;
-    Isa isa = Isa::sse4;
+    Isa isa = kLowestIsa;
 };
 
 /// Immutable; shared between threads.
@@ -40,7 +40,7 @@ class ComputePipeline {
   private:
     ComputePipeline() = default;
     Accuracy accuracy_;
-    Isa isa_ = Isa::sse4;
+    Isa isa_ = kLowestIsa;
     std::shared_ptr<const BatchProgram> program_;
 };
 

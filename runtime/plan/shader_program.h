@@ -22,7 +22,7 @@ struct ShaderProgramDesc {
     // is used with any attachments keeps all.
     uint32_t keptColors = ~0u;
     Accuracy accuracy;
-    Isa isa = Isa::sse4;
+    Isa isa = kLowestIsa;
     Skips skips;
 };
 
@@ -53,7 +53,7 @@ class ShaderProgram {
   private:
     ShaderProgram() = default;
     Accuracy accuracy_;
-    Isa isa_ = Isa::sse4;
+    Isa isa_ = kLowestIsa;
     Skips skips_;
     std::shared_ptr<const BatchProgram> vertex_, fragment_, pixelPart_, samplePart_;
     CapturePlan capture_;

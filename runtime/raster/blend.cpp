@@ -7,6 +7,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/simd-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace vernier {
 namespace HWY_NAMESPACE {
@@ -54,7 +56,7 @@ VF factorOf(VkBlendFactor factor, const Pixels& p, int c) {
         case VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_ALPHA:
             return oneMinus(p.constant[3]);
         case VK_BLEND_FACTOR_SRC_ALPHA_SATURATE:
-            return c == 3 ? hn::Set(f, 1.0f) : hn::Min(p.source[3], oneMinus(p.destination[3]));
+            return c == 3 ? hn::Set(f, 1.0f) : minOrSecond(p.source[3], oneMinus(p.destination[3]));
         case VK_BLEND_FACTOR_SRC1_COLOR:
             return p.second[c];
         case VK_BLEND_FACTOR_ONE_MINUS_SRC1_COLOR:
@@ -72,9 +74,9 @@ VF combine(VkBlendOp op, VkBlendFactor sourceFactor, VkBlendFactor destinationFa
     const VF s = p.source[c], d = p.destination[c];
     switch (op) {
         case VK_BLEND_OP_MIN:
-            return hn::Min(s, d);
+            return minOrSecond(s, d);
         case VK_BLEND_OP_MAX:
-            return hn::Max(s, d);
+            return maxOrSecond(s, d);
         default:
             break;
     }
@@ -96,7 +98,7 @@ void blend(const BlendInput& in) {
     const VkPipelineColorBlendAttachmentState& state = plan.blend;
     const auto limit = [&](VF v) HWY_ATTR {
         const VF low = hn::Set(f, plan.clampLow);  // also for NaN
-        return plan.clampInputs ? hn::IfThenElse(hn::Gt(v, low), hn::Min(v, hn::Set(f, 1.0f)), low) : v;
+        return plan.clampInputs ? hn::IfThenElse(hn::Gt(v, low), minOrSecond(v, hn::Set(f, 1.0f)), low) : v;
     };
     Pixels p;
     for (int c = 0; c < 4; ++c) p.constant[c] = limit(hn::Set(f, in.constants[c]));

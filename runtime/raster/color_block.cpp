@@ -165,7 +165,7 @@ struct Kernel {
                 for (int c = 0; c < 3; ++c)
                     result.c[c] = combined<kColorSource, kColorDestination>(source.c[c], destination.c[c], alpha, rest);
                 result.c[3] = combined<kAlphaSource, kAlphaDestination>(alpha, destination.c[3], alpha, rest);
-                for (int c = 0; c < 4; ++c) result.c[c] = hn::Min(result.c[c], one);
+                for (int c = 0; c < 4; ++c) result.c[c] = minOrSecond(result.c[c], one);
                 texels = packTexels<kSrgb>(result);
             } else {
                 texels = packTexels<kSrgb>(source);

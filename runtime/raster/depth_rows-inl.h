@@ -34,7 +34,7 @@ HWY_INLINE VU quantize(VF z, double scale) {
     return hn::BitCast(U8(), codes);
 }
 
-// How each format keeps 8 (or 4, on SSE4) depths of a row: `Value` is what is compared.
+// How each format keeps 8 (or 4, where vectors are that short) depths of a row: `Value` is what is compared.
 
 struct Unorm16 {
     using Value = VU;

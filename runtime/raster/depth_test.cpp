@@ -86,7 +86,7 @@ uint32_t testBlocksBy(const Compare& compare, const DepthTestInput& in, BlockCov
 
 /// a <= b; false for NaN.
 template <class V>
-HWY_INLINE hn::MFromD<hn::DFromV<V>> atMost(V a, V b) {
+HWY_INLINE hn::Mask<hn::DFromV<V>> atMost(V a, V b) {
     if constexpr (hwy::IsFloat<hn::TFromV<V>>())
         return hn::Le(a, b);
     else

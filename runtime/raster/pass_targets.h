@@ -43,7 +43,7 @@ struct PassTargets {
     uint32_t layers = 1;
     uint32_t viewMask = 0;  // not 0: multiview, every draw goes once to each of these layers; `layers` does not count
     uint32_t samples = 1;   // of the pass; also when it has no attachments
-    Isa isa = Isa::sse4;    // for resolves; draws have their pipeline's
+    Isa isa = kLowestIsa;   // for resolves; draws have their pipeline's
 };
 
 /// What was run. Counted on all threads and summed; independent of the number of threads except where said.

@@ -8,6 +8,7 @@
 
 #include <hwy/highway.h>
 
+#include "base/simd-inl.h"
 #include "runtime/raster/triangle_planes.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -36,7 +37,7 @@ HWY_INLINE V planeInDouble(DF f, V x, V y, V ox, V oy, double constant, double g
 
 template <class DF, class V>
 HWY_INLINE V clampDepth(DF f, const TrianglePlanes& p, V z) {
-    return hn::Max(hn::Min(z, hn::Set(f, p.zHigh)), hn::Set(f, p.zLow));
+    return maxOrSecond(minOrSecond(z, hn::Set(f, p.zHigh)), hn::Set(f, p.zLow));
 }
 
 /// Depth at pixels (x, y) from the anchor, at the place (ox, oy) = offset - fraction inside them.

@@ -1,13 +1,12 @@
 #include "runtime/raster/render_pass.h"
 
-#include <x86intrin.h>
-
 #include <algorithm>
 #include <atomic>
 #include <bit>
 #include <deque>
 #include <vector>
 
+#include "base/processor.h"
 #include "runtime/raster/attachment_ops.h"
 #include "runtime/raster/depth_resolve.h"
 #include "runtime/raster/hidden_work.h"
@@ -68,11 +67,11 @@ struct SegmentInput {
     uint64_t vertices = 0, capturable = 0, captured = 0;
 };
 
-/// Hands a range of cycles to a counter.
+/// Adds the ticks of its life to a counter.
 class CycleCount {
   public:
-    explicit CycleCount(uint64_t& counter) : counter_(counter), start_(__rdtsc()) {}
-    ~CycleCount() { counter_ += __rdtsc() - start_; }
+    explicit CycleCount(uint64_t& counter) : counter_(counter), start_(ticks()) {}
+    ~CycleCount() { counter_ += ticks() - start_; }
     CycleCount(const CycleCount&) = delete;
     CycleCount& operator=(const CycleCount&) = delete;
 

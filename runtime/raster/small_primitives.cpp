@@ -132,8 +132,9 @@ HWY_INLINE uint64_t makePlanesOf(const SmallInput& in, const Corners& corners, u
     const auto isTriangle = hn::Ne(area, hn::Zero(d));
     const auto slope = [&](auto value) HWY_ATTR { return hn::IfThenElseZero(isTriangle, hn::Mul(value, perPixel)); };
     const auto l1x = slope(y2), l1y = slope(hn::Neg(x2)), l2x = slope(hn::Neg(y1)), l2y = slope(x1);
-    const auto reach = [&](auto u, auto v)
-                           HWY_ATTR { return hn::Max(hn::Max(hn::Abs(u), hn::Abs(v)), hn::Abs(hn::Sub(u, v))); };
+    const auto reach = [&](auto u, auto v) HWY_ATTR {
+        return maxOrSecond(maxOrSecond(hn::Abs(u), hn::Abs(v)), hn::Abs(hn::Sub(u, v)));
+    };
     const auto extent = hn::Div(hn::Add(reach(x1, x2), reach(y1, y2)), subUnits);
     const auto z0 = depth(corners.z[0]);
     const auto dz1 = hn::Sub(depth(corners.z[1]), z0), dz2 = hn::Sub(depth(corners.z[2]), z0);
@@ -144,7 +145,7 @@ HWY_INLINE uint64_t makePlanesOf(const SmallInput& in, const Corners& corners, u
     store(hn::Add(z0, depth(corners.depthBias)), group.z0);
     store(hn::Add(hn::Mul(dz1, l1x), hn::Mul(dz2, l2x)), group.zx);
     store(hn::Add(hn::Mul(dz1, l1y), hn::Mul(dz2, l2y)), group.zy);
-    const auto steepest = hn::Max(hn::Max(hn::Abs(l1x), hn::Abs(l1y)), hn::Max(hn::Abs(l2x), hn::Abs(l2y)));
+    const auto steepest = maxOrSecond(maxOrSecond(hn::Abs(l1x), hn::Abs(l1y)), maxOrSecond(hn::Abs(l2x), hn::Abs(l2y)));
     uint8_t thin[8] = {};
     hn::StoreMaskBits(d, hn::Gt(hn::Mul(steepest, extent), hn::Set(d, kThinTriangle)), thin);
     return uint64_t{thin[0]} << first;
@@ -212,7 +213,7 @@ HWY_INLINE VFloat depthsOf(const SmallGroup& group, const Places& at) {
     const VFloat slope =
         hn::Add(hn::Mul(lookUp(group.zx, at.primitive), from.dx), hn::Mul(lookUp(group.zy, at.primitive), from.dy));
     const VFloat z = hn::Add(lookUp(group.z0, at.primitive), slope);
-    return hn::Max(hn::Min(z, hn::Set(f, group.zHigh)), hn::Set(f, group.zLow));
+    return maxOrSecond(minOrSecond(z, hn::Set(f, group.zHigh)), hn::Set(f, group.zLow));
 }
 
 template <class Format, class Compare>

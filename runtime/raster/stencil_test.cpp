@@ -58,7 +58,7 @@ struct StencilFace {
           writeMask(hn::Set(D(), face.values.writeMask & 0xFF)),
           compare(face.ops.compareOp) {}
 
-    HWY_INLINE hn::MFromD<D> passes(V stored) const { return compare(reference, hn::And(stored, compareMask)); }
+    HWY_INLINE hn::Mask<D> passes(V stored) const { return compare(reference, hn::And(stored, compareMask)); }
     HWY_INLINE V merged(V stored, V value) const {
         return hn::Or(hn::AndNot(writeMask, stored), hn::And(value, writeMask));
     }

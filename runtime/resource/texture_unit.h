@@ -12,7 +12,7 @@ namespace vernier {
 struct TextureUnit {
     const TextureView* view = nullptr;  // nullptr: nothing bound
     const SamplerState* sampler = nullptr;
-    Isa isa = Isa::sse4;
+    Isa isa = kLowestIsa;
     SampleFn sample = nullptr, gather = nullptr, queryLod = nullptr;
     FetchFn fetch = nullptr;
 };

@@ -36,7 +36,7 @@ class AnisotropicSampler : public Sampler<Source, kShape, true> {
         const VF zero = hn::Zero(F32()), one = splatFloat(1.0f), half = splatFloat(0.5f);
         const LevelChoice choice = chooseLevels(this->view_, this->sampler_,
                                                 lowestLod(this->sampler_, this->request_, first, count), lambdaPrime);
-        const VF needed2 = hn::Min(scale.eta2, hn::Max(scale.major2, one));
+        const VF needed2 = minOrSecond(scale.eta2, maxOrSecond(scale.major2, one));
         const VF samples = clampOrLowV(hn::Ceil(hn::Sqrt(needed2)), one, splatFloat(kMaxSamplerAnisotropy));
         const Mask alongX = hn::Gt(print.x2, print.y2);
         VF major[3];

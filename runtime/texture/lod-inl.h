@@ -154,7 +154,7 @@ HWY_INLINE VF biasedLambda(const SamplerState& sampler, const SampleRequest& req
 /// The lower bound of the level of detail: the sampler's, or the instruction's if that is higher.
 HWY_INLINE VF lowestLod(const SamplerState& sampler, const SampleRequest& request, uint32_t first, uint32_t count) {
     const VF lowest = splatFloat(sampler.minLod);
-    return request.minLod == nullptr ? lowest : hn::Max(lowest, loadLanes(request.minLod, first, count));
+    return request.minLod == nullptr ? lowest : maxOrSecond(lowest, loadLanes(request.minLod, first, count));
 }
 
 HWY_INLINE LevelChoice chooseLevels(const TextureView& view, const SamplerState& sampler, VF lowest, VF lambdaPrime) {

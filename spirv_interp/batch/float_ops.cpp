@@ -15,16 +15,18 @@ namespace vernier::batch::HWY_NAMESPACE {
 namespace {
 namespace element {
 
+using ::vernier::HWY_NAMESPACE::maxOrSecond;
+using ::vernier::HWY_NAMESPACE::minOrSecond;
+
 HWY_INLINE VF number(float value) {
     return hn::Set(kF32, value);
 }
-/// The smaller operand; a NaN gives way to the other operand (NMin). x86 MINPS returns its second operand
-/// when either is NaN or both are zero, on every instruction set.
+/// The smaller operand; a NaN gives way to the other operand (NMin). Of two zeros it is the second.
 HWY_INLINE VF smaller(VF a, VF b) {
-    return hn::IfThenElse(hn::IsNaN(b), a, hn::Min(a, b));
+    return hn::IfThenElse(hn::IsNaN(b), a, minOrSecond(a, b));
 }
 HWY_INLINE VF larger(VF a, VF b) {
-    return hn::IfThenElse(hn::IsNaN(b), a, hn::Max(a, b));
+    return hn::IfThenElse(hn::IsNaN(b), a, maxOrSecond(a, b));
 }
 HWY_INLINE VF clamped(VF x, VF low, VF high) {
     return smaller(larger(x, low), high);
@@ -46,7 +48,7 @@ VERNIER_ELEMENT(fceil, float, float, (V a), return hn::Ceil(a);)
 VERNIER_ELEMENT(ftrunc, float, float, (V a), return hn::Trunc(a);)
 VERNIER_ELEMENT(froundEven, float, float, (V a), return hn::Round(a);)
 // x - floor(x) rounds up to 1 just below an integer; the largest float below 1 keeps the result in [0, 1).
-VERNIER_ELEMENT(ffract, float, float, (V a), return hn::Min(number(0x1.fffffep-1f), hn::Sub(a, hn::Floor(a)));)
+VERNIER_ELEMENT(ffract, float, float, (V a), return minOrSecond(number(0x1.fffffep-1f), hn::Sub(a, hn::Floor(a)));)
 VERNIER_ELEMENT(fmin, float, float, (V a, V b), return smaller(a, b);)
 VERNIER_ELEMENT(fmax, float, float, (V a, V b), return larger(a, b);)
 VERNIER_ELEMENT(fclamp, float, float, (V x, V low, V high), return clamped(x, low, high);)

@@ -57,6 +57,7 @@ VERNIER_ELEMENT(ult, uint32_t, uint32_t, (V a, V b), return boolRow(hn::Lt(a, b)
 VERNIER_ELEMENT(ule, uint32_t, uint32_t, (V a, V b), return hn::Not(boolRow(hn::Gt(a, b)));)
 VERNIER_ELEMENT(select, uint32_t, uint32_t, (V condition, V yes, V no), return hn::IfVecThenElse(condition, yes, no);)
 
+using ::vernier::HWY_NAMESPACE::minOrSecond;
 using ::vernier::HWY_NAMESPACE::truncateInRange;
 
 VERNIER_ELEMENT(ftos, float, int32_t, (V a), const VI whole = truncateInRange(hn::IfThenZeroElse(hn::IsNaN(a), a));
@@ -64,7 +65,7 @@ VERNIER_ELEMENT(ftos, float, int32_t, (V a), const VI whole = truncateInRange(hn
                 return hn::IfThenElse(tooLarge, number(INT32_MAX), whole);)
 // Above 2^31 the value less 2^31 is exact and fits a signed integer; the top bit is put back afterwards.
 VERNIER_ELEMENT(ftou, float, uint32_t, (V a), const V positive = hn::IfThenElseZero(hn::Gt(a, number(0.0f)), a);
-                const V inside = hn::Min(positive, number(0x1.fffffep31f));
+                const V inside = minOrSecond(positive, number(0x1.fffffep31f));
                 const auto upper = hn::Ge(inside, number(0x1p31f));
                 const VI low = truncateInRange(hn::Sub(inside, hn::IfThenElseZero(upper, number(0x1p31f))));
                 const VU value = hn::Xor(hn::BitCast(kU32, low), hn::And(boolRow(upper), hn::Set(kU32, 0x80000000u)));
@@ -101,7 +102,7 @@ VERNIER_ELEMENT(ftoh, float, float, (V a), const HalfParts parts(a);
                 return parts.join(hn::And(up, number(~0x1FFF)), denormal, number(0x7F800000));)
 VERNIER_ELEMENT(ftohZero, float, float, (V a), const HalfParts parts(a);
                 const VF units = hn::Mul(hn::BitCast(kF32, parts.magnitude), number(0x1p24f));
-                const VF denormal = hn::Mul(hn::Trunc(hn::Min(units, number(1024.0f))), number(0x1p-24f));
+                const VF denormal = hn::Mul(hn::Trunc(minOrSecond(units, number(1024.0f))), number(0x1p-24f));
                 const VI infinity = number(0x7F800000);
                 const VI tooLarge = hn::IfThenElse(hn::Eq(parts.magnitude, infinity), infinity, number(0x477FE000));
                 return parts.join(hn::And(parts.magnitude, number(~0x1FFF)), denormal, tooLarge);)

@@ -32,6 +32,8 @@ HWY_BEFORE_NAMESPACE();
 namespace vernier::batch::HWY_NAMESPACE::math {
 
 namespace hn = hwy::HWY_NAMESPACE;
+using ::vernier::HWY_NAMESPACE::maxOrSecond;
+using ::vernier::HWY_NAMESPACE::minOrSecond;
 
 struct Fast : coefficients::Fast {
     using T = float;
@@ -137,8 +139,8 @@ struct Functions {
             return scaleNormal(v, rounded);  // floats are never denormal as doubles
         }
     }
-    /// x86 minimum and maximum return their second operand when either is NaN: NaN comes through.
-    static HWY_INLINE V between(V x, T low, T high) { return hn::Max(set(low), hn::Min(set(high), x)); }
+    /// NaN comes through.
+    static HWY_INLINE V between(V x, T low, T high) { return maxOrSecond(set(low), minOrSecond(set(high), x)); }
 
     /// `value`, which bit operations made, or x where that is NaN.
     static HWY_INLINE V orNaN(V x, V value) { return choose(hn::IsNaN(x), x, value); }
@@ -375,7 +377,7 @@ struct Functions {
     static HWY_INLINE V atan2(V y, V x) {
         const V inf = set(std::numeric_limits<T>::infinity());
         const V a = hn::Abs(y), b = hn::Abs(x);
-        const V largest = hn::Max(a, b), least = hn::Min(a, b);
+        const V largest = maxOrSecond(a, b), least = minOrSecond(a, b);
         const M infinite = hn::Eq(largest, inf), huge = hn::Gt(largest, set(L::kLargest));
         const V shrink = choose(huge, set(T{0.25}), set(1));
         // inf / inf is taken as 1, anything else / inf as 0.
@@ -403,7 +405,7 @@ struct Functions {
         const V a = hn::Abs(x);
         const V half = expScaled(a, -1);
         const V large = hn::Sub(half, hn::Div(set(T{0.25}), half));
-        const V small = oddPolynomial(Tier::hyperbolicSine, hn::Min(a, set(1)));
+        const V small = oddPolynomial(Tier::hyperbolicSine, minOrSecond(a, set(1)));
         return hn::Or(choose(hn::Lt(a, set(1)), small, large), signOf(x));
     }
     static HWY_INLINE V cosh(V x) {
@@ -414,7 +416,7 @@ struct Functions {
     static HWY_INLINE V tanh(V x) {
         const V a = hn::Abs(x);
         const V large = hn::Sub(set(1), hn::Div(set(T{2}), hn::Add(expScaled(hn::Add(a, a), 0), set(1))));
-        const V s = oddPolynomial(Tier::hyperbolicSine, hn::Min(a, set(1)));
+        const V s = oddPolynomial(Tier::hyperbolicSine, minOrSecond(a, set(1)));
         const V small = hn::Div(s, hn::Sqrt(hn::Add(set(1), hn::Mul(s, s))));
         return hn::Or(choose(hn::Lt(a, set(T{0.5})), small, large), signOf(x));
     }

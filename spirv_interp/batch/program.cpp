@@ -99,15 +99,12 @@ uint32_t lanesFor(const BatchOptions& options) {
 }  // namespace
 
 const HandlerTables& handlerTables(Isa isa, MathTier tier) {
-    switch (isa) {
-        case Isa::avx512:
-            return tablesFor<Isa::avx512>(tier);
-        case Isa::avx2:
-            return tablesFor<Isa::avx2>(tier);
-        case Isa::sse4:
-            break;
-    }
-    return tablesFor<Isa::sse4>(tier);
+#define VERNIER_TABLES_CASE(name, target, ...) \
+    case Isa::name:                            \
+        return tablesFor<Isa::name>(tier);
+    switch (isa) { VERNIER_ISAS(VERNIER_TABLES_CASE) }
+#undef VERNIER_TABLES_CASE
+    return tablesFor<kLowestIsa>(tier);
 }
 
 CompiledProgram::CompiledProgram(ir::Program source, LoweredProgram lowered, const BatchOptions& options, bool packed,

@@ -54,8 +54,11 @@ HWY_INLINE uint64_t bitsOf(VU words) {
     return hn::MaskFromVec(hn::BitCast(kI32, words)).raw;
 #elif HWY_TARGET == HWY_AVX2
     return static_cast<uint32_t>(_mm256_movemask_ps(hn::BitCast(kF32, words).raw));
-#else
+#elif HWY_TARGET == HWY_SSE4
     return static_cast<uint32_t>(_mm_movemask_ps(hn::BitCast(kF32, words).raw));
+#else
+    alignas(16) static constexpr uint32_t kBits[kVectorLanes] = {1, 2, 4, 8};
+    return vaddvq_u32(hn::And(words, hn::Load(kU32, kBits)).raw);
 #endif
 }
 

@@ -29,10 +29,10 @@ void main() {
 
 constexpr uint32_t kGroupsX = 13, kGroupsY = 17, kWords = kGroupsX * 24 * kGroupsY * 3 * 4 + 64;
 
-std::vector<uint32_t> compute(uint32_t threads, const char* isa, const std::vector<uint32_t>& spirv) {
+std::vector<uint32_t> compute(uint32_t threads, Isa isa, const std::vector<uint32_t>& spirv) {
     VnDeviceDesc deviceDesc{};
     deviceDesc.threads = threads;
-    deviceDesc.maxIsa = isa;
+    deviceDesc.maxIsa = isaName(isa).data();
     VnDevice device = nullptr;
     EXPECT_EQ(vnCreateDevice(&deviceDesc, &device), VN_SUCCESS);
     VnContext context = nullptr;
@@ -62,13 +62,13 @@ std::vector<uint32_t> compute(uint32_t threads, const char* isa, const std::vect
 
 TEST(ComputeSameBits, WithAnyThreadsAndInstructionSet) {
     const std::vector<uint32_t> spirv = compileGlsl(VK_SHADER_STAGE_COMPUTE_BIT, kMixture);
-    const std::vector<uint32_t> expected = compute(1, "sse4", spirv);
+    const std::vector<uint32_t> expected = compute(1, kLowestIsa, spirv);
     uint32_t counted = 0;
     for (uint32_t i = kWords - 64; i < kWords; ++i) counted += expected[i];
     EXPECT_EQ(counted, (kWords - 64) / 4);
     for (const uint32_t threads : {1u, 2u, 5u})
-        for (const char* isa : {"sse4", "avx2", "avx512"})
-            EXPECT_TRUE(compute(threads, isa, spirv) == expected) << threads << " threads on " << isa;
+        for (const Isa isa : availableIsas())
+            EXPECT_TRUE(compute(threads, isa, spirv) == expected) << threads << " threads on " << isaName(isa);
 }
 
 }  // namespace

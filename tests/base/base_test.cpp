@@ -1,8 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <immintrin.h>
-
 #include <atomic>
 #include <new>
 #include <numeric>
@@ -123,9 +121,8 @@ TEST(Arena, SizesThatNoMemoryHasAreRefused) {
 }
 
 TEST(ThreadPool, SetsTheFloatingPointControlWordAndRestoresTheCallers) {
-    constexpr uint32_t kFlushToZero = 0x9FC0;
-    const uint32_t before = _mm_getcsr();
-    _mm_setcsr(kFlushToZero);
+    const FloatControl before = floatControl();
+    setFloatControl(before | kDenormalsAreZero);
     ThreadPool pool(2);
     std::atomic<bool> denormalsKept = true;
     pool.parallelFor(64, [&](uint32_t, uint32_t) {
@@ -133,17 +130,22 @@ TEST(ThreadPool, SetsTheFloatingPointControlWordAndRestoresTheCallers) {
         volatile float half = tiny * 0.5f;
         if (half == 0) denormalsKept = false;
     });
-    EXPECT_EQ(_mm_getcsr() & 0x8040u, kFlushToZero & 0x8040u);
-    _mm_setcsr(before);
+    EXPECT_EQ(floatControl() & kDenormalsAreZero, kDenormalsAreZero);
+    setFloatControl(before);
     EXPECT_TRUE(denormalsKept);
 }
 
 TEST(Isa, NamesRoundTripAndLimitsHold) {
-    for (const Isa isa : {Isa::sse4, Isa::avx2, Isa::avx512}) {
+    for (size_t value = 0; value <= static_cast<size_t>(kHighestIsa); ++value) {
+        const auto isa = static_cast<Isa>(value);
         EXPECT_EQ(isaFromName(isaName(isa)), isa);
+        EXPECT_NE(isaNames().find(isaName(isa)), std::string_view::npos);
         EXPECT_LE(bestIsaUpTo(isa), isa);
         EXPECT_LE(bestIsaUpTo(isa), bestIsa());
     }
+    ASSERT_FALSE(availableIsas().empty());
+    EXPECT_EQ(availableIsas().front(), kLowestIsa);
+    EXPECT_EQ(availableIsas().back(), bestIsa());
     EXPECT_EQ(isaFromName("mmx"), std::nullopt);
 }
 

@@ -43,8 +43,8 @@ FuseFn fuseFor(Isa isa) {
 
 void expectFused(const std::vector<float>& a, const std::vector<float>& b, const std::vector<float>& c) {
     std::vector<float> result(a.size());
-    for (int isa = 0; isa <= static_cast<int>(bestIsa()); ++isa) {
-        fuseFor(static_cast<Isa>(isa))(a.data(), b.data(), c.data(), result.data(), a.size());
+    for (const Isa isa : availableIsas()) {
+        fuseFor(isa)(a.data(), b.data(), c.data(), result.data(), a.size());
         for (size_t i = 0; i < a.size(); ++i) {
             const float exact = std::fmaf(a[i], b[i], c[i]);
             if (std::isnan(exact)) {
@@ -52,7 +52,7 @@ void expectFused(const std::vector<float>& a, const std::vector<float>& b, const
                 continue;
             }
             ASSERT_EQ(std::bit_cast<uint32_t>(result[i]), std::bit_cast<uint32_t>(exact))
-                << isaName(static_cast<Isa>(isa)) << ": " << a[i] << " * " << b[i] << " + " << c[i];
+                << isaName(isa) << ": " << a[i] << " * " << b[i] << " + " << c[i];
         }
     }
 }

@@ -15,14 +15,6 @@
 namespace vernier {
 namespace {
 
-std::vector<Isa> availableIsas() {
-    std::vector<Isa> isas;
-    for (const Isa isa : {Isa::sse4, Isa::avx2, Isa::avx512}) {
-        if (bestIsaUpTo(isa) == isa) isas.push_back(isa);
-    }
-    return isas;
-}
-
 struct Case {
     const FormatInfo* info;
     VkImageAspectFlags aspect;

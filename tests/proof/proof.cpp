@@ -53,13 +53,6 @@ class Lines {
 
 }  // namespace
 
-std::vector<Isa> isas() {
-    std::vector<Isa> all;
-    for (const Isa isa : {Isa::sse4, Isa::avx2, Isa::avx512})
-        if (isa <= bestIsa()) all.push_back(isa);
-    return all;
-}
-
 std::vector<Shape> maskShapes(const Case& subject) {
     if (subject.stage == ir::Stage::compute) return {{"all", {}, {}}};
     const uint32_t invocations = subject.invocations;
@@ -158,7 +151,7 @@ std::string differences(const Case& subject, const ProofOptions& options) {
     for (const Shape& shape : shapes) {
         const Ending expected = runReference(subject, program.ir, shape, options.tier);
         if (!expected.error.empty()) return expected.error + "\n";
-        for (const Isa isa : isas()) {
+        for (const Isa isa : availableIsas()) {
             for (const uint32_t lanes : options.lanes) {
                 if (program.ir.usesSubgroups && lanes < ir::kSubgroupSize) continue;  // refused
                 const Ending got = runBatch(subject, program.ir, shape, {isa, options.tier, lanes});

@@ -69,9 +69,6 @@ Program lower(const Case& subject);
 Ending runReference(const Case& subject, const ir::Program& interface, const Shape& shape, MathTier tier);
 Ending runBatch(const Case& subject, const ir::Program& program, const Shape& shape, const BatchOptions& options);
 
-/// The instruction sets of this CPU.
-std::vector<Isa> isas();
-
 struct ProofOptions {
     std::vector<uint32_t> lanes{16, 32, 64, 128};
     MathTier tier = MathTier::standard;

@@ -151,9 +151,9 @@ TEST(CoarseShading, ProgramsThatDecideAboutPixelsRunForEach) {
 }
 
 TEST(CoarseShading, SameBitsForThreadsAndInstructionSets) {
-    const Drawn first = drawHeap(ShadingRate::twoByTwo, "fragcoord_frag", VK_FORMAT_R8G8B8A8_UNORM, true, 1, Isa::sse4);
-    for (const Isa isa : {Isa::sse4, Isa::avx2, Isa::avx512}) {
-        if (isa > bestIsa()) continue;
+    const Drawn first =
+        drawHeap(ShadingRate::twoByTwo, "fragcoord_frag", VK_FORMAT_R8G8B8A8_UNORM, true, 1, kLowestIsa);
+    for (const Isa isa : availableIsas()) {
         for (const uint32_t threads : {1u, 2u, 5u}) {
             const Drawn again =
                 drawHeap(ShadingRate::twoByTwo, "fragcoord_frag", VK_FORMAT_R8G8B8A8_UNORM, true, threads, isa);

@@ -90,17 +90,10 @@ struct Fixture {
     }
 };
 
-std::vector<Isa> instructionSets() {
-    std::vector<Isa> sets;
-    for (const Isa isa : {Isa::sse4, Isa::avx2, Isa::avx512})
-        if (isa <= bestIsa()) sets.push_back(isa);
-    return sets;
-}
-
 /// Calls test(isa, format, equation, order).
 template <class Test>
 void forEachRoutine(const Test& test) {
-    for (const Isa isa : instructionSets())
+    for (const Isa isa : availableIsas())
         for (const VkFormat format : kFormats)
             for (const auto& equation : kEquations)
                 for (const LaneOrder order : {LaneOrder::rows, LaneOrder::quads}) {

@@ -80,7 +80,7 @@ TEST_P(Depth, ConstantDepthIsRoundedToNearest) {
 TEST_P(Depth, AllCompareOperations) {
     for (uint32_t op = 0; op < 8; ++op) {
         for (const auto& [z, relation] : {std::pair{0.25f, 1u}, {0.5f, 2u}, {0.75f, 4u}}) {
-            for (const Isa isa : {Isa::sse4, bestIsa()}) {
+            for (const Isa isa : {kLowestIsa, bestIsa()}) {
                 run({{triangle(0.5f, 0.5f, 0.5f), {}, {}},
                      {triangle(z, z, z), [&](GraphicsState& s) { s.depthCompare = static_cast<VkCompareOp>(op); }, {}}},
                     GetParam(), 1, 0, isa);

@@ -9,13 +9,6 @@ namespace {
 
 constexpr uint32_t kWidth = 150, kHeight = 100;
 
-std::vector<Isa> instructionSets() {
-    std::vector<Isa> sets;
-    for (const Isa isa : {Isa::sse4, Isa::avx2, Isa::avx512})
-        if (isa <= bestIsa()) sets.push_back(isa);
-    return sets;
-}
-
 struct Outcome {
     uint64_t color = 0, depth = 0;
     PassStatistics statistics;
@@ -112,7 +105,7 @@ Case caseOf(Isa isa, VkFormat color, VkFormat depth, VkCompareOp compare) {
 }
 
 TEST(SmallPrimitives, DepthFormatsAndComparisons) {
-    for (const Isa isa : instructionSets())
+    for (const Isa isa : availableIsas())
         for (const VkFormat format : {VK_FORMAT_UNDEFINED, VK_FORMAT_D16_UNORM, VK_FORMAT_D24_UNORM_S8_UINT,
                                       VK_FORMAT_D32_SFLOAT, VK_FORMAT_D32_SFLOAT_S8_UINT})
             for (uint32_t op = VK_COMPARE_OP_LESS; op <= VK_COMPARE_OP_ALWAYS; ++op) {
@@ -149,7 +142,7 @@ std::vector<Vertex> tiles(double width, double height) {
 }
 
 TEST(SmallPrimitives, LargerOnesShareBlocks) {
-    for (const Isa isa : instructionSets())
+    for (const Isa isa : availableIsas())
         for (const bool blends : {false, true})
             for (const VkFormat depth : {VK_FORMAT_UNDEFINED, VK_FORMAT_D32_SFLOAT}) {
                 SCOPED_TRACE(std::string(isaName(isa)) + (blends ? ", blended" : "") + ", depth " +
@@ -164,7 +157,7 @@ TEST(SmallPrimitives, LargerOnesShareBlocks) {
 }
 
 TEST(SmallPrimitives, Blending) {
-    for (const Isa isa : instructionSets())
+    for (const Isa isa : availableIsas())
         for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R32G32B32A32_SFLOAT})
             for (const bool depth : {false, true}) {
                 SCOPED_TRACE(std::string(isaName(isa)) + ", format " + std::to_string(format));
@@ -180,7 +173,7 @@ TEST(SmallPrimitives, Blending) {
 }
 
 TEST(SmallPrimitives, EveryInterpolation) {
-    for (const Isa isa : instructionSets())
+    for (const Isa isa : availableIsas())
         for (const char* fragment : {"varyings_frag", "flatbits_frag"}) {
             SCOPED_TRACE(std::string(isaName(isa)) + ", " + fragment);
             const bool bits = std::string(fragment) == "flatbits_frag";
@@ -197,7 +190,7 @@ TEST(SmallPrimitives, EveryInterpolation) {
 /// 4 sub-pixel bits: edges of the same length in sub-units reach over many tiles, of which a scissor leaves a few
 /// pixels.
 TEST(SmallPrimitives, CoarserGrid) {
-    for (const Isa isa : instructionSets()) {
+    for (const Isa isa : availableIsas()) {
         Case test = caseOf(isa, VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_D32_SFLOAT, VK_COMPARE_OP_LESS);
         test.options.accuracy.subPixelBits = 4;
         test.vertices = randomTriangles(13, 2000, 0.5);
@@ -211,7 +204,7 @@ TEST(SmallPrimitives, CoarserGrid) {
 /// Slivers are drawn alone: as many as a batch has lanes, a pixel each, or some more or less, and packed ones behind
 /// them.
 TEST(SmallPrimitives, BehindABatchOfSlivers) {
-    for (const Isa isa : instructionSets())
+    for (const Isa isa : availableIsas())
         for (uint32_t slivers = 60; slivers <= 132; ++slivers) {
             if (slivers == 68) slivers = 124;
             SCOPED_TRACE(std::string(isaName(isa)) + ", " + std::to_string(slivers) + " slivers");
@@ -229,7 +222,7 @@ TEST(SmallPrimitives, BehindABatchOfSlivers) {
 }
 
 TEST(SmallPrimitives, DepthAlone) {
-    for (const Isa isa : instructionSets()) {
+    for (const Isa isa : availableIsas()) {
         Case test = caseOf(isa, VK_FORMAT_UNDEFINED, VK_FORMAT_D32_SFLOAT, VK_COMPARE_OP_LESS);
         test.options.fragment = "";
         test.vertices = randomTriangles(3, 1500, 0.5);
@@ -238,7 +231,7 @@ TEST(SmallPrimitives, DepthAlone) {
 }
 
 TEST(SmallPrimitives, FacesAndScissor) {
-    for (const Isa isa : instructionSets()) {
+    for (const Isa isa : availableIsas()) {
         Case test = caseOf(isa, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_D24_UNORM_S8_UINT, VK_COMPARE_OP_GREATER);
         test.scissor = {{9, 13}, {70, 66}};
         test.vertices = randomTriangles(11, 2000, 1);
@@ -253,7 +246,7 @@ TEST(SmallPrimitives, FacesAndScissor) {
 
 /// The greatest that is packed, at every place relative to blocks and tiles: the rectangle of two triangles.
 TEST(SmallPrimitives, EveryPlaceInBlocks) {
-    for (const Isa isa : instructionSets()) {
+    for (const Isa isa : availableIsas()) {
         Case test = caseOf(isa, VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_UNDEFINED, VK_COMPARE_OP_ALWAYS);
         for (uint32_t place = 0; place < 64; ++place) {
             const double x = 50 + place % 8 + 9 * (place / 8 % 4), y = 52 + place / 8;
@@ -268,7 +261,7 @@ TEST(SmallPrimitives, EveryPlaceInBlocks) {
 /// A point covers the pixels whose centres lie in [x - size / 2, x + size / 2) x [y - size / 2, y + size / 2).
 TEST(SmallPrimitives, PointsCoverTheirSquares) {
     std::mt19937 random(21);
-    for (const Isa isa : instructionSets()) {
+    for (const Isa isa : availableIsas()) {
         PipelineOptions options;
         options.isa = isa;
         options.vertex = "point_vert";

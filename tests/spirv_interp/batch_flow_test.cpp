@@ -269,7 +269,7 @@ b1 loop b2 <- b0 b1:
 
 TEST(BatchFlow, OptionsAreChecked) {
     const ir::Program program = test::parseProgram("program vertex \"main\"\nb0:\n  ret\n");
-    const auto wrong = BatchProgram::compile(program, {Isa::sse4, MathTier::standard, 48});
+    const auto wrong = BatchProgram::compile(program, {kLowestIsa, MathTier::standard, 48});
     ASSERT_FALSE(wrong.ok());
     EXPECT_NE(wrong.error().message.find("48"), std::string::npos);
     ir::Program broken = program;

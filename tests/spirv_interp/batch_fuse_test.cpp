@@ -85,7 +85,7 @@ TEST_P(Superinstruction, GivesTheBitsOfItsParts) {
         for (const bool kept : {false, true}) {
             const std::string text = programOf(GetParam(), chained, kept);
             const ir::Program program = test::parseProgram(text);
-            const auto compiled = BatchProgram::compile(program, {Isa::sse4, MathTier::standard, 64});
+            const auto compiled = BatchProgram::compile(program, {kLowestIsa, MathTier::standard, 64});
             ASSERT_TRUE(compiled.ok()) << compiled.error().message;
             const std::string listing = (*compiled)->disassemble();
             EXPECT_NE(listing.find(std::string("  ") + GetParam().op + " "), std::string::npos) << text << listing;

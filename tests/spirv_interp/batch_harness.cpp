@@ -13,14 +13,6 @@
 
 namespace vernier::test {
 
-std::vector<Isa> isas() {
-    std::vector<Isa> all;
-    for (const Isa isa : {Isa::sse4, Isa::avx2, Isa::avx512}) {
-        if (isa <= bestIsa()) all.push_back(isa);
-    }
-    return all;
-}
-
 bool sameBits(const std::vector<float>& a, const std::vector<float>& b) {
     return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](float x, float y) {
                return std::bit_cast<uint32_t>(x) == std::bit_cast<uint32_t>(y) || (std::isnan(x) && std::isnan(y));

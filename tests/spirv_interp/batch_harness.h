@@ -11,7 +11,9 @@
 namespace vernier::test {
 
 /// The instruction sets of this CPU.
-std::vector<Isa> isas();
+inline std::span<const Isa> isas() {
+    return availableIsas();
+}
 
 /// Equal bits; two NaNs count as equal.
 bool sameBits(const std::vector<float>& a, const std::vector<float>& b);
@@ -31,7 +33,7 @@ struct RunResult {
 };
 
 struct RunSetup {
-    Isa isa = Isa::sse4;
+    Isa isa = kLowestIsa;
     MathTier tier = MathTier::standard;
     uint32_t capacity = 64;             // BatchOptions::lanes
     uint32_t lanes = 64;                // lanes to run

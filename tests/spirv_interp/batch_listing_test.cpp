@@ -7,7 +7,7 @@ namespace vernier {
 namespace {
 
 std::string listing(const std::string& text) {
-    const auto compiled = BatchProgram::compile(test::parseProgram(text), {Isa::sse4, MathTier::standard, 64});
+    const auto compiled = BatchProgram::compile(test::parseProgram(text), {kLowestIsa, MathTier::standard, 64});
     return compiled.ok() ? (*compiled)->disassemble() : compiled.error().message;
 }
 

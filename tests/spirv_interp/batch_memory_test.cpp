@@ -273,16 +273,17 @@ b0:
     buffers.words(0)[0] = 0;
     const auto compiled = BatchProgram::compile(program, {bestIsa(), MathTier::standard, 64});
     ASSERT_TRUE(compiled.ok());
+    const uint32_t lanes = (*compiled)->lanes();
     const auto work = [&] {
         BatchContext context(*compiled);
         context.beginDraw(buffers.resources);
-        const std::vector<uint32_t> mask(64, ~0u);
-        for (int k = 0; k < 200; ++k) (void)context.run(64, mask.data(), mask.data());
+        const std::vector<uint32_t> mask(lanes, ~0u);
+        for (int k = 0; k < 200; ++k) (void)context.run(lanes, mask.data(), mask.data());
     };
     std::thread other(work);
     work();
     other.join();
-    EXPECT_EQ(buffers.words(0)[0], 2u * 200 * 64);
+    EXPECT_EQ(buffers.words(0)[0], 2 * 200 * lanes);
 }
 
 TEST(BatchMemory, IndexedInputsClamp) {

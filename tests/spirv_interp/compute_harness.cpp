@@ -78,7 +78,7 @@ BufferContents dispatchEverywhere(const ir::Program& program, const WorkGroupCon
                                   const BufferContents& buffers, const std::vector<uint32_t>& pushConstants,
                                   uint32_t leastLanes) {
     const DispatchResult first =
-        dispatch(program, compileCompute(program, Isa::sse4, 0), grid, buffers, 0, pushConstants);
+        dispatch(program, compileCompute(program, kLowestIsa, 0), grid, buffers, 0, pushConstants);
     EXPECT_TRUE(first.ok);
     for (const Isa isa : isas()) {
         for (const uint32_t lanes : {0u, 16u, 32u, 64u}) {

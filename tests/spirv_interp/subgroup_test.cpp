@@ -299,7 +299,7 @@ void main() {
 
 TEST(Subgroup, NarrowBatchesAreRefused) {
     const ir::Program program = loadCompute(std::string(kExtensions) + kPrologue + "o[i] = subgroupAdd(u); }");
-    const auto compiled = BatchProgram::compile(program, {Isa::sse4, MathTier::standard, 16});
+    const auto compiled = BatchProgram::compile(program, {kLowestIsa, MathTier::standard, 16});
     ASSERT_FALSE(compiled.ok());
     EXPECT_EQ(compiled.error().message, "BatchOptions::lanes is 16; 'main' uses subgroups, which have 32 invocations");
 }

@@ -19,14 +19,6 @@ namespace vernier::texture_test {
 inline constexpr float kInf = std::numeric_limits<float>::infinity();
 inline constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-inline std::vector<Isa> availableIsas() {
-    std::vector<Isa> isas;
-    for (const Isa isa : {Isa::sse4, Isa::avx2, Isa::avx512}) {
-        if (bestIsaUpTo(isa) == isa) isas.push_back(isa);
-    }
-    return isas;
-}
-
 /// Each slice of each level has a heap block of its own exact size behind it, so that ASan sees any access
 /// outside.
 class Image {

@@ -127,7 +127,7 @@ typedef struct VnDeviceDesc {
     VnMessageCallback message; /* NULL: none. Also gets warnings */
     void* messageUser;
     VnAllocator allocator; /* both functions NULL: the C++ heap */
-    const char* maxIsa;    /* NULL: the best of this CPU; "sse4", "avx2" or "avx512" limits it (for tests) */
+    const char* maxIsa;    /* NULL: the best of this CPU; "sse4", "avx2", "avx512" (Arm: "neon") limit it, for tests */
     const char* skips;     /* NULL or "on": what draws do not need is left out. "off": it is done all the same, with the
                               same pictures (to see what it would cost). "hidden_work=off ...": one rule alone; an
                               unknown name's error lists them */
@@ -144,7 +144,7 @@ VN_API size_t vnGetError(VnDevice device, char* text, size_t capacity);
 
 typedef struct VnDeviceInfo {
     const char* version; /* "0.1.0" */
-    const char* isa;     /* "sse4", "avx2" or "avx512" */
+    const char* isa;     /* "sse4", "avx2" or "avx512"; Arm: "neon" */
     uint32_t threads;
     uint32_t maxImageSize; /* texels on a side */
     uint32_t maxSamples;
