@@ -40,6 +40,15 @@ target_compile_options(vernier_settings INTERFACE
     $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor -Woverloaded-virtual>
     # g++ 12 warns about "text" + std::to_string(n) where nothing is wrong (GCC bug 105651).
     $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-restrict>)
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL aarch64)
+    # Vectors of NEON are objects to g++, which misses that a loop's first turn fills those declared before it.
+    target_compile_options(vernier_settings INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-maybe-uninitialized>)
+endif()
+# Tiles of 64 pixels are what is fast; 16 and 32 are for scripts/same-bits, which shows that no pixel depends on it.
+set(VERNIER_TILE_SIZE 64 CACHE STRING "Pixels on a side of a tile: 16, 32 or 64")
+if(NOT VERNIER_TILE_SIZE EQUAL 64)
+    target_compile_definitions(vernier_settings INTERFACE VERNIER_TILE_SIZE=${VERNIER_TILE_SIZE})
+endif()
 if(VERNIER_SANITIZE)
     target_compile_options(vernier_settings INTERFACE
         -fsanitize=${VERNIER_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
@@ -51,11 +60,14 @@ if(VERNIER_SANITIZE)
     target_link_options(vernier_settings INTERFACE ${VERNIER_SANITIZE_LINK})
 endif()
 
-# For small structures g++ takes "rep stos" and "rep movs", which cost some 80 cycles to start: too much for what runs once
-# per batch of fragments.
-set(VERNIER_SMALL_COPIES
-    $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-mmemset-strategy=unrolled_loop:256:noalign,libcall:-1:noalign>
-    $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-mmemcpy-strategy=unrolled_loop:256:noalign,libcall:-1:noalign>)
+# For small structures g++ for x86 takes "rep stos" and "rep movs", which cost some 80 cycles to start: too much for what
+# runs once per batch of fragments.
+set(VERNIER_SMALL_COPIES "")
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    set(VERNIER_SMALL_COPIES
+        $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-mmemset-strategy=unrolled_loop:256:noalign,libcall:-1:noalign>
+        $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-mmemcpy-strategy=unrolled_loop:256:noalign,libcall:-1:noalign>)
+endif()
 
 find_package(Threads REQUIRED)
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -12,8 +13,15 @@
 
 namespace vernier {
 
-/// Pixels on a side. 64 rows of 64 RGBA8 and D32 texels fill a 32 KiB first-level cache.
+/// Pixels on a side. 64 rows of 64 RGBA8 and D32 texels fill a 32 KiB first-level cache. Builds with smaller tiles
+/// (scripts/same-bits) show that no pixel depends on it.
+#ifdef VERNIER_TILE_SIZE
+inline constexpr int32_t kTileSize = VERNIER_TILE_SIZE;
+#else
 inline constexpr int32_t kTileSize = 64;
+#endif
+inline constexpr int kTileBits = std::countr_zero(static_cast<uint32_t>(kTileSize));
+static_assert(kTileSize == 1 << kTileBits && kTileSize >= 16 && kTileSize <= 64);
 inline constexpr int32_t kBlockSize = 8;
 inline constexpr uint32_t kChunkPrimitives = 1024;
 

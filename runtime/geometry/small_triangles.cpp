@@ -119,8 +119,7 @@ HWY_INLINE void setUp(const TriangleGroupInput& in, const Gathered& from, uint32
     hn::Store(hn::Or(hn::And(x0, lowHalf), hn::ShiftLeft<16>(y0)), i, out.low.data() + first);
     hn::Store(hn::Or(hn::And(x1, lowHalf), hn::ShiftLeft<16>(y1)), i, out.high.data() + first);
     const auto tileOf = [&](V pixel, int32_t origin)
-                            HWY_ATTR { return hn::ShiftRight<6>(hn::Sub(pixel, hn::Set(i, origin))); };
-    static_assert(kTileSize == 1 << 6);
+                            HWY_ATTR { return hn::ShiftRight<kTileBits>(hn::Sub(pixel, hn::Set(i, origin))); };
     const V tx = tileOf(x0, in.gridX), ty = tileOf(y0, in.gridY);
     const M spread = hn::Or(hn::Ne(tx, tileOf(x1, in.gridX)), hn::Ne(ty, tileOf(y1, in.gridY)));
     out.spread |= bitsOf(spread, first);

@@ -21,7 +21,7 @@ inline constexpr uint32_t kSmallFragments = kSmallGroup * kSmallExtent * kSmallE
 
 /// A fragment of a group: x and y in the tile, 6 bits each, and the primitive's number in the group.
 using SmallFragment = uint16_t;
-static_assert(kTileSize == 64 && kSmallGroup == 16);
+static_assert(kTileSize <= 64 && kSmallGroup == 16);
 constexpr SmallFragment smallFragment(uint32_t x, uint32_t y, uint32_t lane) {
     return static_cast<SmallFragment>(x | y << 6 | lane << 12);
 }
