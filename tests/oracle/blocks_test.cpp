@@ -187,6 +187,47 @@ TEST(BlocksByHand, AstcWeightsAreInterpolated) {
     EXPECT_EQ(astc(bits, 0, 5, VK_FORMAT_ASTC_8x8_UNORM_BLOCK)[0], 0);
 }
 
+/// Texels of the block as the renderer decodes it that are not what the oracle makes of another one.
+uint32_t astcTexelsOutside(const BlockBits& judged, const BlockBits& drawn, VkFormat format) {
+    const VkExtent2D extent = blockExtent(format);
+    uint32_t outside = 0;
+    for (uint32_t texel = 0; texel < extent.width * extent.height; ++texel) {
+        const uint32_t x = texel % extent.width, y = texel / extent.width;
+        const auto ours = rendered(format, drawn.block, x, y);
+        const conformance::exact::Color oracle = decodeBlockTexel(format, judged.block, x, y);
+        bool inside = true;
+        for (size_t c = 0; c < 4; ++c) inside = inside && ours[c] >= oracle[c].low && ours[c] <= oracle[c].high;
+        outside += !inside;
+    }
+    return outside;
+}
+
+// A fault of a decoder is a right decoder's answer to other bits.
+TEST(BlocksMutation, AstcFaultsAreCaught) {
+    constexpr VkFormat kFour = VK_FORMAT_ASTC_4x4_UNORM_BLOCK, kEight = VK_FORMAT_ASTC_8x8_UNORM_BLOCK;
+    BlockBits right = luminance(10, 240);
+    for (uint32_t i = 0; i < 16; ++i) right.setWeight(i, 2, i * 5 % 4);
+    EXPECT_EQ(astcTexelsOutside(right, right, kFour), 0u);
+    EXPECT_EQ(astcTexelsOutside(right, right, kEight), 0u);
+    BlockBits weight = right;
+    weight.block[15] ^= std::byte{0x80};  // the lowest bit of the first weight
+    EXPECT_EQ(astcTexelsOutside(right, weight, kFour), 1u);
+    EXPECT_GT(astcTexelsOutside(right, weight, kEight), 1u) << "its neighbours are mixed with it";
+    BlockBits end = right;
+    end.block[2] ^= std::byte{2};  // the lowest bit of the darker end point
+    EXPECT_GT(astcTexelsOutside(right, end, kFour), 8u);
+    // Two partitions of luminance.
+    BlockBits parts;
+    parts.set(0, 11, 0b00'0'00'10'0'00'10);
+    parts.set(11, 2, 1);
+    parts.set(13, 10, 77);
+    for (uint32_t at = 29; at < 61; ++at) parts.set(at, 1, at / 5 % 2);
+    BlockBits seed = parts;
+    seed.set(13 + 4, 1, 1);
+    EXPECT_EQ(astcTexelsOutside(parts, parts, kFour), 0u);
+    EXPECT_GT(astcTexelsOutside(parts, seed, kFour), 0u) << "another pattern";
+}
+
 TEST(BlocksByHand, AstcErrorsAreMagenta) {
     const Texel magenta{1, 0, 1, 1};
     EXPECT_EQ(astc({}, 0, 0), magenta) << "a reserved mode";
