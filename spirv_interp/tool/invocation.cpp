@@ -148,10 +148,16 @@ reference::Scalar<Number> scalarOf(reference::ScalarKind kind, const std::string
     }
 }
 
+/// Behind the name of what PerVertexKHR declares.
+std::string vertexOf(const reference::InterfaceVariable& variable) {
+    return variable.perVertex ? "[" + std::to_string(variable.index) + "]" : "";
+}
+
 bool isNamed(const reference::InterfaceVariable& variable, const std::string& name) {
-    if (!variable.name.empty() && (variable.name == name || variable.name == "gl_" + name)) return true;
+    const std::string own = variable.name + vertexOf(variable);
+    if (!variable.name.empty() && (own == name || own == "gl_" + name)) return true;
     return variable.isBuiltin ? builtinName(variable.builtin) == name
-                              : "location" + std::to_string(variable.location) == name;
+                              : "location" + std::to_string(variable.location) + vertexOf(variable) == name;
 }
 
 }  // namespace
@@ -208,8 +214,9 @@ std::string builtinName(spv::BuiltIn builtin) {
 }
 
 std::string variableName(const reference::InterfaceVariable& variable) {
-    if (!variable.name.empty()) return variable.name;
-    return variable.isBuiltin ? builtinName(variable.builtin) : "location" + std::to_string(variable.location);
+    if (!variable.name.empty()) return variable.name + vertexOf(variable);
+    return variable.isBuiltin ? builtinName(variable.builtin)
+                              : "location" + std::to_string(variable.location) + vertexOf(variable);
 }
 
 template <class Number>
