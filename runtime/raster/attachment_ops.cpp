@@ -35,19 +35,25 @@ void clearPixels(const RenderTarget& target, VkImageAspectFlags aspects, const V
     aspects &= info->aspects;
     if (aspects == 0) return;
     const uint32_t bytes = info->bytesPerTexel;
-    std::array<std::byte, 16> texel{};
+    std::array<std::byte, 16> texel{}, kept;
     packClear(*info, aspects, value, texel.data());
-    // One aspect of two: the other one's bits stay.
+    // One aspect of two: the other one's bits stay, which are those that packing leaves as they were.
     const bool partial = aspects != info->aspects;
-    std::array<std::byte, 16 * kRow> row;
-    for (uint32_t n = 0; n < kRow; ++n) std::memcpy(row.data() + n * bytes, texel.data(), bytes);
+    kept.fill(std::byte{0xFF});
+    packClear(*info, aspects, value, kept.data());
+    for (uint32_t k = 0; k < bytes; ++k) kept[k] ^= texel[k];
+    std::array<std::byte, 16 * kRow> row, keptRow;
+    for (uint32_t n = 0; n < kRow; ++n) {
+        std::memcpy(row.data() + n * bytes, texel.data(), bytes);
+        std::memcpy(keptRow.data() + n * bytes, kept.data(), bytes);
+    }
     for (uint32_t s = 0; s < target.samples; ++s) {
         eachRun(rect, [&](int32_t x, int32_t y, uint32_t n) {
             std::byte* place = pixel(target, x, y, s, layer, bytes);
             if (!partial) {
                 std::memcpy(place, row.data(), n * bytes);
             } else {
-                for (uint32_t k = 0; k < n; ++k) packClear(*info, aspects, value, place + k * bytes);
+                for (uint32_t k = 0; k < n * bytes; ++k) place[k] = (place[k] & keptRow[k]) | row[k];
             }
         });
     }
