@@ -7,6 +7,7 @@
 #include <fstream>
 #include <limits>
 
+#include "samples/common/random.h"
 #include "samples/viewer/scene.h"
 #include "tests/samples/gltf_builder.h"
 
@@ -268,6 +269,47 @@ TEST_F(ViewerScene, AnyByteChanged) {
             for (const uint32_t index : part.mesh.indices) ASSERT_LT(index, part.mesh.vertices.size());
         }
     }
+}
+
+/// Reads `count` files made of `right` by changing a few bytes at random; what is read must hang together.
+void readChanged(const std::vector<uint8_t>& right, const std::string& path, int count) {
+    Random random(11);
+    for (int i = 0; i < count; ++i) {
+        std::vector<uint8_t> changed = right;
+        for (uint32_t change = random.below(6); change != ~0u; --change) {
+            const uint32_t at = random.below(static_cast<uint32_t>(changed.size()));
+            // Another byte, one of the file's own, a digit, or nothing.
+            const uint32_t kind = random.below(4);
+            if (kind == 0) changed[at] = static_cast<uint8_t>(random.below(256));
+            if (kind == 1) changed[at] = changed[random.below(static_cast<uint32_t>(changed.size()))];
+            if (kind == 2) changed[at] = static_cast<uint8_t>('0' + random.below(10));
+            if (kind == 3) changed.erase(changed.begin() + at);
+        }
+        std::ofstream(path, std::ios::binary)
+            .write(reinterpret_cast<const char*>(changed.data()), static_cast<std::streamsize>(changed.size()));
+        Scene scene;
+        std::string error;
+        if (!loadScene(path, scene, error)) {
+            ASSERT_FALSE(error.empty());
+            continue;
+        }
+        for (const ScenePart& part : scene.parts) {
+            ASSERT_LT(part.material, scene.materials.size());
+            ASSERT_LT(scene.materials[part.material].texture, static_cast<int>(scene.textures.size()));
+            for (const uint32_t index : part.mesh.indices) ASSERT_LT(index, part.mesh.vertices.size());
+            for (const MeshVertex& vertex : part.mesh.vertices) ASSERT_LE(glm::length(vertex.position), 2);
+        }
+    }
+}
+
+TEST_F(ViewerScene, BytesChangedAtRandom) {
+    readChanged(glb(squareJson(""), square()), (folder_ / "changed.glb").string(), 500);
+    const std::string gltf = squareGltf();
+    readChanged({gltf.begin(), gltf.end()}, (folder_ / "changed.gltf").string(), 250);
+    const std::string obj =
+        "mtllib no.mtl\nv 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nvt 0 1\nvn 0 0 1\no thing\ng part\nf 1/1/1 2/1/1 3/1/1\n"
+        "usemtl red\nf 1//1 2//1 3//1 4//1\ns 1\nf -4 -3 -2\nl 1 2 3\np 1\nt crease 1/0/1 2\n";
+    readChanged({obj.begin(), obj.end()}, (folder_ / "changed.obj").string(), 500);
 }
 
 TEST_F(ViewerScene, Obj) {
