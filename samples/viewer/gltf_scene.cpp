@@ -13,6 +13,8 @@
 namespace samples {
 namespace {
 
+constexpr const char* kQuantization = "KHR_mesh_quantization";
+
 class Builder {
   public:
     Builder(const tinygltf::Model& model, const std::vector<Picture>& pictures, Scene& scene)
@@ -20,7 +22,7 @@ class Builder {
 
     bool build(std::string& error) {
         for (const std::string& extension : model_.extensionsRequired)
-            if (extension != "KHR_mesh_quantization") {
+            if (extension != kQuantization) {
                 error = "needs the extension " + extension + ", which the viewer lacks";
                 return false;
             }
@@ -33,6 +35,9 @@ class Builder {
         note(!model_.animations.empty(), "animations are not played");
         note(!model_.skins.empty(), "skins are shown in the pose of their mesh");
         note(leftOut_ > 0, "points and lines are not shown");
+        note(colors_, "colours of vertices are not shown");
+        for (const std::string& extension : model_.extensionsUsed)
+            note(extension != kQuantization, ("the extension " + extension + " is left out").c_str());
         if (scene_.parts.empty()) error = "has no triangles";
         return !scene_.parts.empty();
     }
@@ -186,6 +191,7 @@ class Builder {
         if (!attribute("POSITION", 3, positions) || !attribute("NORMAL", 3, normals) ||
             !attribute("TEXCOORD_" + std::to_string(set), 2, coordinates))
             return false;
+        colors_ = colors_ || primitive.attributes.count("COLOR_0") != 0;
         const size_t count = positions.size() / 3;
         if (count == 0) {
             error = "has no POSITION";
@@ -275,6 +281,7 @@ class Builder {
     std::map<int, int> textureOfImage_;
     std::vector<int> textureSets_;  // TEXCOORD_n, by material
     size_t leftOut_ = 0;
+    bool colors_ = false;
 };
 
 }  // namespace

@@ -133,6 +133,37 @@ TEST_F(ViewerScene, GltfMirrored) {
     EXPECT_EQ(mesh.vertices[0].normal, glm::vec3(0, 0, 1));
 }
 
+// Fractions as integers, with gaps between the elements (KHR_mesh_quantization).
+TEST_F(ViewerScene, GltfQuantized) {
+    Bytes bytes;
+    for (const std::vector<int16_t>& corner :
+         {std::vector<int16_t>{-32768, -32767, 0, 0}, {32767, -32767, 0, 0}, {0, 32767, 0, 0}})
+        bytes.add(corner);
+    for (int i = 0; i < 3; ++i) bytes.add<int8_t>({0, 0, -128, 0});
+    bytes.add<uint8_t>({0, 255, 0, 0, 51, 0, 0, 0, 255, 255, 0, 0});
+    const std::string json = R"({"asset": {"version": "2.0"}, "extensionsUsed": ["KHR_mesh_quantization"],
+"extensionsRequired": ["KHR_mesh_quantization"], "meshes": [{"primitives": [{"attributes":
+{"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}}]}], "accessors": [
+{"bufferView": 0, "componentType": 5122, "normalized": true, "count": 3, "type": "VEC3"},
+{"bufferView": 1, "componentType": 5120, "normalized": true, "count": 3, "type": "VEC3"},
+{"bufferView": 1, "byteOffset": 12, "componentType": 5121, "normalized": true, "count": 3, "type": "VEC2"}],
+"bufferViews": [{"buffer": 0, "byteLength": 24, "byteStride": 8},
+{"buffer": 0, "byteOffset": 24, "byteLength": 24, "byteStride": 4}], "buffers": [{"byteLength": 48}]})";
+    const Scene scene = read(write("a.glb", glb(json, bytes.data())));
+    EXPECT_TRUE(scene.notes.empty());
+    const std::vector<MeshVertex>& vertices = scene.parts.at(0).mesh.vertices;
+    ASSERT_EQ(vertices.size(), 3u);
+    // From -1 to 1 on both axes, then into the ball around: divided by the root of 2.
+    const float half = std::sqrt(0.5f);
+    const glm::vec2 places[] = {{-half, -half}, {half, -half}, {0, half}}, coordinates[] = {{0, 1}, {0.2f, 0}, {1, 1}};
+    for (size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(vertices[i].position.x, places[i].x, 1e-6);
+        EXPECT_NEAR(vertices[i].position.y, places[i].y, 1e-6);
+        EXPECT_EQ(vertices[i].normal, glm::vec3(0, 0, -1));
+        EXPECT_EQ(vertices[i].uv, coordinates[i]);
+    }
+}
+
 TEST_F(ViewerScene, GltfStripsAndFans) {
     // The square as a strip needs its corners in another order: 0 1 3 2.
     Bytes bytes;
@@ -158,6 +189,16 @@ TEST_F(ViewerScene, PointsAndLinesAreNoted) {
     const Scene scene = read(write("a.gltf", json));
     expectSquare(scene);
     EXPECT_THAT(scene.notes, testing::ElementsAre("points and lines are not shown"));
+}
+
+TEST_F(ViewerScene, WhatIsLeftOutIsNoted) {
+    std::string json =
+        replaced(squareGltf(), "\"scene\": 0,", "\"scene\": 0, \"extensionsUsed\": [\"KHR_materials_unlit\"],");
+    json = replaced(json, "\"POSITION\": 0", "\"POSITION\": 0, \"COLOR_0\": 0");
+    const Scene scene = read(write("a.gltf", json));
+    expectSquare(scene);
+    EXPECT_THAT(scene.notes, testing::ElementsAre("colours of vertices are not shown",
+                                                  "the extension KHR_materials_unlit is left out"));
 }
 
 TEST_F(ViewerScene, WrongTexturesAreNoted) {
