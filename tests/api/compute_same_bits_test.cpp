@@ -1,4 +1,5 @@
 // One dispatch gives one result: the same words with any number of threads and on every instruction set.
+#include "base/simd.h"
 #include "tests/api/fixture.h"
 
 namespace vernier::test {
