@@ -16,7 +16,7 @@ set(VERNIER_ARM64_SYSROOT ${CMAKE_CURRENT_LIST_DIR}/../../build/arm64-sysroot CA
 get_filename_component(root ${VERNIER_ARM64_SYSROOT} ABSOLUTE)
 list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES VERNIER_ARM64_SYSROOT)
 foreach(language C CXX)
-    set(CMAKE_${language}_STANDARD_INCLUDE_DIRECTORIES ${root}/usr/include)
+    set(CMAKE_${language}_STANDARD_INCLUDE_DIRECTORIES ${root}/usr/include ${root}/usr/include/aarch64-linux-gnu)
 endforeach()
 set(libraries ${root}/usr/lib/aarch64-linux-gnu ${root}/lib/aarch64-linux-gnu)
 list(TRANSFORM libraries PREPEND "-L" OUTPUT_VARIABLE link_paths)
