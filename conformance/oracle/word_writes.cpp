@@ -43,7 +43,7 @@ Result<OpenWord> before(const StoredBuffer& buffer, uint64_t offset, WordKind ki
 }
 
 void storeWord(Writes writes, OpenWord& word) {
-    std::ranges::stable_partition(writes, [](const WordWrite* w) { return !w->open; });
+    std::stable_partition(writes.begin(), writes.end(), [](const WordWrite* w) { return !w->open; });
     bool first = true;
     for (const WordWrite* write : writes) {
         if (first && !write->open) {
