@@ -59,7 +59,7 @@ void setComputeLimits(VkPhysicalDeviceLimits& limits) {
 }  // namespace
 
 VkPhysicalDeviceLimits deviceLimits(const VkPhysicalDeviceFeatures& features, const Accuracy& accuracy) {
-    // Tessellation, geometry and sparse limits stay 0: those stages do not exist.
+    // Nothing is sparse: those limits stay 0.
     VkPhysicalDeviceLimits limits{};
     limits.maxImageDimension1D = kMaxImageDimension2D;
     limits.maxImageDimension2D = kMaxImageDimension2D;
@@ -77,6 +77,11 @@ VkPhysicalDeviceLimits deviceLimits(const VkPhysicalDeviceFeatures& features, co
     limits.maxVertexInputAttributeOffset = kMaxVertexAttributeOffset;
     limits.maxVertexInputBindingStride = kMaxVertexBindingStride;
     limits.maxVertexOutputComponents = kMaxInterfaceComponents;
+
+    // There is no tessellation: its limits stay 0.
+
+    // There are no geometry shaders: their limits stay 0.
+
     limits.maxFragmentInputComponents = kMaxInterfaceComponents;
     limits.maxFragmentOutputAttachments = kMaxColorAttachments;
     limits.maxFragmentDualSrcAttachments = features.dualSrcBlend ? 1 : 0;

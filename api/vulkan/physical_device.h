@@ -25,9 +25,10 @@ struct PhysicalDevice : Dispatchable {
     VkPhysicalDeviceMemoryProperties memory;
 };
 
-/// What the runtime does of Vulkan 1.0's features (features.cpp).
+/// The features of Vulkan 1.0 that the device has (features.def).
 VkPhysicalDeviceFeatures supportedFeatures();
-/// Fills every feature structure of the chain that the driver knows (features.cpp).
+/// Fills every feature structure of the chain that the driver knows, VkPhysicalDeviceFeatures2 among them
+/// (features.cpp).
 void fillFeatureChain(void* chain);
 /// VK_ERROR_FEATURE_NOT_PRESENT when something is wanted that is not there; `missing` names it
 /// (features.cpp).

@@ -15,6 +15,9 @@
 namespace vernier::vulkan {
 namespace {
 
+constexpr VkShaderStageFlags kShaderStages =
+    VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
+
 /// A name, a number and what tells apart the devices of this driver.
 void fillUuid(uint8_t (&uuid)[VK_UUID_SIZE], const char (&name)[9], uint32_t number, const PhysicalDevice& device) {
     std::memset(uuid, 0, VK_UUID_SIZE);
@@ -25,7 +28,7 @@ void fillUuid(uint8_t (&uuid)[VK_UUID_SIZE], const char (&name)[9], uint32_t num
     uuid[14] = static_cast<uint8_t>(device.isa);
 }
 
-void setIds(const PhysicalDevice& device, VkPhysicalDeviceIDProperties& p) {
+void fill(const PhysicalDevice& device, VkPhysicalDeviceIDProperties& p) {
     fillUuid(p.deviceUUID, "VrnrDev ", device.properties.deviceID, device);
     fillUuid(p.driverUUID, "VrnrDrvr", device.properties.driverVersion, device);
     std::memset(p.deviceLUID, 0, sizeof p.deviceLUID);
@@ -33,9 +36,9 @@ void setIds(const PhysicalDevice& device, VkPhysicalDeviceIDProperties& p) {
     p.deviceLUIDValid = VK_FALSE;
 }
 
-void setSubgroups(VkPhysicalDeviceSubgroupProperties& p) {
+void fill(const PhysicalDevice&, VkPhysicalDeviceSubgroupProperties& p) {
     p.subgroupSize = ir::kSubgroupSize;
-    p.supportedStages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
+    p.supportedStages = kShaderStages;
     p.supportedOperations = VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_VOTE_BIT |
                             VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT |
                             VK_SUBGROUP_FEATURE_SHUFFLE_BIT | VK_SUBGROUP_FEATURE_SHUFFLE_RELATIVE_BIT |
@@ -43,7 +46,7 @@ void setSubgroups(VkPhysicalDeviceSubgroupProperties& p) {
     p.quadOperationsInAllStages = VK_TRUE;
 }
 
-void setTransformFeedback(VkPhysicalDeviceTransformFeedbackPropertiesEXT& p) {
+void fill(const PhysicalDevice&, VkPhysicalDeviceTransformFeedbackPropertiesEXT& p) {
     p.maxTransformFeedbackStreams = 1;
     p.maxTransformFeedbackBuffers = kCaptureBuffers;
     p.maxTransformFeedbackBufferSize = UINT32_MAX;  // what counters can tell
@@ -55,7 +58,7 @@ void setTransformFeedback(VkPhysicalDeviceTransformFeedbackPropertiesEXT& p) {
 }
 
 /// Khronos gives out VkDriverId; this driver has none, and has passed no conformance tests.
-void setDriver(const PhysicalDevice& device, VkPhysicalDeviceDriverProperties& p) {
+void fill(const PhysicalDevice& device, VkPhysicalDeviceDriverProperties& p) {
     const uint32_t version = device.properties.driverVersion;
     p.driverID = VkDriverId{};
     std::snprintf(p.driverName, sizeof p.driverName, "Vernier");
@@ -64,7 +67,7 @@ void setDriver(const PhysicalDevice& device, VkPhysicalDeviceDriverProperties& p
     p.conformanceVersion = {};
 }
 
-void setInlineBlocks(VkPhysicalDeviceInlineUniformBlockProperties& p) {
+void fill(const PhysicalDevice&, VkPhysicalDeviceInlineUniformBlockProperties& p) {
     p.maxInlineUniformBlockSize = kMaxInlineUniformBlockBytes;
     p.maxPerStageDescriptorInlineUniformBlocks = p.maxPerStageDescriptorUpdateAfterBindInlineUniformBlocks =
         p.maxDescriptorSetInlineUniformBlocks = p.maxDescriptorSetUpdateAfterBindInlineUniformBlocks =
@@ -72,7 +75,8 @@ void setInlineBlocks(VkPhysicalDeviceInlineUniformBlockProperties& p) {
 }
 
 /// Descriptors that are updated after they are bound are like others, but for how many there may be.
-void setDescriptorIndexing(const VkPhysicalDeviceLimits& limits, VkPhysicalDeviceDescriptorIndexingProperties& p) {
+void fill(const PhysicalDevice& device, VkPhysicalDeviceDescriptorIndexingProperties& p) {
+    const VkPhysicalDeviceLimits& limits = device.properties.limits;
     p.maxUpdateAfterBindDescriptorsInAllPools = UINT32_MAX;
     // Lanes that name several descriptors are served one descriptor after the other.
     p.shaderUniformBufferArrayNonUniformIndexingNative = p.shaderSampledImageArrayNonUniformIndexingNative =
@@ -93,22 +97,21 @@ void setDescriptorIndexing(const VkPhysicalDeviceLimits& limits, VkPhysicalDevic
 }
 
 /// There is one size.
-void setSubgroupSizes(VkPhysicalDeviceSubgroupSizeControlProperties& p) {
+void fill(const PhysicalDevice&, VkPhysicalDeviceSubgroupSizeControlProperties& p) {
     p.minSubgroupSize = p.maxSubgroupSize = ir::kSubgroupSize;
     p.maxComputeWorkgroupSubgroups = kMaxWorkGroupInvocations / ir::kSubgroupSize;
-    p.requiredSubgroupSizeStages =
-        VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
+    p.requiredSubgroupSizeStages = kShaderStages;
 }
 
 /// Texels are read wherever they lie, but loads of whole texels want them aligned to themselves.
-void setTexelAlignments(VkPhysicalDeviceTexelBufferAlignmentProperties& p) {
+void fill(const PhysicalDevice&, VkPhysicalDeviceTexelBufferAlignmentProperties& p) {
     p.storageTexelBufferOffsetAlignmentBytes = p.uniformTexelBufferOffsetAlignmentBytes = kTexelBufferAlignment;
     p.storageTexelBufferOffsetSingleTexelAlignment = p.uniformTexelBufferOffsetSingleTexelAlignment = VK_TRUE;
 }
 
 /// Every operation of every width rounds to nearest even, and keeps denormals, signs of zeros, infinities and NaNs;
 /// there is no other mode.
-void setFloatControls(VkPhysicalDeviceFloatControlsProperties& p) {
+void fill(const PhysicalDevice&, VkPhysicalDeviceFloatControlsProperties& p) {
     p.denormBehaviorIndependence = p.roundingModeIndependence = VK_SHADER_FLOAT_CONTROLS_INDEPENDENCE_NONE;
     for (VkBool32* mode :
          {&p.shaderSignedZeroInfNanPreserveFloat16, &p.shaderSignedZeroInfNanPreserveFloat32,
@@ -124,89 +127,153 @@ void setFloatControls(VkPhysicalDeviceFloatControlsProperties& p) {
     }
 }
 
+void fill(const PhysicalDevice&, VkPhysicalDeviceProtectedMemoryProperties& p) {
+    p.protectedNoFault = VK_FALSE;
+}
+
+void fill(const PhysicalDevice&, VkPhysicalDeviceMaintenance3Properties& p) {
+    p.maxPerSetDescriptors = kMaxDescriptorsPerSet;
+    p.maxMemoryAllocationSize = kMaxAllocation;
+}
+
+void fill(const PhysicalDevice&, VkPhysicalDeviceRobustness2PropertiesEXT& p) {
+    // Buffers end with the last byte of their range.
+    p.robustStorageBufferAccessSizeAlignment = p.robustUniformBufferAccessSizeAlignment = 1;
+}
+
+void fill(const PhysicalDevice&, VkPhysicalDeviceExternalMemoryHostPropertiesEXT& p) {
+    p.minImportedHostPointerAlignment = hostPointerAlignment();
+}
+
+void fill(const PhysicalDevice&, VkPhysicalDeviceTimelineSemaphoreProperties& p) {
+    p.maxTimelineSemaphoreValueDifference = UINT64_MAX;
+}
+
+void fill(const PhysicalDevice&, VkPhysicalDeviceFragmentShaderBarycentricPropertiesKHR& p) {
+    p.triStripVertexOrderIndependentOfProvokingVertex = VK_FALSE;
+}
+
+void fill(const PhysicalDevice&, VkPhysicalDeviceProvokingVertexPropertiesEXT& p) {
+    p.provokingVertexModePerPipeline = VK_TRUE;
+    p.transformFeedbackPreservesTriangleFanProvokingVertex = VK_TRUE;
+}
+
+void fill(const PhysicalDevice&, VkPhysicalDevicePointClippingProperties& p) {
+    p.pointClippingBehavior = VK_POINT_CLIPPING_BEHAVIOR_ALL_CLIP_PLANES;
+}
+
+void fill(const PhysicalDevice&, VkPhysicalDeviceDepthStencilResolveProperties& p) {
+    p.supportedDepthResolveModes = kDepthResolveModes;
+    p.supportedStencilResolveModes = kStencilResolveModes;
+    p.independentResolveNone = p.independentResolve = VK_TRUE;
+}
+
+void fill(const PhysicalDevice& device, VkPhysicalDeviceLineRasterizationPropertiesEXT& p) {
+    p.lineSubPixelPrecisionBits = device.accuracy.subPixelBits;
+}
+
+void fill(const PhysicalDevice&, VkPhysicalDeviceMultiviewProperties& p) {
+    p.maxMultiviewViewCount = kMaxViews;
+    p.maxMultiviewInstanceIndex = UINT32_MAX;
+}
+
+void fill(const PhysicalDevice&, VkPhysicalDeviceSampleLocationsPropertiesEXT& p) {
+    p.sampleLocationSampleCounts = kSampleCounts;
+    p.maxSampleLocationGridSize = {1, 1};
+    p.sampleLocationCoordinateRange[0] = 0;
+    p.sampleLocationCoordinateRange[1] = 1 - 1.0f / (1u << kSampleLocationBits);
+    p.sampleLocationSubPixelBits = kSampleLocationBits;
+    p.variableSampleLocations = VK_TRUE;
+}
+
+void fill(const PhysicalDevice&, VkPhysicalDeviceVertexAttributeDivisorPropertiesEXT& p) {
+    p.maxVertexAttribDivisor = UINT32_MAX;
+}
+
+void fill(const PhysicalDevice&, VkPhysicalDeviceMultiDrawPropertiesEXT& p) {
+    p.maxMultiDrawCount = UINT32_MAX;
+}
+
+void fill(const PhysicalDevice&, VkPhysicalDeviceCustomBorderColorPropertiesEXT& p) {
+    p.maxCustomBorderColorSamplers = UINT32_MAX;
+}
+
+void fill(const PhysicalDevice&, VkPhysicalDeviceSamplerFilterMinmaxProperties& p) {
+    p.filterMinmaxSingleComponentFormats = VK_TRUE;
+    p.filterMinmaxImageComponentMapping = VK_TRUE;
+}
+
+void fill(const PhysicalDevice&, VkPhysicalDevicePushDescriptorPropertiesKHR& p) {
+    p.maxPushDescriptors = kMaxPushDescriptors;
+}
+
+void fill(const PhysicalDevice&, VkPhysicalDeviceMaintenance4Properties& p) {
+    p.maxBufferSize = kMaxAllocation;
+}
+
+void fill(const PhysicalDevice&, VkPhysicalDeviceExtendedDynamicState3PropertiesEXT& p) {
+    p.dynamicPrimitiveTopologyUnrestricted = VK_TRUE;
+}
+
+void fill(const PhysicalDevice&, VkPhysicalDeviceShaderIntegerDotProductProperties& p) {
+    // None of them is faster than the products and sums written out.
+    VkPhysicalDeviceShaderIntegerDotProductProperties none{};
+    none.sType = p.sType;
+    none.pNext = p.pNext;
+    p = none;
+}
+
+/// What fills structures of one type.
+struct Filler {
+    VkStructureType type;
+    void (*fill)(const PhysicalDevice& device, void* structure);
+};
+
+template <class Structure>
+constexpr Filler fillerOf() {
+    return {kStructureType<Structure>,
+            [](const PhysicalDevice& device, void* structure) { fill(device, *static_cast<Structure*>(structure)); }};
+}
+
+constexpr Filler kFillers[] = {
+    fillerOf<VkPhysicalDeviceCustomBorderColorPropertiesEXT>(),
+    fillerOf<VkPhysicalDeviceDepthStencilResolveProperties>(),
+    fillerOf<VkPhysicalDeviceDescriptorIndexingProperties>(),
+    fillerOf<VkPhysicalDeviceDriverProperties>(),
+    fillerOf<VkPhysicalDeviceExtendedDynamicState3PropertiesEXT>(),
+    fillerOf<VkPhysicalDeviceExternalMemoryHostPropertiesEXT>(),
+    fillerOf<VkPhysicalDeviceFloatControlsProperties>(),
+    fillerOf<VkPhysicalDeviceFragmentShaderBarycentricPropertiesKHR>(),
+    fillerOf<VkPhysicalDeviceIDProperties>(),
+    fillerOf<VkPhysicalDeviceInlineUniformBlockProperties>(),
+    fillerOf<VkPhysicalDeviceLineRasterizationPropertiesEXT>(),
+    fillerOf<VkPhysicalDeviceMaintenance3Properties>(),
+    fillerOf<VkPhysicalDeviceMaintenance4Properties>(),
+    fillerOf<VkPhysicalDeviceMultiDrawPropertiesEXT>(),
+    fillerOf<VkPhysicalDeviceMultiviewProperties>(),
+    fillerOf<VkPhysicalDevicePointClippingProperties>(),
+    fillerOf<VkPhysicalDeviceProtectedMemoryProperties>(),
+    fillerOf<VkPhysicalDeviceProvokingVertexPropertiesEXT>(),
+    fillerOf<VkPhysicalDevicePushDescriptorPropertiesKHR>(),
+    fillerOf<VkPhysicalDeviceRobustness2PropertiesEXT>(),
+    fillerOf<VkPhysicalDeviceSampleLocationsPropertiesEXT>(),
+    fillerOf<VkPhysicalDeviceSamplerFilterMinmaxProperties>(),
+    fillerOf<VkPhysicalDeviceShaderIntegerDotProductProperties>(),
+    fillerOf<VkPhysicalDeviceSubgroupProperties>(),
+    fillerOf<VkPhysicalDeviceSubgroupSizeControlProperties>(),
+    fillerOf<VkPhysicalDeviceTexelBufferAlignmentProperties>(),
+    fillerOf<VkPhysicalDeviceTimelineSemaphoreProperties>(),
+    fillerOf<VkPhysicalDeviceTransformFeedbackPropertiesEXT>(),
+    fillerOf<VkPhysicalDeviceVertexAttributeDivisorPropertiesEXT>(),
+};
+
 }  // namespace
 
 void fillPropertyChain(const PhysicalDevice& device, void* chain) {
-    if (auto* p = findInChain<VkPhysicalDeviceIDProperties>(chain)) setIds(device, *p);
-    if (auto* p = findInChain<VkPhysicalDeviceSubgroupProperties>(chain)) setSubgroups(*p);
-    if (auto* p = findInChain<VkPhysicalDeviceProtectedMemoryProperties>(chain)) p->protectedNoFault = VK_FALSE;
-    if (auto* p = findInChain<VkPhysicalDeviceMaintenance3Properties>(chain)) {
-        p->maxPerSetDescriptors = kMaxDescriptorsPerSet;
-        p->maxMemoryAllocationSize = kMaxAllocation;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceRobustness2PropertiesEXT>(chain)) {
-        // Buffers end with the last byte of their range.
-        p->robustStorageBufferAccessSizeAlignment = p->robustUniformBufferAccessSizeAlignment = 1;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceExternalMemoryHostPropertiesEXT>(chain)) {
-        p->minImportedHostPointerAlignment = hostPointerAlignment();
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceTimelineSemaphoreProperties>(chain)) {
-        p->maxTimelineSemaphoreValueDifference = UINT64_MAX;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceFragmentShaderBarycentricPropertiesKHR>(chain)) {
-        p->triStripVertexOrderIndependentOfProvokingVertex = VK_FALSE;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceProvokingVertexPropertiesEXT>(chain)) {
-        p->provokingVertexModePerPipeline = VK_TRUE;
-        p->transformFeedbackPreservesTriangleFanProvokingVertex = VK_TRUE;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceTransformFeedbackPropertiesEXT>(chain)) setTransformFeedback(*p);
-    if (auto* p = findInChain<VkPhysicalDevicePointClippingProperties>(chain)) {
-        p->pointClippingBehavior = VK_POINT_CLIPPING_BEHAVIOR_ALL_CLIP_PLANES;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceDepthStencilResolveProperties>(chain)) {
-        p->supportedDepthResolveModes = kDepthResolveModes;
-        p->supportedStencilResolveModes = kStencilResolveModes;
-        p->independentResolveNone = p->independentResolve = VK_TRUE;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceLineRasterizationPropertiesEXT>(chain)) {
-        p->lineSubPixelPrecisionBits = device.accuracy.subPixelBits;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceMultiviewProperties>(chain)) {
-        p->maxMultiviewViewCount = kMaxViews;
-        p->maxMultiviewInstanceIndex = UINT32_MAX;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceSampleLocationsPropertiesEXT>(chain)) {
-        p->sampleLocationSampleCounts = kSampleCounts;
-        p->maxSampleLocationGridSize = {1, 1};
-        p->sampleLocationCoordinateRange[0] = 0;
-        p->sampleLocationCoordinateRange[1] = 1 - 1.0f / (1u << kSampleLocationBits);
-        p->sampleLocationSubPixelBits = kSampleLocationBits;
-        p->variableSampleLocations = VK_TRUE;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceVertexAttributeDivisorPropertiesEXT>(chain)) {
-        p->maxVertexAttribDivisor = UINT32_MAX;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceMultiDrawPropertiesEXT>(chain)) p->maxMultiDrawCount = UINT32_MAX;
-    if (auto* p = findInChain<VkPhysicalDeviceCustomBorderColorPropertiesEXT>(chain)) {
-        p->maxCustomBorderColorSamplers = UINT32_MAX;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceSamplerFilterMinmaxProperties>(chain)) {
-        p->filterMinmaxSingleComponentFormats = VK_TRUE;
-        p->filterMinmaxImageComponentMapping = VK_TRUE;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceFloatControlsProperties>(chain)) setFloatControls(*p);
-    if (auto* p = findInChain<VkPhysicalDeviceDriverProperties>(chain)) setDriver(device, *p);
-    if (auto* p = findInChain<VkPhysicalDevicePushDescriptorPropertiesKHR>(chain)) {
-        p->maxPushDescriptors = kMaxPushDescriptors;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceInlineUniformBlockProperties>(chain)) setInlineBlocks(*p);
-    if (auto* p = findInChain<VkPhysicalDeviceDescriptorIndexingProperties>(chain)) {
-        setDescriptorIndexing(device.properties.limits, *p);
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceMaintenance4Properties>(chain)) p->maxBufferSize = kMaxAllocation;
-    if (auto* p = findInChain<VkPhysicalDeviceSubgroupSizeControlProperties>(chain)) setSubgroupSizes(*p);
-    if (auto* p = findInChain<VkPhysicalDeviceTexelBufferAlignmentProperties>(chain)) setTexelAlignments(*p);
-    if (auto* p = findInChain<VkPhysicalDeviceExtendedDynamicState3PropertiesEXT>(chain)) {
-        p->dynamicPrimitiveTopologyUnrestricted = VK_TRUE;
-    }
-    if (auto* p = findInChain<VkPhysicalDeviceShaderIntegerDotProductProperties>(chain)) {
-        // None of them is faster than the products and sums written out.
-        const VkBaseOutStructure head{p->sType, static_cast<VkBaseOutStructure*>(p->pNext)};
-        *p = {};
-        p->sType = head.sType;
-        p->pNext = head.pNext;
+    for (auto* node = static_cast<VkBaseOutStructure*>(chain); node != nullptr; node = node->pNext) {
+        for (const Filler& filler : kFillers) {
+            if (filler.type == node->sType) filler.fill(device, node);
+        }
     }
 }
 

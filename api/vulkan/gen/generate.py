@@ -11,7 +11,6 @@ registry, and fails when a list names something the registry does not know. Outp
                        for tests
   extensions.inc       VERNIER_EXTENSION_ROW(identifier, "name", spec version, isInstance)
   structures.inc       VERNIER_STRUCTURE(type, sType value) for every structure that can stand in a pNext chain
-  feature_names.inc    VERNIER_FEATURE_NAME(member) for the members of VkPhysicalDeviceFeatures, in order
   enum_names.inc       VERNIER_ENUM_NAME(enum type, value) for the enums that messages print
 """
 import pathlib
@@ -104,9 +103,6 @@ class Registry:
                 if member.find("name").text == "sType" and member.get("values"):
                     yield struct.get("name"), member.get("values")
 
-    def members(self, struct):
-        return [m.find("name").text for m in self.root.findall("types/type[@name='%s']/member" % struct)]
-
     def enum_values(self, enum):
         group = self.root.find("enums[@name='%s']" % enum)
         if group is None:
@@ -168,8 +164,6 @@ def main():
                               "true" if registry.extensions[name].get("type") == "instance" else "false")
                              for name in extensions])
     write("structures.inc", ["VERNIER_STRUCTURE(%s, %s)" % pair for pair in registry.structures()])
-    write("feature_names.inc", ["VERNIER_FEATURE_NAME(%s)" % name
-                                for name in registry.members("VkPhysicalDeviceFeatures")])
     write("enum_names.inc", ["VERNIER_ENUM_NAME(%s, %s)" % (enum, value)
                              for enum in PRINTED_ENUMS for value in registry.enum_values(enum)])
 
