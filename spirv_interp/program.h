@@ -127,6 +127,10 @@ class BatchContext {
     /// After run(): the lanes of output `slot`; lanes that were not live hold arbitrary bits.
     const float* output(uint32_t slot) const;
 
+    /// After run(): the memory of the program's resources of the kind stageMemory, one after the other. run() leaves
+    /// what it does not write.
+    const uint32_t* stageMemory() const;
+
     /// After run(): storeMask less the lanes that were killed or demoted.
     const uint32_t* liveMask() const;
 

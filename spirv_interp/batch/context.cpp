@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "spirv_interp/batch/run_state.h"
+#include "spirv_interp/batch/own_memory.h"
 #include "spirv_interp/program.h"
 
 namespace vernier {
@@ -10,11 +10,13 @@ struct BatchContext::Impl {
         : shared(std::move(p)),
           draw(shared, shared.compiled.draw()),
           batch(shared, shared.compiled.batch()),
-          live(batch::kMaxLanes) {}
+          live(batch::kMaxLanes),
+          memory(shared.compiled.source()) {}
 
     batch::SharedState shared;
     batch::RunState draw, batch;
-    batch::Words live;    // what liveMask() was last asked for
+    batch::Words live;  // what liveMask() was last asked for
+    batch::OwnMemory memory;
     uint32_t groups = 0;  // of the last run: its lanes in whole groups
 };
 
@@ -25,7 +27,7 @@ BatchContext::BatchContext(BatchContext&&) noexcept = default;
 BatchContext& BatchContext::operator=(BatchContext&&) noexcept = default;
 
 void BatchContext::beginDraw(const ResourceBindings& bindings) {
-    impl_->shared.bindings = bindings;
+    impl_->shared.bindings = impl_->memory.bind(bindings);
     impl_->draw.runStraight();
 }
 
@@ -37,6 +39,10 @@ float* BatchContext::input(uint32_t slot) {
 const float* BatchContext::output(uint32_t slot) const {
     const auto& outputs = impl_->shared.compiled.batch().outputs;
     return slot >= outputs.size() ? nullptr : reinterpret_cast<const float*>(impl_->batch.row(outputs[slot]));
+}
+
+const uint32_t* BatchContext::stageMemory() const {
+    return impl_->memory.words();
 }
 
 bool BatchContext::run(uint32_t lanes, const uint32_t* execMask, const uint32_t* storeMask) {

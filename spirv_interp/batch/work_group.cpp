@@ -2,7 +2,7 @@
 // batch.
 #include <algorithm>
 
-#include "spirv_interp/batch/run_state.h"
+#include "spirv_interp/batch/own_memory.h"
 #include "spirv_interp/program.h"
 
 namespace vernier {
@@ -21,8 +21,7 @@ struct WorkGroupContext::Impl {
           batchesPerGroup((size + lanes - 1) / lanes),
           draw(shared, shared.compiled.draw()),
           workGroup(shared, shared.compiled.workGroup()),
-          memoryWords(memoryWordsOf(shared.compiled.source())),
-          memory(memoryWords) {
+          memory(shared.compiled.source()) {
         const ir::Program& source = shared.compiled.source();
         // Only batches that wait for each other need registers of their own.
         const bool waits = source.hasBarriers && batchesPerGroup > 1;
@@ -35,13 +34,6 @@ struct WorkGroupContext::Impl {
 
     static uint32_t sizeOf(const ir::Program& program) {
         return program.localSize[0] * program.localSize[1] * program.localSize[2];
-    }
-    static uint32_t memoryWordsOf(const ir::Program& program) {
-        uint32_t words = 0;
-        for (const ir::Resource& resource : program.resources) {
-            if (resource.kind == ir::ResourceKind::workgroupMemory) words += (resource.byteSize + 3) / 4;
-        }
-        return words;
     }
 
     /// An input with a row of its own; for those that depend on the invocation, what to put there for every batch of a
@@ -78,40 +70,9 @@ struct WorkGroupContext::Impl {
         }
     }
 
-    void bind(const ResourceBindings& bindings) {
-        shared.bindings = bindings;
-        if (memoryWords == 0) return;
-        // The same tables with the work-group's memory among them.
-        const auto& resources = shared.compiled.source().resources;
-        buffers.clear();
-        bases.assign(resources.size(), 0);
-        counts.assign(resources.size(), 0);
-        for (size_t r = 0; r < resources.size(); ++r) {
-            const ir::ResourceKind kind = resources[r].kind;
-            if (kind == ir::ResourceKind::workgroupMemory) {
-                bases[r] = static_cast<uint32_t>(buffers.size());
-                counts[r] = 1;
-                buffers.push_back({reinterpret_cast<std::byte*>(memory.get()), memoryWords * 4});
-                continue;
-            }
-            if (bindings.base == nullptr || bindings.count == nullptr) continue;
-            const bool isBuffer = kind == ir::ResourceKind::uniformBuffer || kind == ir::ResourceKind::storageBuffer ||
-                                  kind == ir::ResourceKind::pushConstants;
-            bases[r] = isBuffer ? static_cast<uint32_t>(buffers.size()) : bindings.base[r];
-            if (isBuffer && bindings.buffers == nullptr) continue;
-            counts[r] = bindings.count[r];
-            if (!isBuffer) continue;
-            const BufferBinding* first = bindings.buffers + bindings.base[r];
-            buffers.insert(buffers.end(), first, first + counts[r]);
-        }
-        shared.bindings.buffers = buffers.data();
-        shared.bindings.base = bases.data();
-        shared.bindings.count = counts.data();
-    }
-
     void begin(const ResourceBindings& bindings, const Grid& newGrid) {
         grid = newGrid;
-        bind(bindings);
+        shared.bindings = memory.bind(bindings);
         for (const ScalarInput& input : scalarInputs) {
             if (input.builtin == ir::Builtin::numWorkgroups) shared.scalars[input.scalar] = grid.count[input.component];
         }
@@ -164,7 +125,7 @@ struct WorkGroupContext::Impl {
         }
         workGroup.runStraight();
         // What is read before it is written does not tell of other work-groups.
-        std::fill_n(memory.get(), memoryWords, 0u);
+        std::fill_n(memory.words(), memory.wordCount(), 0u);
         if (batches.size() == 1) {
             for (uint32_t k = 0; k < batchesPerGroup; ++k) {
                 start(batches[0], k, id, 1);
@@ -205,12 +166,9 @@ struct WorkGroupContext::Impl {
     const uint32_t lanes, size, groupsPerBatch, batchesPerGroup;
     batch::RunState draw, workGroup;
     std::vector<batch::RunState> batches;
-    const uint32_t memoryWords;
-    batch::Words memory;
+    batch::OwnMemory memory;
     std::vector<RowInput> rowInputs;
     std::vector<ScalarInput> scalarInputs;
-    std::vector<BufferBinding> buffers;
-    std::vector<uint32_t> bases, counts;
     Grid grid;
 };
 

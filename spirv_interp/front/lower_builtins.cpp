@@ -7,10 +7,9 @@
 namespace vernier {
 namespace {
 
-constexpr uint32_t kVertex = 1u << static_cast<uint32_t>(ir::Stage::vertex);
 constexpr uint32_t kFragment = 1u << static_cast<uint32_t>(ir::Stage::fragment);
 constexpr uint32_t kCompute = 1u << static_cast<uint32_t>(ir::Stage::compute);
-constexpr uint32_t kAllStages = kVertex | kFragment | kCompute;
+constexpr uint32_t kAllStages = ~0u;
 
 struct ComputedBuiltin {
     spv::BuiltIn builtin;

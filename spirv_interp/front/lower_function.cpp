@@ -35,9 +35,15 @@ void Lowering::lowerEntry(const EntryPoint& entry) {
     }
     Frame frame;
     frame.function = function;
+    const bool putsOutVertices = program_.stage == ir::Stage::geometry;
+    if (putsOutVertices) beginVertices();
     lowerFunction(*function, frame);
     emitter_.setLine(0);
-    storeOutputs();
+    if (putsOutVertices) {
+        endVertices();
+    } else {
+        storeOutputs();
+    }
     emitter_.ret();
 }
 
@@ -173,7 +179,7 @@ void Lowering::lowerInstruction(const Instruction& inst) {
     if (inst.op == spv::Op::OpExtInst) {
         lowerExtended(inst);
     } else if (!lowerMemory(inst) && !lowerComposite(inst) && !lowerArithmetic(inst) && !lowerImage(inst) &&
-               !lowerBarrier(inst) && !lowerSubgroup(inst)) {
+               !lowerBarrier(inst) && !lowerSubgroup(inst) && !lowerEmission(inst)) {
         refuse(inst, "the instruction is not supported");
     }
     emitter_.setFlags(false, false);

@@ -18,6 +18,7 @@ struct BuiltinEntry {
 
 constexpr auto kVertex = ir::Stage::vertex;
 constexpr auto kFragment = ir::Stage::fragment;
+constexpr auto kGeometry = ir::Stage::geometry;
 
 constexpr BuiltinEntry kBuiltins[] = {
     {spv::BuiltIn::VertexIndex, ir::Builtin::vertexIndex, kVertex, true},
@@ -44,6 +45,20 @@ constexpr BuiltinEntry kBuiltins[] = {
     {spv::BuiltIn::SamplePosition, ir::Builtin::samplePosition, kFragment, true},
     {spv::BuiltIn::SampleMask, ir::Builtin::sampleMaskIn, kFragment, true},
     {spv::BuiltIn::PrimitiveId, ir::Builtin::primitiveId, kFragment, true},
+    {spv::BuiltIn::Position, ir::Builtin::position, kGeometry, true},
+    {spv::BuiltIn::PointSize, ir::Builtin::pointSize, kGeometry, true},
+    {spv::BuiltIn::ClipDistance, ir::Builtin::clipDistance, kGeometry, true},
+    {spv::BuiltIn::CullDistance, ir::Builtin::cullDistance, kGeometry, true},
+    {spv::BuiltIn::PrimitiveId, ir::Builtin::primitiveId, kGeometry, true},
+    {spv::BuiltIn::InvocationId, ir::Builtin::invocationId, kGeometry, true},
+    {spv::BuiltIn::ViewIndex, ir::Builtin::viewIndex, kGeometry, true},
+    {spv::BuiltIn::Position, ir::Builtin::position, kGeometry, false},
+    {spv::BuiltIn::PointSize, ir::Builtin::pointSize, kGeometry, false},
+    {spv::BuiltIn::ClipDistance, ir::Builtin::clipDistance, kGeometry, false},
+    {spv::BuiltIn::CullDistance, ir::Builtin::cullDistance, kGeometry, false},
+    {spv::BuiltIn::PrimitiveId, ir::Builtin::primitiveId, kGeometry, false},
+    {spv::BuiltIn::Layer, ir::Builtin::layer, kGeometry, false},
+    {spv::BuiltIn::ViewportIndex, ir::Builtin::viewportIndex, kGeometry, false},
     {spv::BuiltIn::FragDepth, ir::Builtin::fragDepth, kFragment, false},
     {spv::BuiltIn::SampleMask, ir::Builtin::sampleMask, kFragment, false},
     {spv::BuiltIn::FragStencilRefEXT, ir::Builtin::fragStencilRef, kFragment, false},
@@ -51,12 +66,14 @@ constexpr BuiltinEntry kBuiltins[] = {
 
 constexpr uint32_t kMaxLocalWords = 1u << 16;
 
-/// The decoration is the variable's or that of a block's members.
-bool isPerVertex(const Module& module, uint32_t variable, const SpirvType& type) {
-    return module.hasDecoration(variable, spv::Decoration::PerVertexKHR) ||
-           (type.kind == SpirvType::Kind::array &&
-            module.findDecoration(type.element, spv::Decoration::PerVertexKHR, 0) != nullptr);
+/// The decoration is the variable's or that of the members of blocks in an array.
+bool isDecorated(const Module& module, uint32_t variable, const SpirvType& type, spv::Decoration decoration) {
+    return module.hasDecoration(variable, decoration) ||
+           (type.kind == SpirvType::Kind::array && module.findDecoration(type.element, decoration, 0) != nullptr);
 }
+
+/// Vertices that primitives and patches have at most (maxTessellationPatchSize).
+constexpr uint32_t kMaxVertexNumbers = 32;
 
 }  // namespace
 
@@ -145,12 +162,9 @@ void Lowering::lowerStageVariable(const Instruction& inst, bool input) {
     const SlotPlace place{id, 0, Decoration::kNoMember, input};
     decorateSlot(place, slot, at);
     leafTypes(pointer.type);  // refuses what is too large
-    if (input && isPerVertex(module_, id, typeInfo(pointer.type))) {
-        // SPV_KHR_fragment_shader_barycentric: the first index is the vertex's number and takes no locations.
+    if (input && isNumberedByVertex(id, typeInfo(pointer.type))) {
         const SpirvType& type = typeInfo(pointer.type);
-        if (type.kind != SpirvType::Kind::array || type.count > 3)
-            refuseId(id, "is decorated PerVertexKHR, but is no array of up to three");
-        slot.interpolation = ir::Interpolation::flat;
+        if (program_.stage == kFragment) slot.interpolation = ir::Interpolation::flat;
         for (uint32_t vertex = 0; vertex < type.count; ++vertex) {
             slot.index = static_cast<uint8_t>(vertex + 1);
             SlotCursor ofVertex = at;
@@ -176,6 +190,28 @@ void Lowering::lowerStageVariable(const Instruction& inst, bool input) {
         outputs_.push_back({pointer, first});
     }
     setPointer(id, pointer);
+}
+
+/// Whether the first index of an input is the number of a vertex, and takes no locations.
+bool Lowering::isNumberedByVertex(uint32_t variable, const SpirvType& type) const {
+    const bool isArray = type.kind == SpirvType::Kind::array;
+    uint32_t most = kMaxVertexNumbers;
+    switch (program_.stage) {
+        case kFragment:  // SPV_KHR_fragment_shader_barycentric
+            if (!isDecorated(module_, variable, type, spv::Decoration::PerVertexKHR)) return false;
+            most = isArray ? 3 : 0;
+            break;
+        case kGeometry:
+        case ir::Stage::control:
+        case ir::Stage::evaluation:
+            if (!isArray || isDecorated(module_, variable, type, spv::Decoration::Patch)) return false;
+            break;
+        default:
+            return false;
+    }
+    if (type.count > most || !isArray)
+        refuseId(variable, "has values of vertices, but is no array of up to " + std::to_string(most));
+    return true;
 }
 
 ir::Builtin Lowering::builtinOf(const SlotPlace& place, uint32_t builtin) const {
@@ -210,7 +246,10 @@ void Lowering::decorateSlot(const SlotPlace& place, ir::InterfaceSlot& slot, Slo
         at.captured = true;
     }
     if (const Decoration* d = find(spv::Decoration::Stream); d != nullptr && d->value != 0) {
-        refuseId(place.variable, "goes to vertex stream " + std::to_string(d->value) + "; there is none but 0");
+        if (d->value >= (program_.stage == kGeometry ? ir::kVertexStreams : 1)) {
+            refuseId(place.variable, "goes to vertex stream " + std::to_string(d->value) + ", which there is not");
+        }
+        slot.index = static_cast<uint8_t>(d->value);
     }
     if (const Decoration* d = find(spv::Decoration::Location)) {
         at.location = d->value;
@@ -316,7 +355,9 @@ void Lowering::captureScalar(const SlotPlace& place, const LeafType& scalar, std
     }
 }
 
-void Lowering::storeOutputs() {
+/// Calls visit(slot, value) for every word of the outputs; kNoValue: it has not been given a value.
+template <class Visit>
+void Lowering::visitOutputs(const Visit& visit) {
     for (const Output& output : outputs_) {
         uint32_t slot = output.firstSlot;
         const LeafTypes types = leafTypes(output.pointer.type);
@@ -326,13 +367,31 @@ void Lowering::storeOutputs() {
             const bool wide = ir::isWide(emitter_.typeOf(leaf));
             const bool written = !emitter_.isUndef(leaves[i]);
             for (uint32_t word = 0; word < (wide ? 2u : 1u); ++word, ++slot) {
-                if (!written) continue;
-                const ir::ValueId value =
-                    wide ? emitter_.emit(word == 0 ? ir::Op::lowWord : ir::Op::highWord, ir::Type::i32, {leaf}) : leaf;
-                emitter_.emit(ir::Op::storeOutput, ir::Type::none, {value}, slot);
+                if (!written) {
+                    visit(slot, ir::kNoValue);
+                    continue;
+                }
+                visit(slot, wide ? emitter_.emit(word == 0 ? ir::Op::lowWord : ir::Op::highWord, ir::Type::i32, {leaf})
+                                 : leaf);
             }
         }
     }
+}
+
+void Lowering::storeOutputs() {
+    visitOutputs([this](uint32_t slot, ir::ValueId value) {
+        if (value != ir::kNoValue) emitter_.emit(ir::Op::storeOutput, ir::Type::none, {value}, slot);
+    });
+}
+
+/// The outputs that belong to the stream, as they are now. One that has no value here may have one at another vertex.
+void Lowering::storeVertex(ir::ValueId vertex, uint32_t stream) {
+    visitOutputs([&](uint32_t slot, ir::ValueId value) {
+        const ir::InterfaceSlot& output = program_.outputs[slot];
+        if (output.index != stream) return;
+        if (value == ir::kNoValue) value = emitter_.undef(output.type);
+        emitter_.emit(ir::Op::storeVertex, ir::Type::none, {vertex, value}, slot);
+    });
 }
 
 }  // namespace vernier

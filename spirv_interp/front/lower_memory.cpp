@@ -8,14 +8,6 @@ namespace vernier {
 
 using Base = Pointer::Base;
 
-namespace {
-
-bool isWritable(ir::ResourceKind kind) {
-    return kind == ir::ResourceKind::storageBuffer || kind == ir::ResourceKind::workgroupMemory;
-}
-
-}  // namespace
-
 // --- scalars in memory
 // --------------------------------------------------------------------------------------------------
 
@@ -245,7 +237,7 @@ void Lowering::store(const Pointer& pointer, Leaves leaves) {
             break;
         }
         case Base::buffer:
-            if (!pointer.anyResource && !isWritable(program_.resources[resourceOf(pointer.root)].kind)) {
+            if (!pointer.anyResource && !ir::isWritable(program_.resources[resourceOf(pointer.root)].kind)) {
                 refuseId(pointer.root, "is stored to, but it is only read");
             }
             [[fallthrough]];

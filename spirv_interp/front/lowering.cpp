@@ -27,8 +27,9 @@ constexpr Capability kCapabilities[] = {
     Capability::StorageBuffer8BitAccess,
     Capability::UniformAndStorageBuffer8BitAccess,
     Capability::StoragePushConstant8,
-    // Declared by fragment shaders that read PrimitiveId or Layer.
-    Capability::Geometry,
+    Capability::Geometry,  // also declared by fragment shaders that read PrimitiveId or Layer
+    Capability::GeometryPointSize,
+    Capability::GeometryStreams,
     Capability::ImageGatherExtended,
     Capability::StorageImageMultisample,
     Capability::UniformBufferArrayDynamicIndexing,
@@ -113,6 +114,12 @@ spv::ExecutionModel modelOf(ir::Stage stage) {
             return spv::ExecutionModel::Vertex;
         case ir::Stage::fragment:
             return spv::ExecutionModel::Fragment;
+        case ir::Stage::geometry:
+            return spv::ExecutionModel::Geometry;
+        case ir::Stage::control:
+            return spv::ExecutionModel::TessellationControl;
+        case ir::Stage::evaluation:
+            return spv::ExecutionModel::TessellationEvaluation;
         case ir::Stage::compute:
             break;
     }
@@ -185,7 +192,7 @@ void Lowering::lowerGlobals() {
 void Lowering::lowerExecutionModes(const EntryPoint& entry) {
     for (uint32_t offset : module_.executionModes()) {
         const Instruction inst = module_.next(offset);
-        if (inst[1] != entry.function) continue;
+        if (inst[1] != entry.function || lowerGeometryMode(inst)) continue;
         switch (static_cast<spv::ExecutionMode>(inst[2])) {
             case spv::ExecutionMode::EarlyFragmentTests:
                 program_.earlyFragmentTests = true;
@@ -215,6 +222,7 @@ void Lowering::lowerExecutionModes(const EntryPoint& entry) {
     }
     if (!captures_) capture_ = {};
     checkLocalSize(entry);
+    checkGeometryModes();
 }
 
 // --- ids

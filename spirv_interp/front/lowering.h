@@ -184,7 +184,6 @@ class Lowering {
     void lowerReturn(const Instruction& inst, Frame& frame);
     void writePhis(uint32_t fromLabel, const Instruction& terminator, Frame& frame);
     ir::BlockId blockOf(uint32_t label, const Instruction& inst, Frame& frame);
-    void storeOutputs();
 
     // lower_interface.cpp: variables and the borders of the stage
     void lowerVariable(const Instruction& inst);
@@ -196,6 +195,19 @@ class Lowering {
     void captureScalar(const SlotPlace& place, const LeafType& scalar, std::span<const ir::InterfaceSlot> slots,
                        SlotCursor& at);
     ir::Builtin builtinOf(const SlotPlace& place, uint32_t builtin) const;
+    bool isNumberedByVertex(uint32_t variable, const SpirvType& type) const;
+    template <class Visit>
+    void visitOutputs(const Visit& visit);
+    void storeOutputs();
+    void storeVertex(ir::ValueId vertex, uint32_t stream);
+
+    // lower_vertices.cpp: what geometry stages put out
+    bool lowerGeometryMode(const Instruction& mode);
+    void checkGeometryModes() const;
+    void beginVertices();
+    void endVertices();
+    bool lowerEmission(const Instruction& inst);
+    uint32_t streamOf(const Instruction& inst);
 
     // lower_builtins.cpp: built-in inputs that are computed, the size of a work-group, barriers
     bool isComputedBuiltin(uint32_t variable) const;
@@ -364,6 +376,8 @@ class Lowering {
     bool workgroupBlocks_ = false;  // work-group memory is laid out by decorations
     uint32_t workgroupSizeId_ = 0;  // the constant that is the built-in WorkgroupSize
     uint32_t callCount_ = 0;
+    uint32_t vertexCount_ = 0, startsStrip_ = 0;  // variables of a geometry stage
+    uint32_t flagsSlot_ = 0;
     std::vector<uint32_t> fileOfId_;      // by id of an OpString: index into Program::files; 0 = not used so far
     std::vector<const Function*> calls_;  // functions being inlined, outermost first
 };

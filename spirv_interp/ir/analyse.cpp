@@ -47,8 +47,7 @@ void markWritten(const Program& program, uint32_t resource, std::vector<bool>& w
         return;
     }
     for (size_t r = 0; r < written.size(); ++r) {
-        const ResourceKind kind = program.resources[r].kind;
-        if (kind == ResourceKind::storageBuffer || kind == ResourceKind::workgroupMemory) written[r] = true;
+        if (isWritable(program.resources[r].kind)) written[r] = true;
     }
 }
 
@@ -121,10 +120,10 @@ void analyse(Program& program) {
     spreadAliases(program, written);
     program.usesQuads = program.usesQuads && program.stage == Stage::fragment;
     for (size_t r = 0; r < written.size(); ++r) {
-        // Work-group memory is no memory of the draw, whoever writes it; nor does it outlive the work-group.
-        const bool shared = program.resources[r].kind == ResourceKind::workgroupMemory;
-        program.resources[r].readOnly = !written[r] && !shared;
-        program.hasSideEffects = program.hasSideEffects || (written[r] && !shared);
+        // Memory of the runner is no memory of the draw, whoever writes it; nor does it outlive what runs.
+        const bool own = isOfRunner(program.resources[r].kind);
+        program.resources[r].readOnly = !written[r] && !own;
+        program.hasSideEffects = program.hasSideEffects || (written[r] && !own);
     }
     program.writesDepth = program.writesSampleMask = program.perSample = false;
     for (const InterfaceSlot& slot : program.outputs) {

@@ -18,6 +18,8 @@
 #include <string_view>
 #include <vector>
 
+#include "spirv_interp/ir/geometry_modes.h"
+
 namespace vernier::ir {
 
 /// Scalar types. i32/i64 carry no sign: operations do. In lanes, b1 is an all-zeros or all-ones 32-bit word.
@@ -73,7 +75,7 @@ struct Block {
     BlockId loopEnd = 0;  // of a loop header: one past the last block of the loop, in block order
 };
 
-enum class Stage : uint8_t { vertex, fragment, compute };
+enum class Stage : uint8_t { vertex, fragment, compute, control, evaluation, geometry };
 
 /// What a value that crosses the border of a stage stands for. `user` = by location and component.
 enum class Builtin : uint8_t {
@@ -110,6 +112,16 @@ enum class Builtin : uint8_t {
     numWorkgroups,
     localInvocationId,
     localInvocationIndex,
+    // inputs of the stages between vertices and fragments
+    invocationId,
+    patchVertices,
+    tessCoord,
+    tessLevelOuter,
+    tessLevelInner,
+    stageOffset,  // bytes from the begin of the program's stageMemory to what is the invocation's
+    // what a geometry program tells with each vertex, and at its end: how many it put out (ir/place_vertices.h)
+    vertexFlags,
+    vertexCount,
 };
 
 enum class Interpolation : uint8_t { smooth, noPerspective, flat };
@@ -120,7 +132,10 @@ struct InterfaceSlot {
     Builtin builtin = Builtin::user;
     uint8_t component = 0;  // of the location, or of the builtin vector / array
     uint16_t location = 0;
-    uint8_t index = 0;      // dual-source blending
+    // Of a colour: 1 for the second source of blending. Of an input that primitives have for each of their vertices
+    // (geometry, tessellation, PerVertexKHR): the number of the vertex, and one. Of an output of a geometry stage: the
+    // vertex stream.
+    uint8_t index = 0;
     Type type = Type::f32;  // b1, i32 or f32
     Interpolation interpolation = Interpolation::smooth;
     Sampling sampling = Sampling::center;
@@ -139,13 +154,14 @@ enum class ResourceKind : uint8_t {
     storageTexelBuffer,
     inputAttachment,
     workgroupMemory,  // shared by a work-group; byteSize bytes, no descriptor: WorkGroupContext owns it
+    stageMemory,      // what a stage puts out through memory; byteSize bytes, no descriptor: who runs the stage owns it
 };
 
 struct Resource {
     ResourceKind kind = ResourceKind::uniformBuffer;
     uint32_t set = 0, binding = 0;
     uint32_t arraySize = 1;  // descriptors; 0 = runtime-sized
-    uint32_t byteSize = 0;   // push constants and work-group memory
+    uint32_t byteSize = 0;   // push constants, and memory of a work-group or stage
     bool aliased = false;    // shares memory with the other resources that say so
     bool readOnly = false;   // no store or atomic reaches it
 };
@@ -246,6 +262,7 @@ struct Program {
     bool hasBarriers = false;     // control barriers
     bool usesSubgroups = false;   // operations between the lanes of a subgroup, or their places in it
     std::array<uint32_t, 3> localSize{1, 1, 1};
+    GeometryModes geometry;  // of a geometry stage
 
     std::span<const ValueId> operandsOf(const Inst& inst) const {
         return {operands.data() + inst.firstOperand, inst.operandCount};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "spirv_interp/ir/names.h"
 #include "spirv_interp/ir/ops.h"
 #include "spirv_interp/ir/optimise.h"
 #include "spirv_interp/ir/primitive_inputs.h"
@@ -13,11 +14,20 @@ bool samePlace(const InterfaceSlot& output, const InterfaceSlot& input) {
     return output.builtin == input.builtin && output.location == input.location && output.component == input.component;
 }
 
-/// Whether a fragment input is fed by a vertex output, rather than by the rasteriser.
-bool isVarying(const InterfaceSlot& slot) {
+/// Whether an input is fed by an output of the stage before, rather than by what lies between the stages.
+bool isVarying(const Program& program, const InterfaceSlot& slot) {
+    if (program.stage != Stage::fragment) return slot.index != 0;
     if (isBaryCoord(slot)) return false;
     return slot.builtin == Builtin::user || slot.builtin == Builtin::clipDistance ||
            slot.builtin == Builtin::cullDistance;
+}
+
+/// What the rasteriser takes, and what the runner of the stage does.
+bool isForRunner(const Program& producer, const Program& consumer, const InterfaceSlot& output) {
+    if (output.builtin == Builtin::vertexFlags || output.builtin == Builtin::vertexCount) return true;
+    const bool rasterised =
+        consumer.stage == Stage::fragment && (producer.stage != Stage::geometry || output.index == 0);
+    return rasterised && output.builtin != Builtin::user;
 }
 
 const InterfaceSlot* findSlot(std::span<const InterfaceSlot> slots, const InterfaceSlot& like) {
@@ -27,23 +37,24 @@ const InterfaceSlot* findSlot(std::span<const InterfaceSlot> slots, const Interf
 }
 
 /// Returns how many outputs nobody reads.
-uint32_t dropUnreadOutputs(Program& vertex, const Program& fragment, std::span<const InterfaceSlot> kept) {
-    std::vector<bool> read(vertex.outputs.size());
-    for (size_t i = 0; i < vertex.outputs.size(); ++i) {
-        const InterfaceSlot& slot = vertex.outputs[i];
-        read[i] = slot.builtin != Builtin::user || findSlot(fragment.inputs, slot) != nullptr ||
+uint32_t dropUnreadOutputs(Program& producer, const Program& consumer, std::span<const InterfaceSlot> kept) {
+    std::vector<bool> read(producer.outputs.size());
+    for (size_t i = 0; i < producer.outputs.size(); ++i) {
+        const InterfaceSlot& slot = producer.outputs[i];
+        read[i] = isForRunner(producer, consumer, slot) || findSlot(consumer.inputs, slot) != nullptr ||
                   findSlot(kept, slot) != nullptr;
     }
-    for (Block& block : vertex.blocks) {
-        std::erase_if(block.insts, [&](const Inst& inst) { return inst.op == Op::storeOutput && !read[inst.imm]; });
+    for (Block& block : producer.blocks) {
+        std::erase_if(block.insts,
+                      [&](const Inst& inst) { return immKind(inst.op) == ImmKind::output && !read[inst.imm]; });
     }
     return static_cast<uint32_t>(std::count(read.begin(), read.end(), false));
 }
 
 /// Inputs that are read one by one and that nothing writes become 0. Returns whether there are any.
-bool zeroUnwrittenInputs(Program& fragment, const std::vector<bool>& written) {
+bool zeroUnwrittenInputs(Program& consumer, const std::vector<bool>& written) {
     bool any = false;
-    for (Block& block : fragment.blocks) {
+    for (Block& block : consumer.blocks) {
         for (Inst& inst : block.insts) {
             if (inst.op == Op::inputIndexed || immKind(inst.op) != ImmKind::input || written[inst.imm]) continue;
             inst.op = Op::constant;
@@ -81,39 +92,61 @@ void writeZero(Program& vertex, const InterfaceSlot& slot) {
     entry.insert(entry.begin(), zero);
 }
 
+/// Places in the order in which the stages run.
+uint32_t placeOf(Stage stage) {
+    switch (stage) {
+        case Stage::vertex:
+            return 0;
+        case Stage::control:
+            return 1;
+        case Stage::evaluation:
+            return 2;
+        case Stage::geometry:
+            return 3;
+        case Stage::fragment:
+            return 4;
+        default:
+            return 5;
+    }
+}
+
 }  // namespace
 
-Status linkStages(Program& vertex, Program& fragment, LinkFacts* facts, const LinkOptions& options) {
-    if (vertex.stage != Stage::vertex || fragment.stage != Stage::fragment) {
-        return invalidArgument("linkStages: the programs are not a vertex and a fragment program, in this order");
+Status linkStages(Program& producer, Program& consumer, LinkFacts* facts, const LinkOptions& options) {
+    if (placeOf(producer.stage) >= placeOf(consumer.stage) || consumer.stage == Stage::compute) {
+        return invalidArgument("linkStages: a " + std::string(nameOf(producer.stage)) + " and a " +
+                               std::string(nameOf(consumer.stage)) + " program do not follow each other");
     }
-    std::vector<bool> written(fragment.inputs.size(), true);
-    for (size_t i = 0; i < fragment.inputs.size(); ++i) {
-        const InterfaceSlot& input = fragment.inputs[i];
-        if (!isVarying(input)) continue;
-        const InterfaceSlot* output = findSlot(vertex.outputs, input);
+    std::vector<bool> written(consumer.inputs.size(), true);
+    for (size_t i = 0; i < consumer.inputs.size(); ++i) {
+        const InterfaceSlot& input = consumer.inputs[i];
+        if (!isVarying(consumer, input)) continue;
+        const InterfaceSlot* output = findSlot(producer.outputs, input);
         written[i] = output != nullptr;
         if (output != nullptr && output->type != input.type) {
             return invalidArgument("location " + std::to_string(input.location) + ", component " +
-                                   std::to_string(input.component) + ": the vertex shader writes " +
-                                   std::string(typeName(output->type)) + ", the fragment shader reads " +
+                                   std::to_string(input.component) + ": the " + std::string(nameOf(producer.stage)) +
+                                   " shader writes " + std::string(typeName(output->type)) + ", the " +
+                                   std::string(nameOf(consumer.stage)) + " shader reads " +
                                    std::string(typeName(input.type)));
         }
     }
     // Programs come optimised: only what changes here is worth another look.
-    if (zeroUnwrittenInputs(fragment, written)) optimise(fragment);
-    bool vertexChanged = false;
-    for (const InterfaceSlot& input : fragment.inputs) {
-        if (!isVarying(input) || findSlot(vertex.outputs, input) != nullptr) continue;
-        writeZero(vertex, input);
-        vertexChanged = true;
+    if (zeroUnwrittenInputs(consumer, written)) optimise(consumer);
+    // Between others than these two, the runner gives 0 for what nobody writes.
+    const bool atEnd = producer.stage != Stage::geometry && consumer.stage == Stage::fragment;
+    bool producerChanged = false;
+    for (const InterfaceSlot& input : consumer.inputs) {
+        if (!atEnd || !isVarying(consumer, input) || findSlot(producer.outputs, input) != nullptr) continue;
+        writeZero(producer, input);
+        producerChanged = true;
     }
-    const LiftFacts lifted = options.lift ? lift(vertex, fragment, options.liftLinear) : LiftFacts{};
+    const LiftFacts lifted = options.lift && atEnd ? lift(producer, consumer, options.liftLinear) : LiftFacts{};
     const bool changed = lifted.flat + lifted.linear != 0;
-    if (changed) optimise(fragment);
-    const uint32_t removed = options.dropUnread ? dropUnreadOutputs(vertex, fragment, options.kept) : 0;
+    if (changed) optimise(consumer);
+    const uint32_t removed = options.dropUnread ? dropUnreadOutputs(producer, consumer, options.kept) : 0;
     if (facts != nullptr) *facts = {removed, lifted};
-    if (vertexChanged || changed || removed != 0) optimise(vertex);
+    if (producerChanged || changed || removed != 0) optimise(producer);
     return {};
 }
 

@@ -12,21 +12,24 @@ namespace vernier::ir {
 struct LinkOptions {
     bool dropUnread = true;                 // outputs that nobody reads
     std::span<const InterfaceSlot> kept{};  // but not those in the places of these: somebody else reads them
-    bool lift = true;                       // work moves from `fragment` to `vertex` where that pays (ir/lift.h)
-    bool liftLinear = false;                // also where the result differs in its last bits
+    // Work moves from a fragment program into the one before where that pays (ir/lift.h), unless that is of geometry.
+    bool lift = true;
+    bool liftLinear = false;  // also where the result differs in its last bits
 };
 
 struct LinkFacts {
-    uint32_t removedOutputs = 0;  // of the vertex program, because nobody reads them
+    uint32_t removedOutputs = 0;  // of `producer`, because nobody reads them
     LiftFacts lifted;             // from the fragment program, now done per vertex
 };
 
-/// Outputs of `vertex` that `fragment` does not read are removed with the code behind them (built-in ones stay) unless
-/// `options` keep them. Inputs of `fragment` that nothing writes become 0; where such an input is part of an array
-/// indexed at run time, `vertex` gets an output that is 0 instead, so that afterwards every user input of `fragment`
-/// has the output of the same location, component and type. Both programs come as optimise() leaves them, go so, and
-/// verify. An invalidArgument Error when an output and the input of the same place differ in type ("Interface Matching"
-/// in the Vulkan specification); the programs are then unchanged.
-Status linkStages(Program& vertex, Program& fragment, LinkFacts* facts = nullptr, const LinkOptions& options = {});
+/// Two stages that follow each other: vertex, control, evaluation, geometry, fragment, without those that a pipeline
+/// does not have. Outputs of `producer` that `consumer` does not read are removed with the code behind them, unless
+/// `options` keep them; built-in ones stay in front of the rasteriser. Inputs of `consumer` that nothing writes become
+/// 0. Where such an input is part of an array indexed at run time, a producer of values to be interpolated gets an
+/// output that is 0 instead, so that afterwards every user input of a fragment program has the output of the same
+/// location, component and type; who runs other stages, and what a geometry stage puts out, gives 0. Both programs come
+/// as optimise() leaves them, go so, and verify. An invalidArgument Error when an output and the input of the same
+/// place differ in type ("Interface Matching" in the Vulkan specification); the programs are then unchanged.
+Status linkStages(Program& producer, Program& consumer, LinkFacts* facts = nullptr, const LinkOptions& options = {});
 
 }  // namespace vernier::ir

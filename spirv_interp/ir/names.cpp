@@ -24,6 +24,8 @@ VERNIER_IR_TAG(ResourceKind, 4)
 VERNIER_IR_TAG(ImageDim, 5)
 VERNIER_IR_TAG(ImageKind, 6)
 VERNIER_IR_TAG(AtomicOp, 7)
+VERNIER_IR_TAG(GeometryInput, 8)
+VERNIER_IR_TAG(GeometryOutput, 9)
 #undef VERNIER_IR_TAG
 
 constexpr Entry kEntries[] = {
@@ -76,6 +78,8 @@ VERNIER_IR_TABLE(ResourceKind)
 VERNIER_IR_TABLE(ImageDim)
 VERNIER_IR_TABLE(ImageKind)
 VERNIER_IR_TABLE(AtomicOp)
+VERNIER_IR_TABLE(GeometryInput)
+VERNIER_IR_TABLE(GeometryOutput)
 #undef VERNIER_IR_TABLE
 
 }  // namespace vernier::ir

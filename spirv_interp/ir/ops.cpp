@@ -85,6 +85,7 @@ ImmKind immKind(Op op) {
         case Op::interpolateAtOffset:
             return ImmKind::input;
         case Op::storeOutput:
+        case Op::storeVertex:
             return ImmKind::output;
         case Op::loadBuffer:
         case Op::storeBuffer:
@@ -199,6 +200,9 @@ uint32_t operandTypes(const Program& program, const Inst& inst, uint32_t index) 
         case Op::bitFieldSExtract:
         case Op::bitFieldUExtract:
             return index >= 1 ? bit(Type::i32) : bit(inst.type);
+        case Op::storeVertex:
+            if (index == 0) return bit(Type::i32);
+            [[fallthrough]];
         case Op::storeOutput:
             return inst.imm < program.outputs.size() ? bit(program.outputs[inst.imm].type) : 0;
         case Op::image:

@@ -51,7 +51,19 @@ inline constexpr uint32_t kNullHandle = ~0u;
 /// Memory that buffer instructions work on.
 constexpr bool isBuffer(ResourceKind kind) {
     return kind == ResourceKind::uniformBuffer || kind == ResourceKind::storageBuffer ||
-           kind == ResourceKind::pushConstants || kind == ResourceKind::workgroupMemory;
+           kind == ResourceKind::pushConstants || kind == ResourceKind::workgroupMemory ||
+           kind == ResourceKind::stageMemory;
+}
+
+/// Buffers that stores can go to.
+constexpr bool isWritable(ResourceKind kind) {
+    return kind == ResourceKind::storageBuffer || kind == ResourceKind::workgroupMemory ||
+           kind == ResourceKind::stageMemory;
+}
+
+/// Memory without a descriptor, of whoever runs the program: no memory of the draw.
+constexpr bool isOfRunner(ResourceKind kind) {
+    return kind == ResourceKind::workgroupMemory || kind == ResourceKind::stageMemory;
 }
 
 constexpr bool isFloatAtomic(AtomicOp op) {

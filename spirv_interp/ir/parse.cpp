@@ -151,6 +151,8 @@ class Parser {
             while (!in.failed() && !in.done()) fact(in);
         } else if (in.acceptWord("localSize")) {
             for (uint32_t& size : program_.localSize) size = static_cast<uint32_t>(in.number(~0u));
+        } else if (in.acceptWord("geometry")) {
+            geometry(in);
         } else if (in.acceptWord("local")) {
             program_.localWords = static_cast<uint32_t>(in.number(~0u));
         } else if (in.atBlock()) {
@@ -158,6 +160,15 @@ class Parser {
         } else {
             instruction(in);
         }
+    }
+
+    void geometry(LineReader& in) {
+        program_.geometry.input = in.name<GeometryInput>("a primitive that goes in");
+        program_.geometry.output = in.name<GeometryOutput>("a primitive that comes out");
+        in.expect("invocations", "the number of invocations");
+        program_.geometry.invocations = static_cast<uint32_t>(in.number(~0u));
+        in.expect("vertices", "the number of vertices");
+        program_.geometry.outputVertices = static_cast<uint32_t>(in.number(~0u));
     }
 
     void index(LineReader& in, size_t next) {

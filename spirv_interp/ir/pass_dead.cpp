@@ -4,7 +4,8 @@
 namespace vernier::ir {
 namespace {
 
-/// An output that is never given a value need not exist; it is undefined either way.
+/// An output that is never given a value need not exist; it is undefined either way. One that some vertices of a
+/// geometry program have is stored for all of them.
 bool dropUndefinedOutputs(Program& program) {
     std::vector<bool> undefined(program.valueTypes.size(), false);
     for (const Block& block : program.blocks) {
@@ -12,9 +13,16 @@ bool dropUndefinedOutputs(Program& program) {
             if (inst.op == Op::undef) undefined[inst.result] = true;
         }
     }
+    std::vector<bool> stored(program.outputs.size(), false);
+    for (const Block& block : program.blocks) {
+        for (const Inst& inst : block.insts) {
+            if (inst.op == Op::storeVertex && !undefined[program.operandsOf(inst)[1]]) stored[inst.imm] = true;
+        }
+    }
     bool changed = false;
     for (Block& block : program.blocks) {
         changed |= std::erase_if(block.insts, [&](const Inst& inst) {
+                       if (inst.op == Op::storeVertex) return !stored[inst.imm];
                        return inst.op == Op::storeOutput && undefined[program.operands[inst.firstOperand]];
                    }) != 0;
     }

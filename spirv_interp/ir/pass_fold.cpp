@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <optional>
@@ -112,6 +113,7 @@ class Folder {
 
     void simplify(Inst& inst) {
         if (inst.op == Op::copy) return replace(inst, operand(inst, 0));
+        if (inst.op == Op::inputIndexed) return chooseInput(inst);
         uint64_t known[4] = {};
         std::optional<uint64_t> each[4];
         bool all = inst.operandCount <= 4;
@@ -128,6 +130,17 @@ class Folder {
         if (inst.op >= Op::fadd && inst.op <= Op::fsmoothstep) return simplifyFloat(inst, each);
         if (inst.op >= Op::iadd && inst.op <= Op::subBorrow) return simplifyInteger(inst, each);
         simplifyOther(inst, each);
+    }
+
+    /// An index that has become constant names one input. Where that has another type, the place is outside of what the
+    /// shader declares.
+    void chooseInput(Inst& inst) {
+        const std::optional<uint64_t> index = bits(operand(inst, 0));
+        if (!index) return;
+        const auto last = static_cast<int32_t>(immHigh(inst)) - 1;
+        const uint64_t slot =
+            uint64_t{immLow(inst)} + static_cast<uint32_t>(std::clamp(static_cast<int32_t>(*index), 0, last));
+        if (program_.inputs[slot].type == inst.type) rewrite(inst, Op::input, {}, slot);
     }
 
     static bool isFloatConstant(const std::optional<uint64_t>& bits, Type type, double value) {

@@ -72,6 +72,11 @@ void printFlags(std::string& out, const Program& program) {
         out += "localSize " + number(program.localSize[0]) + " " + number(program.localSize[1]) + " " +
                number(program.localSize[2]) + "\n";
     }
+    if (program.stage == Stage::geometry) {
+        out += "geometry " + std::string(nameOf(program.geometry.input)) + " " +
+               std::string(nameOf(program.geometry.output)) + " invocations " + number(program.geometry.invocations) +
+               " vertices " + number(program.geometry.outputVertices) + "\n";
+    }
     if (program.localWords != 0) out += "local " + number(program.localWords) + "\n";
 }
 

@@ -231,6 +231,7 @@ class Verifier {
             if (program_.stage != Stage::compute) return "in a stage without work-groups";
             if (!program_.hasBarriers) return "the program does not tell that it has barriers";
         }
+        if (inst.op == Op::storeVertex && program_.stage != Stage::geometry) return "in a stage without such vertices";
         const bool subgroup = inst.op >= Op::subgroupInvocation && inst.op <= Op::subgroupReduce;
         if (subgroup && !program_.usesSubgroups) return "the program does not tell that it uses subgroups";
         return nullptr;
@@ -299,9 +300,7 @@ class Verifier {
     static const char* badBuffer(const Resource& resource, bool written) {
         if (!isBuffer(resource.kind)) return "the resource is no buffer";
         if (!written) return nullptr;
-        if (resource.kind != ResourceKind::storageBuffer && resource.kind != ResourceKind::workgroupMemory) {
-            return "a store to a buffer that cannot be written";
-        }
+        if (!isWritable(resource.kind)) return "a store to a buffer that cannot be written";
         return resource.readOnly ? "a store to a buffer marked as only read" : nullptr;
     }
 
