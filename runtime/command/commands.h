@@ -247,6 +247,7 @@ struct WaitEvent {
 struct BeginQuery {
     QueryPool* pool = nullptr;
     uint32_t query = 0;
+    uint32_t stream = 0;  // of vertices, below ir::kVertexStreams
 };
 struct EndQuery {
     QueryPool* pool = nullptr;

@@ -225,14 +225,25 @@ void Executor::refreshDrawBindings() {
     BoundDescriptors& bound = drawBindings_.bound;
     Arena& arena = pass_->arena;
     bound.pushConstants = arena.copy(std::span<const std::byte>(drawBindings_.pushConstants));
-    checkBindings(pipeline_->vertexIr(), bound);
-    vertexResources_ = resolveBindings(pipeline_->vertexIr(), bound, pipeline_->accuracy(), arena);
-    addAccesses(pipeline_->vertexIr(), bound, pass_->geometry);
-    if (vertexAddresses_) {
-        vertexResources_.addresses = device_.addresses().resolver();
-        addAddressAccesses(pipeline_->vertexIr(), device_.addresses(), pass_->geometry);
+    StageResources* others = nullptr;
+    for (const StageProgram& stage : pipeline_->program().stages()) {
+        const ir::Program& program = stage.program->source();
+        checkBindings(program, bound);
+        ResourceBindings resources = resolveBindings(program, bound, pipeline_->accuracy(), arena);
+        addAccesses(program, bound, pass_->geometry);
+        if (vertexAddresses_) {
+            resources.addresses = device_.addresses().resolver();
+            addAddressAccesses(program, device_.addresses(), pass_->geometry);
+        }
+        pass_->writesVertices |= program.hasSideEffects;
+        if (stage.stage == ir::Stage::vertex) {
+            vertexResources_ = resources;
+        } else {
+            if (others == nullptr) others = arena.create(StageResources());
+            others->of(stage.stage) = resources;
+        }
     }
-    pass_->writesVertices |= pipeline_->vertexIr().hasSideEffects;
+    stageResources_ = others;
     fragmentResources_ = {};
     if (pipeline_->fragmentIr() == nullptr) return;
     checkBindings(*pipeline_->fragmentIr(), bound);
@@ -281,6 +292,7 @@ void Executor::draw(const command::Draw& command) {
     if (command.indexed) call.indices = indices_;
     call.vertexResources = vertexResources_;
     call.fragmentResources = fragmentResources_;
+    call.stageResources = stageResources_;
     call.needsLevels = needsLevels_;
     call.count = command.count;
     call.instances = command.instances;
@@ -291,6 +303,10 @@ void Executor::draw(const command::Draw& command) {
     if (feedback_.active() && views_ == 0) call.capture = placeCapture(call);
     ++commandsRun_.draws;
     pass_->pass.draw(call);
+    if (call.capture != nullptr && call.capture->running != nullptr) {
+        catchUp();
+        feedback_.goOn(*call.capture->running);
+    }
     if (pass_->pass.recordedDraws() >= kDrawsPerFlush) catchUp();
 }
 

@@ -75,6 +75,7 @@ class Executor {
     void draw(const command::Draw& command);
     void awaitWrites(std::initializer_list<VertexStream> streams);
     const CaptureTarget* placeCapture(const DrawCall& call);
+    const CaptureTarget* placeRunning(const CapturePlan& plan);
     void checkBindings(const ir::Program& program, const BoundDescriptors& bound);
     void refreshDrawBindings();
     void dispatch(const DispatchWork& work);
@@ -114,10 +115,12 @@ class Executor {
     bool leavesOut_ = false;  // by conditional rendering
 
     const GraphicsPipeline* pipeline_ = nullptr;
-    bool vertexAddresses_ = false, fragmentAddresses_ = false;  // of it: memory is reached by address
+    // Of it: memory is reached by address, before the rasteriser and behind it.
+    bool vertexAddresses_ = false, fragmentAddresses_ = false;
     DynamicState dynamic_;
     const DynamicState* dynamicSnapshot_ = nullptr;  // in the pass's arena; nullptr after a change
     ResourceBindings vertexResources_, fragmentResources_;
+    const StageResources* stageResources_ = nullptr;
     bool needsLevels_ = true;
     std::string misuseTold_;
     std::array<VertexStream, kMaxVertexBindings> vertexStreams_{};

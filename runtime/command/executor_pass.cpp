@@ -182,7 +182,7 @@ void Executor::addQueryPart(PassWork& work, RunningQuery& query, uint32_t first)
 }
 
 void Executor::run(const command::BeginQuery& command) {
-    queries_.begin(*command.pool, command.query, viewCount());
+    queries_.begin(*command.pool, command.query, viewCount(), command.stream);
     if (pass_ != nullptr) addQueryPart(*pass_, *queries_.open().back(), pass_->pass.nextSegment());
 }
 

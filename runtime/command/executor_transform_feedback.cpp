@@ -52,6 +52,7 @@ void Executor::run(const command::DrawIndirectByteCount& command) {
 const CaptureTarget* Executor::placeCapture(const DrawCall& call) {
     const CapturePlan& plan = pipeline_->program().capture();
     if (plan.empty()) return nullptr;
+    if (pipeline_->plan().stages) return placeRunning(plan);
     const VkPrimitiveTopology topology = pipeline_->state().topology;
     uint64_t primitives = 0;
     for (const VertexRun& run : vertexRuns(call, topology, pipeline_->state().primitiveRestart))
@@ -72,6 +73,19 @@ const CaptureTarget* Executor::placeCapture(const DrawCall& call) {
         pass_->writesVertices = true;
     }
     return pass_->arena.create(target);
+}
+
+/// The draw is run at once: it may write what is left of every buffer.
+const CaptureTarget* Executor::placeRunning(const CapturePlan& plan) {
+    CaptureTarget& target = *pass_->arena.create(CaptureTarget());
+    target.running = pass_->arena.create(feedback_.running());
+    for (uint32_t b = 0; b < kCaptureBuffers; ++b) {
+        const RunningCapture::Buffer& buffer = target.running->buffers[b];
+        if (plan.extents[b] != 0 && buffer.data != nullptr && buffer.offset < buffer.size)
+            pass_->geometry.write(buffer.data + buffer.offset, buffer.size - buffer.offset);
+    }
+    pass_->writesVertices = true;
+    return &target;
 }
 
 }  // namespace vernier

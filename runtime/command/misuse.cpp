@@ -2,12 +2,13 @@
 
 #include <iterator>
 
+#include "spirv_interp/ir/ops.h"
+
 namespace vernier {
 
 std::string missingDescriptor(const ir::Program& program, const BoundDescriptors& bound) {
     for (const ir::Resource& resource : program.resources) {
-        if (resource.kind == ir::ResourceKind::pushConstants || resource.kind == ir::ResourceKind::workgroupMemory)
-            continue;
+        if (resource.kind == ir::ResourceKind::pushConstants || ir::isOfRunner(resource.kind)) continue;
         const std::string name =
             "set " + std::to_string(resource.set) + ", binding " + std::to_string(resource.binding);
         if (resource.set >= std::size(bound.sets) || bound.sets[resource.set] == nullptr)

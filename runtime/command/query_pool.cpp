@@ -15,6 +15,10 @@ uint64_t statisticOf(VkQueryPipelineStatisticFlags bit, const PassStatistics& s)
             return s.inputPrimitives;
         case VK_QUERY_PIPELINE_STATISTIC_VERTEX_SHADER_INVOCATIONS_BIT:
             return s.vertexInvocations;
+        case VK_QUERY_PIPELINE_STATISTIC_GEOMETRY_SHADER_INVOCATIONS_BIT:
+            return s.geometryInvocations;
+        case VK_QUERY_PIPELINE_STATISTIC_GEOMETRY_SHADER_PRIMITIVES_BIT:
+            return s.geometryPrimitives;
         case VK_QUERY_PIPELINE_STATISTIC_CLIPPING_INVOCATIONS_BIT:
             return s.clippingInvocations;
         case VK_QUERY_PIPELINE_STATISTIC_CLIPPING_PRIMITIVES_BIT:
@@ -55,7 +59,7 @@ void QueryPool::reset(uint32_t first, uint32_t count) {
     for (uint32_t i = first; i < first + count && i < queries_.size(); ++i) queries_[i] = {};
 }
 
-void QueryPool::write(uint32_t query, const PassStatistics& difference) {
+void QueryPool::write(uint32_t query, const PassStatistics& difference, uint32_t stream) {
     const std::lock_guard lock(mutex_);
     if (query >= queries_.size()) return;
     Query& target = queries_[query];
@@ -65,11 +69,11 @@ void QueryPool::write(uint32_t query, const PassStatistics& difference) {
             target.values[0] = difference.samplesPassed;
             return;
         case VK_QUERY_TYPE_PRIMITIVES_GENERATED_EXT:
-            target.values[0] = difference.inputPrimitives;
+            target.values[0] = difference.generatedPrimitives[stream];
             return;
         case VK_QUERY_TYPE_TRANSFORM_FEEDBACK_STREAM_EXT:
-            target.values[0] = difference.capturedPrimitives;
-            target.values[1] = difference.capturablePrimitives;
+            target.values[0] = difference.capturedPrimitives[stream];
+            target.values[1] = difference.capturablePrimitives[stream];
             return;
         default:
             break;

@@ -22,7 +22,8 @@ class QueryPool {
     uint32_t count() const { return static_cast<uint32_t>(queries_.size()); }
 
     void reset(uint32_t first, uint32_t count);
-    void write(uint32_t query, const PassStatistics& difference);
+    /// `stream` < ir::kVertexStreams: whose primitives a query counts that is of one.
+    void write(uint32_t query, const PassStatistics& difference, uint32_t stream = 0);
     void writeTimestamp(uint32_t query, uint64_t nanoseconds);
 
     /// While somebody holds the pool, results are still to be written: a reset has to wait.

@@ -7,7 +7,7 @@
 
 namespace vernier {
 
-void RunningQueries::begin(QueryPool& pool, uint32_t query, uint32_t views) {
+void RunningQueries::begin(QueryPool& pool, uint32_t query, uint32_t views, uint32_t stream) {
     open_.reserve(open_.size() + 1);
     const std::lock_guard lock(mutex_);
     if (idle_.empty()) {
@@ -17,7 +17,7 @@ void RunningQueries::begin(QueryPool& pool, uint32_t query, uint32_t views) {
     }
     RunningQuery& run = *idle_.back();
     idle_.pop_back();
-    run = {&pool, query, views, {}, 1};
+    run = {&pool, query, views, {}, stream, 1};
     pool.hold();
     open_.push_back(&run);
 }
@@ -48,7 +48,7 @@ void RunningQueries::partEnded(RunningQuery& query, const PassStatistics& counte
     const std::lock_guard lock(mutex_);
     query.sum = combine(query.sum, counted, std::plus<>{});
     if (--query.parts != 0) return;
-    query.pool->write(query.query, query.sum);
+    query.pool->write(query.query, query.sum, query.stream);
     // With multiview a query takes as many as there are views: "the first contains the result, the others zero".
     for (uint32_t n = 1; n < query.views; ++n) query.pool->write(query.query + n, {});
     query.pool->release();

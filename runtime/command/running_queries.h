@@ -19,13 +19,14 @@ struct RunningQuery {
     uint32_t query = 0;
     uint32_t views = 1;  // of the pass in which it began: it takes as many queries
     PassStatistics sum;
+    uint32_t stream = 0;
     uint32_t parts = 0;  // work that has not ended, and 1 while it is open
 };
 
 /// Queries are begun and ended by one thread; parts end on any.
 class RunningQueries {
   public:
-    void begin(QueryPool& pool, uint32_t query, uint32_t views);
+    void begin(QueryPool& pool, uint32_t query, uint32_t views, uint32_t stream);
     /// The open query, which counts on until close(); nullptr where none is.
     RunningQuery* find(const QueryPool& pool, uint32_t query) const;
     void close(RunningQuery& query);

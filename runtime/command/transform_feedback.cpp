@@ -27,7 +27,7 @@ CaptureTarget TransformFeedback::place(const CapturePlan& plan, uint32_t vertice
     target.primitives = primitives;
     for (uint32_t b = 0; b < kCaptureBuffers; ++b) {
         if (plan.extents[b] == 0) continue;
-        const Buffer& buffer = buffers_[b];
+        const RunningCapture::Buffer& buffer = buffers_[b];
         const uint64_t vertices = roomFor(buffer.size, buffer.offset, plan.extents[b], plan.strides[b]);
         target.primitives = std::min(target.primitives, vertices / verticesPerPrimitive);
     }
@@ -37,6 +37,14 @@ CaptureTarget TransformFeedback::place(const CapturePlan& plan, uint32_t vertice
         buffers_[b].offset += target.primitives * verticesPerPrimitive * plan.strides[b];
     }
     return target;
+}
+
+RunningCapture TransformFeedback::running() const {
+    return {buffers_};
+}
+
+void TransformFeedback::goOn(const RunningCapture& behind) {
+    buffers_ = behind.buffers;
 }
 
 }  // namespace vernier

@@ -1,5 +1,6 @@
 // Where transform feedback goes on. How much a draw captures follows from its counts and its topology alone: the walk
-// through the commands knows what every draw writes before any of them runs, and what runs has nothing to count.
+// through the commands knows what every draw writes before any of them runs, and what runs has nothing to count. Where
+// stages make primitives of their own, the draw has to run first.
 #pragma once
 
 #include <array>
@@ -28,14 +29,12 @@ class TransformFeedback {
 
     /// Takes room for the primitives of a draw. Those that one of the buffers has no room for are dropped.
     CaptureTarget place(const CapturePlan& plan, uint32_t verticesPerPrimitive, uint64_t primitives);
+    /// Where a draw goes on whose stages tell what there is to capture; and from where it has been.
+    RunningCapture running() const;
+    void goOn(const RunningCapture& behind);
 
   private:
-    struct Buffer {
-        std::byte* data = nullptr;
-        uint64_t size = 0;
-        uint64_t offset = 0;
-    };
-    std::array<Buffer, kCaptureBuffers> bound_{}, buffers_{};
+    std::array<RunningCapture::Buffer, kCaptureBuffers> bound_{}, buffers_{};
     bool active_ = false;
 };
 

@@ -113,12 +113,7 @@ void Assembler::number(const PreparedDraw& draw, const PrimitiveRange& range) {
     auto instance = firstInstance;
     auto primitive = static_cast<uint32_t>(range.first % draw.primitivesPerInstance);
     const bool oneInstance = primitive + uint64_t{range.count} <= draw.primitivesPerInstance;
-    const auto runAt = [&](uint32_t p) {
-        return std::upper_bound(draw.runs.begin(), draw.runs.end(), p,
-                                [](uint32_t value, const VertexRun& run) { return value < run.firstPrimitive; }) -
-               1;
-    };
-    auto run = runAt(primitive);
+    auto run = runAt(draw, primitive);
     uint32_t least = ~0u, greatest = 0;
     uint32_t left = range.count;
     const VkIndexType type = draw.call.indices.type;
@@ -136,10 +131,7 @@ void Assembler::number(const PreparedDraw& draw, const PrimitiveRange& range) {
         local.startsStrip = !isLineStrip || primitive == run->firstPrimitive;
         local.provoking = draw.state->provokingVertexLast ? numbers.provokingLast : numbers.provokingFirst;
         for (uint32_t v = 0; v < vertexCount; ++v) {
-            const uint32_t number = run->first + numbers.vertex[v];
-            const uint32_t index = indexed
-                                       ? fetchIndex(draw.call, number) + static_cast<uint32_t>(draw.call.vertexOffset)
-                                       : draw.call.first + number;
+            const uint32_t index = vertexIndex(draw.call, run->first + numbers.vertex[v]);
             if (!shared) {
                 local.vertex[v] = static_cast<uint32_t>(refs_.size());
                 refs_.push_back({index, instance});
@@ -300,7 +292,7 @@ void Assembler::assembleTriangles(const PreparedDraw& draw, uint32_t drawIndex, 
 }
 
 void Assembler::assemble(const PreparedDraw& draw, uint32_t drawIndex, Chunk& chunk) {
-    const uint32_t vertexCount = verticesPerPrimitive(draw.state->topology);
+    const uint32_t vertexCount = verticesPerPrimitive(draw.plan->rasterTopology);
     if (vertexCount == 3 && draw.packsSmall && draw.state->polygonMode == VK_POLYGON_MODE_FILL &&
         !draw.state->depthBiasEnable && !draw.state->rasterizerDiscard && !isRouted() && vertices_.culled.empty())
         return assembleTriangles(draw, drawIndex, chunk);
@@ -353,13 +345,22 @@ bool Assembler::run(std::span<const PreparedDraw> draws, uint64_t token, std::sp
     grid_ = grid;
     for (const PrimitiveRange& range : ranges) {
         const PreparedDraw& draw = draws[range.draw];
-        number(draw, range);
-        finished &= shadeVertices(draw, token + range.draw, refs_, contexts_, vertices_, chunk);
-        if (draw.plan->ownVertices) giveOwnVertices(draw, verticesPerPrimitive(draw.state->topology), chunk);
+        if (draw.plan->stages) {
+            finished &= runStages(draw, token + range.draw, range, chunk);
+        } else {
+            number(draw, range);
+            finished &= shadeVertices(draw, token + range.draw, refs_, contexts_, vertices_, chunk);
+            statistics_.vertexInvocations += refs_.size();
+        }
+        if (draw.plan->ownVertices) giveOwnVertices(draw, verticesPerPrimitive(draw.plan->rasterTopology), chunk);
         statistics_.inputPrimitives += range.count;
-        statistics_.vertexInvocations += refs_.size();
-        statistics_.clippingInvocations += range.count;
-        if (draw.call.capture != nullptr) capture(draw, range.first);
+        statistics_.clippingInvocations += primitives_.size();
+        if (!draw.plan->stages) {
+            statistics_.generatedPrimitives[0] += range.count;
+            if (draw.call.capture != nullptr) capture(draw, range.first);
+        } else if (draw.call.capture != nullptr) {
+            captureStages(draw, range.draw, chunk);
+        }
         assemble(draw, range.draw, chunk);
     }
     setup_.finish();

@@ -1,6 +1,7 @@
 // Primitive assembly: from runs of draws to a chunk of primitives.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -21,6 +22,8 @@ struct PrimitiveRange {
 struct GeometryStatistics {
     uint64_t inputPrimitives = 0, vertexInvocations = 0, clippingInvocations = 0, clippingPrimitives = 0;
     uint64_t clippedPrimitives = 0, rasterPrimitives = 0;
+    uint64_t geometryInvocations = 0, geometryPrimitives = 0;
+    std::array<uint64_t, ir::kVertexStreams> generatedPrimitives{};  // by vertex stream
 };
 
 /// One thread's geometry.
@@ -35,20 +38,27 @@ class Assembler {
     GeometryStatistics& statistics() { return statistics_; }
 
   private:
-    struct LocalPrimitive {
-        std::array<uint32_t, 3> vertex;  // indices into the shaded vertices
-        uint32_t provoking;              // position
-        uint32_t primitiveId;
-        bool startsStrip;
-    };
     void number(const PreparedDraw& draw, const PrimitiveRange& range);
     template <class T>
     void numberList(const PreparedDraw& draw, uint32_t first, uint32_t count, uint32_t& least, uint32_t& greatest);
     static bool isPlainList(const PreparedDraw& draw, uint32_t first, uint32_t count, size_t bytes);
+    void numberInputs(const PreparedDraw& draw, const PrimitiveRange& range);
+    bool runStages(const PreparedDraw& draw, uint64_t token, const PrimitiveRange& range, Chunk& chunk);
+    static std::vector<VertexRun>::const_iterator runAt(const PreparedDraw& draw, uint32_t primitive) {
+        return std::upper_bound(draw.runs.begin(), draw.runs.end(), primitive,
+                                [](uint32_t value, const VertexRun& run) { return value < run.firstPrimitive; }) -
+               1;
+    }
+    /// gl_VertexIndex of a vertex or index of the draw.
+    static uint32_t vertexIndex(const DrawCall& call, uint32_t number) {
+        return call.indices.data != nullptr ? fetchIndex(call, number) + static_cast<uint32_t>(call.vertexOffset)
+                                            : call.first + number;
+    }
     void startReuse();
     uint32_t localVertex(const VertexRef& ref);
     void reuseByIndex(uint32_t least, uint32_t instance, uint32_t vertexCount);
     void capture(const PreparedDraw& draw, uint64_t first) const;
+    void captureStages(const PreparedDraw& draw, uint32_t drawIndex, Chunk& chunk) const;
     void assemble(const PreparedDraw& draw, uint32_t drawIndex, Chunk& chunk);
     void assembleTriangles(const PreparedDraw& draw, uint32_t drawIndex, Chunk& chunk);
     void assemblePrimitive(const PreparedDraw& draw, uint32_t drawIndex, const LocalPrimitive& primitive,
@@ -77,12 +87,16 @@ class Assembler {
     };
     static constexpr uint32_t kReuseSlots = 8192;
     static_assert(kReuseSlots >= 2 * 3 * kChunkPrimitives);
+    static constexpr uint32_t kMaxInputVertices = 32;  // of a primitive or patch
 
     ContextCache contexts_;
     PrimitiveSetup setup_;
     ShadedVertices vertices_;
     std::vector<VertexRef> refs_;
     std::vector<LocalPrimitive> primitives_;
+    StagePrimitives inputs_;  // of the first stage behind the vertices
+    StageVertices outputs_;   // of the last stage before the rasteriser
+    VertexStreams otherStreams_;
     std::vector<ReuseSlot> reuse_ = std::vector<ReuseSlot>(kReuseSlots);
     uint32_t epoch_ = 0;
     TileGrid grid_;

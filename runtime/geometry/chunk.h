@@ -110,8 +110,18 @@ constexpr bool isLargePart(int32_t width, int32_t height) {
 /// An entry is the index of a primitive; this bit says that it covers the tile completely.
 inline constexpr uint32_t kCoversTile = 1u << 31;
 
+/// What transform feedback takes of primitives that stages have made, in their order.
+struct CapturedPrimitives {
+    uint32_t draw = 0;  // index among the prepared draws
+    uint32_t stream = 0;
+    uint32_t verticesPerPrimitive = 1;
+    uint32_t primitives = 0;
+    std::vector<uint32_t> words;  // by vertex: the outputs of the stream, as CapturePlan has them
+};
+
 struct Chunk {
     RawVector<Primitive> primitives;
+    std::vector<CapturedPrimitives> captured;
     std::vector<Shape> shapes;
     // Line stipple goes on through a strip, and a strip through chunks. The first `continuingShapes` count from where
     // the chunk before ended (all of them unless `restartsStipple`); stippleEnd is the counter at the end of this one.
@@ -124,6 +134,7 @@ struct Chunk {
 
     void clear() {
         primitives.clear();
+        captured.clear();
         shapes.clear();
         continuingShapes = 0;
         restartsStipple = false;

@@ -24,10 +24,29 @@ struct IndexStream {
     VkIndexType type = VK_INDEX_TYPE_UINT16;
 };
 
+/// Where transform feedback goes on behind stages that make as many primitives as they like. Moves on in the order of
+/// the primitives, when they are known.
+struct RunningCapture {
+    struct Buffer {
+        std::byte* data = nullptr;
+        uint64_t size = 0, offset = 0;  // bytes
+    };
+    std::array<Buffer, kCaptureBuffers> buffers{};
+};
+
 /// Where transform feedback puts the vertices of a draw.
 struct CaptureTarget {
     std::array<std::byte*, kCaptureBuffers> data{};  // of the first vertex; by CapturePlan::strides from there
     uint64_t primitives = 0;                         // that have room in every buffer: the others are dropped
+    RunningCapture* running = nullptr;               // of a draw with stages behind its vertices, instead of these
+};
+
+/// The bindings of the stages between vertices and the rasteriser.
+struct StageResources {
+    ResourceBindings control, evaluation, geometry;
+    ResourceBindings& of(ir::Stage stage) {
+        return stage == ir::Stage::control ? control : stage == ir::Stage::evaluation ? evaluation : geometry;
+    }
 };
 
 /// One draw. What it points to must stay alive until the pass ends.
@@ -37,7 +56,8 @@ struct DrawCall {
     std::array<VertexStream, kMaxVertexBindings> vertexStreams{};
     IndexStream indices;
     ResourceBindings vertexResources, fragmentResources;
-    const CaptureTarget* capture = nullptr;  // nullptr: nothing is captured
+    const StageResources* stageResources = nullptr;  // nullptr: they need none
+    const CaptureTarget* capture = nullptr;          // nullptr: nothing is captured
     bool needsLevels = true;  // what fragments sample depends on levels of detail (resource/texture_unit.h)
     uint32_t count = 0;       // vertices or indices
     uint32_t instances = 1;

@@ -81,6 +81,20 @@ ViewportSetup setUpViewport(const PreparedDraw& draw, uint32_t index, const VkRe
     return setup;
 }
 
+/// A chunk has room to find the vertices of its primitives again, and what it may put out is bounded, with work for all
+/// lanes of a batch.
+uint32_t weightOf(const DrawCall& call, const Plan& plan) {
+    if (!plan.stages) return 1;
+    constexpr uint32_t kVertexNumbers = 4 * kChunkPrimitives, kOutputVertices = 16 * kChunkPrimitives;
+    const auto weigh = [](uint32_t each, uint32_t most) { return (each * kChunkPrimitives + most - 1) / most; };
+    uint32_t weight = weigh(plan.inputVertices, kVertexNumbers);
+    if (const auto& geometry = call.pipeline->geometryProgram()) {
+        const ir::GeometryModes& modes = geometry->source().geometry;
+        weight = std::max(weight, weigh(modes.invocations * modes.outputVertices, kOutputVertices));
+    }
+    return std::clamp(weight, 1u, kChunkPrimitives);
+}
+
 }  // namespace
 
 PreparedDraw prepareDraw(const DrawCall& call, const VkRect2D& renderArea) {
@@ -102,6 +116,7 @@ PreparedDraw prepareDraw(const DrawCall& call, const VkRect2D& renderArea) {
             draw.otherViewports.push_back(setUpViewport(draw, n, renderArea));
     draw.packsSmall = draw.plan->packsSmall && draw.samplesAtCentre && draw.otherViewports.empty() &&
                       draw.subPixelBits <= kTinySubPixelBits;
+    draw.primitiveWeight = weightOf(call, *draw.plan);
     draw.runs = vertexRuns(call, draw.state->topology, draw.state->primitiveRestart);
     if (!draw.runs.empty()) draw.primitivesPerInstance = draw.runs.back().firstPrimitive + draw.runs.back().primitives;
     return draw;

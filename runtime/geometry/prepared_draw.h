@@ -36,7 +36,7 @@ struct PreparedDraw {
     const Plan* plan = nullptr;
     const GraphicsState* state = nullptr;
     ViewportSetup firstViewport;
-    std::vector<ViewportSetup> otherViewports;  // none unless the vertex program chooses viewports
+    std::vector<ViewportSetup> otherViewports;  // none unless a program chooses viewports
     uint32_t viewIndex = 0;                     // multiview: the view, and the layer that the draw goes to
     uint32_t subPixelBits = 8;
     const SamplePosition* positions = nullptr;  // of all samples of a pixel
@@ -45,7 +45,8 @@ struct PreparedDraw {
     bool packsSmall = false;                    // primitives of a few pixels are drawn many at a time
     std::vector<VertexRun> runs;
     uint32_t primitivesPerInstance = 0;
-    uint32_t fragmentState = 0;  // draws with the same number may share fragment batches
+    uint32_t primitiveWeight = 1;  // of kChunkPrimitives: stages may make many of one
+    uint32_t fragmentState = 0;    // draws with the same number may share fragment batches
 
     uint32_t viewportCount() const { return 1 + static_cast<uint32_t>(otherViewports.size()); }
     const ViewportSetup& viewport(uint32_t index) const {

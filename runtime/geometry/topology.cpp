@@ -1,5 +1,6 @@
 #include "runtime/geometry/topology.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "runtime/geometry/draw_call.h"
@@ -88,6 +89,32 @@ PrimitiveVertices primitiveVertices(VkPrimitiveTopology topology, uint32_t primi
             return {{2 * p, 2 * p + 2 + 2 * (p & 1), 2 * p + 4 - 2 * (p & 1)}, 0, 2 - (p & 1)};
         default:  // a strip: every other triangle swaps its last two vertices to keep the winding
             return {{p, p + 1 + (p & 1), p + 2 - (p & 1)}, 0, 2 - (p & 1)};
+    }
+}
+
+void inputVertices(VkPrimitiveTopology topology, uint32_t primitive, uint32_t primitives, uint32_t* vertices) {
+    const uint32_t p = primitive;
+    const auto consecutive = [vertices](uint32_t first, uint32_t count) {
+        for (uint32_t v = 0; v < count; ++v) vertices[v] = first + v;
+    };
+    switch (topology) {
+        case VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY:
+            return consecutive(4 * p, 4);
+        case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY:
+            return consecutive(p, 4);
+        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST_WITH_ADJACENCY:
+            return consecutive(6 * p, 6);
+        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY: {
+            // "Triangle Strips With Adjacency": the first and the last triangle have neighbours of their own.
+            const uint32_t first = 2 * p, before = p == 0 ? 1 : first - 2;
+            const uint32_t behind = p + 1 == primitives ? first + 5 : first + 6;
+            const uint32_t even[] = {first, before, first + 2, behind, first + 4, first + 3};
+            const uint32_t odd[] = {first, first + 3, first + 4, behind, first + 2, before};
+            std::copy_n(p % 2 == 0 ? even : odd, 6, vertices);
+            return;
+        }
+        default:
+            std::copy_n(primitiveVertices(topology, primitive).vertex.data(), verticesPerPrimitive(topology), vertices);
     }
 }
 

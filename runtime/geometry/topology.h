@@ -25,6 +25,10 @@ uint32_t primitiveCount(VkPrimitiveTopology topology, uint32_t vertices);
 
 PrimitiveVertices primitiveVertices(VkPrimitiveTopology topology, uint32_t primitive);
 
+/// All vertices of primitive `primitive` of `primitives` in a run, as the stage behind the vertices gets them: in the
+/// specification's order, those of its neighbours included. `vertices` has room for plan.inputVertices.
+void inputVertices(VkPrimitiveTopology topology, uint32_t primitive, uint32_t primitives, uint32_t* vertices);
+
 /// A run of vertices without a restart in it.
 struct VertexRun {
     uint32_t first = 0;           // vertex or index number, counted from the draw's first

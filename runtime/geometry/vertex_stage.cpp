@@ -77,7 +77,10 @@ void fetchInputs(const PreparedDraw& draw, const VertexRef* refs, uint32_t count
     }
 }
 
-void copyPlane(const BatchContext& context, uint32_t slot, uint32_t count, float missing, float* target) {
+// Where outputs come from, `context` below: a batch, or what a stage has kept.
+
+template <class Context>
+void copyPlane(const Context& context, uint32_t slot, uint32_t count, float missing, float* target) {
     if (slot == kNoSlot) {
         std::fill_n(target, count, missing);
     } else {
@@ -85,9 +88,10 @@ void copyPlane(const BatchContext& context, uint32_t slot, uint32_t count, float
     }
 }
 
-/// Outputs of one batch to the arrays, from vertex `first` on.
-void storeOutputs(const Plan& plan, const BatchContext& context, uint32_t first, uint32_t count,
-                  ShadedVertices& vertices, Chunk& chunk) {
+/// Outputs to the arrays, from vertex `first` on.
+template <class Context>
+void storeOutputs(const Plan& plan, const Context& context, uint32_t first, uint32_t count, ShadedVertices& vertices,
+                  Chunk& chunk) {
     for (uint32_t c = 0; c < 4; ++c)
         copyPlane(context, plan.positionSlots[c], count, c == 3 ? 1.0f : 0.0f, vertices.clip[c].data() + first);
     if (!vertices.layers.empty())
@@ -117,7 +121,8 @@ void storeOutputs(const Plan& plan, const BatchContext& context, uint32_t first,
     }
 }
 
-void storeCullDistances(const Plan& plan, const BatchContext& context, uint32_t first, uint32_t count,
+template <class Context>
+void storeCullDistances(const Plan& plan, const Context& context, uint32_t first, uint32_t count,
                         ShadedVertices& vertices) {
     for (uint32_t k = 0; k < plan.cullDistanceSlots.size(); ++k) {
         const float* plane = context.output(plan.cullDistanceSlots[k]);
@@ -160,6 +165,16 @@ ContextCache::Entry& ContextCache::get(const std::shared_ptr<const BatchProgram>
     const auto found = entries_.find(program.get());
     if (found != entries_.end()) return found->second;
     return entries_.emplace(program.get(), Entry{BatchContext(program), 0}).first->second;
+}
+
+BatchContext& ContextCache::begin(const std::shared_ptr<const BatchProgram>& program, uint64_t token,
+                                  const ResourceBindings& bindings) {
+    Entry& entry = get(program);
+    if (entry.begun != token) {
+        entry.context.beginDraw(bindings);
+        entry.begun = token;
+    }
+    return entry.context;
 }
 
 void ContextCache::trim() {
@@ -212,38 +227,37 @@ void ShadedVertices::resize(uint32_t count, const Plan& plan) {
     viewports.resize(plan.viewportIndexSlot == kNoSlot ? 0 : count);
 }
 
-bool shadeVertices(const PreparedDraw& draw, uint64_t token, const std::vector<VertexRef>& refs, ContextCache& cache,
-                   ShadedVertices& vertices, Chunk& chunk) {
-    const Plan& plan = *draw.plan;
+namespace {
+
+/// Runs the vertex program, and hands `take` each batch: its registers, the number of its first vertex and how many.
+template <class Take>
+bool runVertices(const PreparedDraw& draw, uint64_t token, const std::vector<VertexRef>& refs, ContextCache& cache,
+                 const Take& take) {
     const auto count = static_cast<uint32_t>(refs.size());
-    vertices.resize(count, plan);
-    vertices.attributeStride = static_cast<uint32_t>(plan.varyings.size());
-    vertices.firstAttribute = static_cast<uint32_t>(chunk.attributes.size());
-    chunk.attributes.resize(chunk.attributes.size() + size_t{count} * vertices.attributeStride);
-
-    const bool captures = draw.call.capture != nullptr;
-    const CapturePlan& capture = draw.call.pipeline->program().capture();
-    vertices.captured.resize(captures ? count * capture.outputs.size() : 0);
-
     const std::shared_ptr<const BatchProgram>& program = draw.call.pipeline->vertexProgram();
-    ContextCache::Entry& entry = cache.get(program);
-    if (entry.begun != token) {
-        entry.context.beginDraw(draw.call.vertexResources);
-        entry.begun = token;
-    }
+    BatchContext& context = cache.begin(program, token, draw.call.vertexResources);
     const uint32_t lanes = std::min(program->lanes(), kMaxBatchLanes);
     alignas(64) uint32_t mask[kMaxBatchLanes];
     bool finished = true;
     for (uint32_t first = 0; first < count; first += lanes) {
         const uint32_t n = std::min(lanes, count - first), padded = (n + 3) / 4 * 4;
-        fetchInputs(draw, refs.data() + first, n, entry.context);
+        fetchInputs(draw, refs.data() + first, n, context);
         std::fill_n(mask, n, ~0u);
         std::fill_n(mask + n, lanes - n, 0u);
-        finished &= entry.context.run(padded, mask, mask);
-        storeOutputs(plan, entry.context, first, n, vertices, chunk);
-        storeCullDistances(plan, entry.context, first, n, vertices);
-        if (captures) storeCaptured(capture, entry.context, first, n, vertices);
+        finished &= context.run(padded, mask, mask);
+        take(context, first, n);
     }
+    return finished;
+}
+
+void makeRoom(const Plan& plan, uint32_t count, ShadedVertices& vertices, Chunk& chunk) {
+    vertices.resize(count, plan);
+    vertices.attributeStride = static_cast<uint32_t>(plan.varyings.size());
+    vertices.firstAttribute = static_cast<uint32_t>(chunk.attributes.size());
+    chunk.attributes.resize(chunk.attributes.size() + size_t{count} * vertices.attributeStride);
+}
+
+void project(const PreparedDraw& draw, uint32_t count, ShadedVertices& vertices) {
     const ProjectionInput in{
         {vertices.clip[0].data(), vertices.clip[1].data(), vertices.clip[2].data(), vertices.clip[3].data()},
         count,
@@ -254,8 +268,45 @@ bool shadeVertices(const PreparedDraw& draw, uint64_t token, const std::vector<V
     const ProjectionOutput out{vertices.x.data(), vertices.y.data(), vertices.z.data(), vertices.inverseW.data(),
                                vertices.flags.data()};
     projectFunction(draw.call.pipeline->isa())(in, out);
-    flagClipDistances(count, static_cast<uint32_t>(plan.clipDistanceSlots.size()), vertices);
+    flagClipDistances(count, static_cast<uint32_t>(draw.plan->clipDistanceSlots.size()), vertices);
+}
+
+}  // namespace
+
+bool shadeVertices(const PreparedDraw& draw, uint64_t token, const std::vector<VertexRef>& refs, ContextCache& cache,
+                   ShadedVertices& vertices, Chunk& chunk) {
+    const Plan& plan = *draw.plan;
+    const auto count = static_cast<uint32_t>(refs.size());
+    makeRoom(plan, count, vertices, chunk);
+    const bool captures = draw.call.capture != nullptr;
+    const CapturePlan& capture = draw.call.pipeline->program().capture();
+    vertices.captured.resize(captures ? count * capture.outputs.size() : 0);
+    const bool finished =
+        runVertices(draw, token, refs, cache, [&](const BatchContext& context, uint32_t first, uint32_t n) {
+            storeOutputs(plan, context, first, n, vertices, chunk);
+            storeCullDistances(plan, context, first, n, vertices);
+            if (captures) storeCaptured(capture, context, first, n, vertices);
+        });
+    project(draw, count, vertices);
     return finished;
+}
+
+bool shadeForStages(const PreparedDraw& draw, uint64_t token, const std::vector<VertexRef>& refs, ContextCache& cache,
+                    StageVertices& vertices) {
+    const size_t outputs = draw.call.pipeline->vertexIr().outputs.size();
+    vertices.reset(outputs);
+    vertices.add(static_cast<uint32_t>(refs.size()));
+    return runVertices(draw, token, refs, cache, [&](const BatchContext& context, uint32_t first, uint32_t n) {
+        for (uint32_t k = 0; k < outputs; ++k)
+            std::memcpy(vertices.plane(k) + first, context.output(k), n * sizeof(uint32_t));
+    });
+}
+
+void finishVertices(const PreparedDraw& draw, const StageVertices& from, ShadedVertices& vertices, Chunk& chunk) {
+    makeRoom(*draw.plan, from.count(), vertices, chunk);
+    storeOutputs(*draw.plan, from, 0, from.count(), vertices, chunk);
+    storeCullDistances(*draw.plan, from, 0, from.count(), vertices);
+    project(draw, from.count(), vertices);
 }
 
 }  // namespace vernier

@@ -9,6 +9,7 @@
 
 #include "runtime/geometry/chunk.h"
 #include "runtime/geometry/prepared_draw.h"
+#include "runtime/geometry/stage_vertices.h"
 #include "spirv_interp/program.h"
 
 namespace vernier {
@@ -21,6 +22,9 @@ class ContextCache {
         uint64_t begun = 0;  // the token that beginDraw was last called for; 0 = none. Tokens are never used twice
     };
     Entry& get(const std::shared_ptr<const BatchProgram>& program);
+    /// The program's registers, ready for the draw with the token.
+    BatchContext& begin(const std::shared_ptr<const BatchProgram>& program, uint64_t token,
+                        const ResourceBindings& bindings);
     /// Drops the contexts when there are many: nobody may use one then.
     void trim();
 
@@ -33,7 +37,7 @@ struct VertexRef {
     uint32_t instance;  // counted from 0
 };
 
-/// Vertices after the vertex program: structure of arrays. Attributes go straight into the chunk.
+/// Vertices as the rasteriser gets them: structure of arrays. Attributes go straight into the chunk.
 struct ShadedVertices {
     std::vector<float> clip[4];
     std::vector<int32_t> x, y;
@@ -58,5 +62,12 @@ struct ShadedVertices {
 /// false when the program ran out of its loop budget.
 bool shadeVertices(const PreparedDraw& draw, uint64_t token, const std::vector<VertexRef>& refs, ContextCache& cache,
                    ShadedVertices& vertices, Chunk& chunk);
+
+/// The same, for a stage behind.
+bool shadeForStages(const PreparedDraw& draw, uint64_t token, const std::vector<VertexRef>& refs, ContextCache& cache,
+                    StageVertices& vertices);
+
+/// Projects what the last stage before the rasteriser put out.
+void finishVertices(const PreparedDraw& draw, const StageVertices& from, ShadedVertices& vertices, Chunk& chunk);
 
 }  // namespace vernier

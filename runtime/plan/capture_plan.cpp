@@ -5,13 +5,13 @@
 
 namespace vernier {
 
-CapturePlan planCapture(const CaptureLayout& layout, const ir::Program& vertex) {
+CapturePlan planCapture(const CaptureLayout& layout, const ir::Program& last) {
     CapturePlan plan;
     plan.strides = layout.strides;
     for (const CapturedWord& word : layout.words) {
-        CapturedOutput output{ir::kNoIndex, word.buffer, word.offset};
-        for (uint32_t slot = 0; slot < vertex.outputs.size(); ++slot) {
-            const ir::InterfaceSlot& found = vertex.outputs[slot];
+        CapturedOutput output{ir::kNoIndex, word.buffer, word.offset, word.output.index};
+        for (uint32_t slot = 0; slot < last.outputs.size(); ++slot) {
+            const ir::InterfaceSlot& found = last.outputs[slot];
             if (found.builtin == word.output.builtin && found.location == word.output.location &&
                 found.component == word.output.component)
                 output.slot = slot;

@@ -1,4 +1,4 @@
-// What transform feedback takes from the vertices of a program.
+// What transform feedback takes from the vertices that the last program before the rasteriser puts out.
 #pragma once
 
 #include <array>
@@ -11,9 +11,10 @@ namespace vernier {
 
 /// A word that is copied from an output into a buffer.
 struct CapturedOutput {
-    uint32_t slot = ir::kNoIndex;  // of the compiled vertex program's outputs; kNoIndex: never written, reads as 0
+    uint32_t slot = ir::kNoIndex;  // of the compiled program's outputs; kNoIndex: never written, reads as 0
     uint32_t buffer = 0;           // below kCaptureBuffers
     uint32_t offset = 0;           // bytes from the begin of the vertex
+    uint32_t stream = 0;           // of vertices
 };
 
 struct CapturePlan {
@@ -24,7 +25,7 @@ struct CapturePlan {
     bool empty() const { return outputs.empty(); }
 };
 
-/// `vertex`: the linked program, which still has the outputs of the layout that it writes.
-CapturePlan planCapture(const CaptureLayout& layout, const ir::Program& vertex);
+/// `last`: the linked program, which still has the outputs of the layout that it writes.
+CapturePlan planCapture(const CaptureLayout& layout, const ir::Program& last);
 
 }  // namespace vernier

@@ -1,10 +1,12 @@
 #include "runtime/plan/check_state.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 
 #include "runtime/format/format.h"
 #include "runtime/plan/sample_positions.h"
+#include "spirv_interp/ir/names.h"
 
 namespace vernier {
 namespace {
@@ -92,12 +94,73 @@ Status checkDistances(const ir::Program& program) {
     for (const ir::InterfaceSlot& slot : program.outputs) {
         const bool distance = slot.builtin == ir::Builtin::clipDistance || slot.builtin == ir::Builtin::cullDistance;
         if (distance && slot.component >= kMaxClipDistances)
-            return unsupported("vertex shader: more than " + number(kMaxClipDistances) + " clip or cull distances");
+            return unsupported(std::string(ir::nameOf(program.stage)) + " shader: more than " +
+                               number(kMaxClipDistances) + " clip or cull distances");
     }
     return {};
 }
 
+/// The primitives that topologies are made of, as geometry stages get them.
+std::optional<ir::GeometryInput> primitiveOf(VkPrimitiveTopology topology) {
+    switch (topology) {
+        case VK_PRIMITIVE_TOPOLOGY_POINT_LIST:
+            return ir::GeometryInput::points;
+        case VK_PRIMITIVE_TOPOLOGY_LINE_LIST:
+        case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP:
+            return ir::GeometryInput::lines;
+        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST:
+        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP:
+        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN:
+            return ir::GeometryInput::triangles;
+        case VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY:
+        case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY:
+            return ir::GeometryInput::linesAdjacency;
+        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST_WITH_ADJACENCY:
+        case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY:
+            return ir::GeometryInput::trianglesAdjacency;
+        default:
+            return std::nullopt;
+    }
+}
+
+/// A geometry stage gets the primitives that it declares (VUID-VkGraphicsPipelineCreateInfo-pStages-00738).
+Status checkGeometryStage(const GraphicsState& state, const ShaderProgram& program) {
+    const std::shared_ptr<const BatchProgram> geometry = program.stage(ir::Stage::geometry);
+    if (geometry == nullptr) return {};
+    const ir::GeometryInput wanted = geometry->source().geometry.input;
+    const std::optional<ir::GeometryInput> drawn = primitiveOf(state.topology);
+    if (drawn == wanted) return {};
+    return invalidArgument("geometry shader: it takes " + std::string(ir::nameOf(wanted)) + ", the topology is of " +
+                           (drawn ? std::string(ir::nameOf(*drawn)) : std::string("something else")));
+}
+
 }  // namespace
+
+VkPrimitiveTopology topologyOf(ir::GeometryOutput output) {
+    switch (output) {
+        case ir::GeometryOutput::points:
+            return VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
+        case ir::GeometryOutput::lineStrip:
+            return VK_PRIMITIVE_TOPOLOGY_LINE_STRIP;
+        default:
+            return VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP;
+    }
+}
+
+VkPrimitiveTopology topologyOf(ir::GeometryInput input) {
+    switch (input) {
+        case ir::GeometryInput::points:
+            return VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
+        case ir::GeometryInput::lines:
+            return VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
+        case ir::GeometryInput::linesAdjacency:
+            return VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY;
+        case ir::GeometryInput::trianglesAdjacency:
+            return VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST_WITH_ADJACENCY;
+        default:
+            return VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    }
+}
 
 Status checkGraphicsState(const GraphicsState& state, const Accuracy& accuracy) {
     const uint32_t bits = accuracy.subPixelBits;
@@ -108,9 +171,10 @@ Status checkGraphicsState(const GraphicsState& state, const Accuracy& accuracy) 
     return {};
 }
 
-Status checkInterfaces(const GraphicsState& state, const ir::Program& vertex) {
-    if (Status status = checkDistances(vertex); !status) return status;
-    for (const ir::InterfaceSlot& slot : vertex.inputs) {
+Status checkInterfaces(const GraphicsState& state, const ShaderProgram& program) {
+    if (Status status = checkDistances(program.lastIr()); !status) return status;
+    if (Status status = checkGeometryStage(state, program); !status) return status;
+    for (const ir::InterfaceSlot& slot : program.vertexIr().inputs) {
         if (slot.builtin != ir::Builtin::user) continue;
         const bool found = std::any_of(state.vertexAttributes.begin(), state.vertexAttributes.end(),
                                        [&](const auto& attribute) { return attribute.location == slot.location; });

@@ -10,6 +10,10 @@ namespace vernier {
 Status checkGraphicsState(const GraphicsState& state, const Accuracy& accuracy);
 
 /// Checks the shaders against the state and each other.
-Status checkInterfaces(const GraphicsState& state, const ir::Program& vertex);
+Status checkInterfaces(const GraphicsState& state, const ShaderProgram& program);
+
+/// Of what a geometry stage puts out; and one of what it takes.
+VkPrimitiveTopology topologyOf(ir::GeometryOutput output);
+VkPrimitiveTopology topologyOf(ir::GeometryInput input);
 
 }  // namespace vernier

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "runtime/plan/program_facts.h"
+#include "spirv_interp/ir/names.h"
 
 namespace vernier {
 namespace {
@@ -27,19 +28,35 @@ std::string count(size_t n, const std::string& thing) {
     return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
 }
 
-void geometryFacts(const GraphicsState& state, const Plan& plan, const Accuracy& accuracy, FactWriter& facts) {
+/// Whose vertices the rasteriser gets.
+std::string lastProgram(const ShaderProgram& program) {
+    return std::string(ir::nameOf(program.lastIr().stage));
+}
+
+void geometryFacts(const GraphicsState& state, const ShaderProgram& program, const Plan& plan, FactWriter& facts) {
+    const Accuracy& accuracy = program.accuracy();
     facts.runs("vertex program, once per vertex and chunk",
                count(plan.attributes.size(), "attribute") + " fetched; " + tierName(accuracy.math) + " maths");
+    if (const auto geometry = program.stage(ir::Stage::geometry)) {
+        const ir::GeometryModes& modes = geometry->source().geometry;
+        facts.runs("geometry program, " +
+                       (modes.invocations == 1 ? std::string("once") : std::to_string(modes.invocations) + " times") +
+                       " per primitive",
+                   std::string(ir::nameOf(modes.input)) + " in, " + std::string(ir::nameOf(modes.output)) +
+                       " out, at most " + std::to_string(modes.outputVertices) + " vertices each time");
+    }
     if (state.rasterizerDiscard) {
-        facts.leftOut("everything after the vertex program", "rasterizer discard is on");
+        facts.leftOut("everything after the " + lastProgram(program) + " program", "rasterizer discard is on");
         return;
     }
     facts.runs(
         "coverage, exact on a grid of 1/" + std::to_string(1u << accuracy.subPixelBits) + " pixel",
         std::to_string(accuracy.subPixelBits) + " sub-pixel bits; " + count(plan.samples, "sample") + " per pixel");
     if (plan.clipDistanceSlots.empty()) facts.leftOut("user clip planes", "no clip distance is written");
-    if (plan.layerSlot != kNoSlot) facts.runs("a layer for each primitive", "the vertex program chooses it");
-    if (plan.viewportIndexSlot != kNoSlot) facts.runs("a viewport for each primitive", "the vertex program chooses it");
+    if (plan.layerSlot != kNoSlot)
+        facts.runs("a layer for each primitive", "the " + lastProgram(program) + " program chooses it");
+    if (plan.viewportIndexSlot != kNoSlot)
+        facts.runs("a viewport for each primitive", "the " + lastProgram(program) + " program chooses it");
     if (plan.smoothLines) facts.runs("the area that a line covers of each pixel, into alpha", "lines are smooth");
     if (!state.depthClipEnable) facts.leftOut("clipping to near and far", "depth clipping is off");
     if (state.cullMode == VK_CULL_MODE_NONE) facts.leftOut("culling", "cull mode is none");
@@ -163,8 +180,10 @@ void collectFacts(const GraphicsState& state, const ShaderProgram& program, Plan
     for (size_t rule = 0; rule < skipRules().size(); ++rule)
         if (!plan.skips.has(static_cast<Skip>(rule)))
             facts.runs(skipRules()[rule].meaning, std::string("rule ") + skipRules()[rule].name + " is off");
-    geometryFacts(state, plan, program.accuracy(), facts);
-    rateFacts("vertex program", "vertex", *program.vertex(), facts);
+    geometryFacts(state, program, plan, facts);
+    for (const StageProgram& stage : program.stages())
+        rateFacts(std::string(ir::nameOf(stage.stage)) + " program",
+                  stage.stage == ir::Stage::vertex ? "vertex" : "invocation", *stage.program, facts);
     if (program.lifted().flat > 0)
         facts.runs(count(program.lifted().flat, "operation") + " of the fragment shader, once per vertex",
                    "they depend on flat inputs alone");
@@ -174,7 +193,7 @@ void collectFacts(const GraphicsState& state, const ShaderProgram& program, Plan
     if (!program.capture().empty())
         facts.runs("transform feedback of " + count(program.capture().outputs.size(), "word") +
                        " per vertex, in draws between its begin and its end",
-                   "the vertex shader declares it");
+                   "the " + lastProgram(program) + " shader declares it");
     if (program.removedVaryings() > 0)
         facts.leftOut(count(program.removedVaryings(), "vertex output"), "nobody reads them");
     if (state.rasterizerDiscard) return;

@@ -12,10 +12,11 @@ Result<std::shared_ptr<const GraphicsPipeline>> GraphicsPipeline::create(const G
     if (desc.program == nullptr) return invalidArgument("GraphicsPipelineDesc::program is null");
     const ShaderProgram& program = *desc.program;
     if (Status status = checkGraphicsState(desc.state, program.accuracy()); !status) return status.error();
-    if (Status status = checkInterfaces(desc.state, program.vertexIr()); !status) return status.error();
+    if (Status status = checkInterfaces(desc.state, program); !status) return status.error();
     std::shared_ptr<GraphicsPipeline> pipeline(new GraphicsPipeline());
     pipeline->state_ = desc.state;
     pipeline->program_ = desc.program;
+    pipeline->geometry_ = program.stage(ir::Stage::geometry);
     pipeline->plan_ = std::make_unique<const Plan>(makePlan(desc.state, program));
     if (pipeline->plan_->quadsForLevels)
         pipeline->planWithoutQuads_ = std::make_unique<const Plan>(vernier::planWithoutQuads(*pipeline->plan_));

@@ -33,6 +33,8 @@ class GraphicsPipeline {
     const ir::Program& vertexIr() const { return program_->vertexIr(); }
     const ir::Program* fragmentIr() const { return program_->fragmentIr(); }
     const std::shared_ptr<const BatchProgram>& vertexProgram() const { return program_->vertex(); }
+    /// nullptr without a geometry stage.
+    const std::shared_ptr<const BatchProgram>& geometryProgram() const { return geometry_; }
     const std::shared_ptr<const BatchProgram>& fragmentProgram() const { return program_->fragment(); }
     const Plan& plan() const { return *plan_; }
     /// For draws whose images need no level of detail; nullptr if that makes no difference.
@@ -45,6 +47,7 @@ class GraphicsPipeline {
     GraphicsPipeline();
     GraphicsState state_;
     std::shared_ptr<const ShaderProgram> program_;
+    std::shared_ptr<const BatchProgram> geometry_;
     std::unique_ptr<const Plan> plan_, planWithoutQuads_;
 };
 

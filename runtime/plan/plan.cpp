@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 
+#include "runtime/plan/check_state.h"
 #include "runtime/plan/facts.h"
 #include "spirv_interp/ir/primitive_inputs.h"
 #include "spirv_interp/ir/split_samples.h"
@@ -59,6 +60,40 @@ void planAttributes(const GraphicsState& state, const ir::Program& vertex, Isa i
             plan.vertexBuiltins.push_back({vertex.inputs[slot].builtin, vertex.inputs[slot].component, slot});
 }
 
+StagePlan planStage(const ir::Program& producer, const ir::Program& stage) {
+    StagePlan plan;
+    for (uint32_t slot = 0; slot < stage.inputs.size(); ++slot) {
+        const ir::InterfaceSlot& input = stage.inputs[slot];
+        if (input.index == 0) {
+            plan.builtins.push_back({input.builtin, input.component, slot});
+            continue;
+        }
+        StageInput from{slot, kNoSlot, input.index - 1u};
+        for (uint32_t out = 0; out < producer.outputs.size(); ++out) {
+            const ir::InterfaceSlot& output = producer.outputs[out];
+            if (output.builtin == input.builtin && output.location == input.location &&
+                output.component == input.component)
+                from.from = out;
+        }
+        plan.inputs.push_back(from);
+    }
+    return plan;
+}
+
+/// The stages between vertices and the rasteriser.
+void planStages(const GraphicsState& state, const ShaderProgram& program, Plan& plan) {
+    const std::vector<StageProgram>& stages = program.stages();
+    plan.stages = stages.size() > 1;
+    plan.rasterTopology = state.topology;
+    for (size_t n = 1; n < stages.size(); ++n) {
+        const ir::Program& stage = stages[n].program->source();
+        if (stage.stage != ir::Stage::geometry) continue;
+        plan.geometry = planStage(stages[n - 1].program->source(), stage);
+        plan.inputVertices = ir::verticesOf(stage.geometry.input);
+        plan.rasterTopology = topologyOf(stage.geometry.output);
+    }
+}
+
 void planVertexOutputs(const ir::Program& vertex, Plan& plan) {
     const auto distanceSlot = [](std::vector<uint32_t>& slots, uint32_t component, uint32_t slot) {
         if (slots.size() <= component) slots.resize(component + 1, slot);
@@ -79,6 +114,12 @@ void planVertexOutputs(const ir::Program& vertex, Plan& plan) {
             case ir::Builtin::viewportIndex:
                 plan.viewportIndexSlot = slot;
                 break;
+            case ir::Builtin::primitiveId:
+                plan.primitiveIdSlot = slot;
+                break;
+            case ir::Builtin::vertexFlags:
+                plan.vertexFlagsSlot = slot;
+                break;
             case ir::Builtin::clipDistance:
                 distanceSlot(plan.clipDistanceSlots, output.component, slot);
                 break;
@@ -91,8 +132,8 @@ void planVertexOutputs(const ir::Program& vertex, Plan& plan) {
     }
 }
 
-bool drawsLines(const GraphicsState& state) {
-    switch (state.topology) {
+bool drawsLines(const GraphicsState& state, VkPrimitiveTopology topology) {
+    switch (topology) {
         case VK_PRIMITIVE_TOPOLOGY_POINT_LIST:
             return false;
         case VK_PRIMITIVE_TOPOLOGY_LINE_LIST:
@@ -366,7 +407,7 @@ DepthStorage depthStorage(VkFormat format) {
 }
 
 Plan makePlan(const GraphicsState& state, const ShaderProgram& program) {
-    const ir::Program& vertex = program.vertexIr();
+    const ir::Program &vertex = program.vertexIr(), &last = program.lastIr();
     // Nothing behind a rasteriser that discards everything: the fragment program cannot run.
     const ir::Program* fragment = state.rasterizerDiscard ? nullptr : program.fragmentIr();
     const Accuracy& accuracy = program.accuracy();
@@ -376,7 +417,9 @@ Plan makePlan(const GraphicsState& state, const ShaderProgram& program) {
     plan.sampleMask = state.sampleMask;
     plan.alphaToCoverage = state.alphaToCoverage && fragment != nullptr;
     plan.alphaToOne = state.alphaToOne;
-    plan.smoothLines = state.lineMode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT && drawsLines(state);
+    planStages(state, program, plan);
+    plan.smoothLines =
+        state.lineMode == VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT && drawsLines(state, plan.rasterTopology);
     plan.preciseInterpolation = accuracy.interpolation == InterpolationArithmetic::doubleFloat;
     // minSampleShading asks for "a minimum number" of shaded samples: all of them are shaded where more than one is.
     const bool shadesSamples = state.sampleShading && state.minSampleShading * static_cast<float>(state.samples) > 1;
@@ -386,11 +429,11 @@ Plan makePlan(const GraphicsState& state, const ShaderProgram& program) {
     const ir::Program* pixel = plan.splitSamples ? &program.pixelPart()->source() : nullptr;
     if (plan.splitSamples) fragment = &program.samplePart()->source();
     planAttributes(state, vertex, program.isa(), plan);
-    planVertexOutputs(vertex, plan);
+    planVertexOutputs(last, plan);
     if (!state.rasterizerDiscard) {
         planDepth(state, fragment, plan);
         if (fragment != nullptr) {
-            planVaryings(vertex, *fragment, pixel, plan);
+            planVaryings(last, *fragment, pixel, plan);
             planFragments(state, *fragment, program.isa(), plan);
             plan.usesQuads = plan.usesQuads || (pixel != nullptr && pixel->usesQuads);
             plan.coarse = accuracy.shading == ShadingRate::twoByTwo && canShadeCoarsely(plan, *fragment);

@@ -41,13 +41,13 @@ struct BuiltinSlot {
     uint32_t slot = 0;
 };
 
-/// One scalar that travels from the vertex to the fragment program, or that each primitive gives its own copies of its
-/// vertices for the fragment program.
+/// One scalar that travels from the last program before the rasteriser to the fragment program, or that each primitive
+/// gives its own copies of its vertices for the fragment program.
 struct Varying {
     enum class Source : uint8_t {
-        vertex,    // what the vertex program writes
+        vertex,    // what that program writes
         weight,    // BaryCoordKHR: 1 at the vertex with the number, 0 at the others
-        ofVertex,  // PerVertexKHR: at all of them what the vertex program wrote for that vertex
+        ofVertex,  // PerVertexKHR: at all of them what that program wrote for that vertex
     };
     uint32_t vertexSlot = kNoSlot;    // kNoSlot: nobody writes it, it reads as 0
     uint32_t fragmentSlot = kNoSlot;  // of the fragment program, or of the part of it that runs per sample
@@ -56,6 +56,19 @@ struct Varying {
     ir::Sampling sampling = ir::Sampling::center;
     Source source = Source::vertex;
     uint8_t number = 0;  // of the vertex, unless `source` is vertex
+};
+
+/// An input of a stage between vertices and the rasteriser that is a value of one of its primitive's vertices.
+struct StageInput {
+    uint32_t slot = 0;
+    uint32_t from = kNoSlot;  // output of the stage before; kNoSlot: nobody writes it, it reads as 0
+    uint32_t vertex = 0;      // of the primitive
+};
+
+/// What such a stage gets.
+struct StagePlan {
+    std::vector<StageInput> inputs;
+    std::vector<BuiltinSlot> builtins;
 };
 
 enum class DepthStorage : uint8_t { none, d16, d24, d32f, d32fs8 };
@@ -108,6 +121,13 @@ struct Plan {
     // Geometry.
     std::vector<AttributeFetch> attributes;
     std::vector<BuiltinSlot> vertexBuiltins;
+    bool stages = false;         // there are some between vertices and the rasteriser
+    uint32_t inputVertices = 3;  // of a primitive that goes into them, those of its neighbours included
+    StagePlan geometry;
+    // What reaches the rasteriser: the state's topology, or that of what stages make.
+    VkPrimitiveTopology rasterTopology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    // Outputs of the last stage before the rasteriser.
+    uint32_t primitiveIdSlot = kNoSlot, vertexFlagsSlot = kNoSlot;
     std::array<uint32_t, 4> positionSlots{kNoSlot, kNoSlot, kNoSlot, kNoSlot};
     uint32_t pointSizeSlot = kNoSlot;
     uint32_t layerSlot = kNoSlot, viewportIndexSlot = kNoSlot;

@@ -1,7 +1,12 @@
 #include "runtime/plan/shader_program.h"
 
+#include <algorithm>
+#include <string>
+
 #include "spirv_interp/ir/link.h"
+#include "spirv_interp/ir/names.h"
 #include "spirv_interp/ir/optimise.h"
+#include "spirv_interp/ir/place_vertices.h"
 #include "spirv_interp/ir/split_samples.h"
 
 namespace vernier {
@@ -30,6 +35,12 @@ void dropColors(ir::Program& fragment, uint32_t kept) {
 
 }  // namespace
 
+std::shared_ptr<const BatchProgram> ShaderProgram::stage(ir::Stage stage) const {
+    const auto found = std::find_if(stages_.begin(), stages_.end(),
+                                    [&](const StageProgram& program) { return program.stage == stage; });
+    return found == stages_.end() ? nullptr : found->program;
+}
+
 Result<std::shared_ptr<const ShaderProgram>> ShaderProgram::create(const ShaderProgramDesc& desc) {
     const std::shared_ptr<ShaderProgram> program(new ShaderProgram);
     program->accuracy_ = desc.accuracy;
@@ -37,7 +48,9 @@ Result<std::shared_ptr<const ShaderProgram>> ShaderProgram::create(const ShaderP
     program->skips_ = desc.skips;
     const bool dropUnread = desc.skips.has(Skip::unreadOutputs);
     const bool hasFragment = desc.fragment != nullptr;
-    ir::Program vertexIr = *desc.vertex, fragmentIr = hasFragment ? *desc.fragment : emptyFragment();
+    std::vector<ir::Program> stages{*desc.vertex};
+    if (desc.geometry != nullptr) stages.push_back(*desc.geometry);
+    ir::Program fragmentIr = hasFragment ? *desc.fragment : emptyFragment();
     if (hasFragment && dropUnread) dropColors(fragmentIr, desc.keptColors);
     ir::LinkFacts facts;
     ir::LinkOptions linking;
@@ -49,9 +62,16 @@ Result<std::shared_ptr<const ShaderProgram>> ShaderProgram::create(const ShaderP
     if (desc.capture != nullptr)
         for (const CapturedWord& word : desc.capture->words) captured.push_back(word.output);
     linking.kept = captured;
-    if (Status status = ir::linkStages(vertexIr, fragmentIr, &facts, linking); !status) return status.error();
+    // From the end, so that what an output goes without is not asked of the stage before.
+    if (Status status = ir::linkStages(stages.back(), fragmentIr, &facts, linking); !status) return status.error();
     program->removedVaryings_ = facts.removedOutputs;
     program->lifted_ = facts.lifted;
+    linking.dropUnread = dropUnread;
+    linking.kept = {};
+    for (size_t n = stages.size() - 1; n > 0; --n) {
+        if (Status status = ir::linkStages(stages[n - 1], stages[n], &facts, linking); !status) return status.error();
+        program->removedVaryings_ += facts.removedOutputs;
+    }
 
     BatchOptions options{desc.isa, desc.accuracy.math};
     options.verified = true;
@@ -61,8 +81,15 @@ Result<std::shared_ptr<const ShaderProgram>> ShaderProgram::create(const ShaderP
         to = std::move(compiled).value();
         return {};
     };
-    if (Status status = compile(vertexIr, "vertex", program->vertex_); !status) return status.error();
-    if (desc.capture != nullptr) program->capture_ = planCapture(*desc.capture, program->vertexIr());
+    for (ir::Program& stage : stages) {
+        StageProgram& compiled = program->stages_.emplace_back(StageProgram{stage.stage, nullptr});
+        if (stage.stage == ir::Stage::geometry) ir::placeVertices(stage);
+        const std::string name(ir::nameOf(stage.stage));
+        options.lanes = stage.stage == ir::Stage::geometry ? ir::kVertexLanes : 0;
+        if (Status status = compile(stage, name.c_str(), compiled.program); !status) return status.error();
+    }
+    options.lanes = 0;
+    if (desc.capture != nullptr) program->capture_ = planCapture(*desc.capture, program->lastIr());
     if (auto split = desc.skips.has(Skip::sharedSamples) ? ir::splitSamples(fragmentIr) : std::nullopt) {
         if (Status status = compile(split->pixel, "fragment", program->pixelPart_); !status) return status.error();
         if (Status status = compile(split->sample, "fragment", program->samplePart_); !status) return status.error();

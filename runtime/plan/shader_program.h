@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "base/result.h"
 #include "base/simd.h"
@@ -16,8 +17,9 @@ namespace vernier {
 
 struct ShaderProgramDesc {
     const ir::Program* vertex = nullptr;     // as loadShader gives it
+    const ir::Program* geometry = nullptr;   // nullptr: no geometry stage
     const ir::Program* fragment = nullptr;   // nullptr: no fragment stage (depth only, or rasterizer discard)
-    const CaptureLayout* capture = nullptr;  // of the vertex program; nullptr: nothing is captured
+    const CaptureLayout* capture = nullptr;  // of the last program before the rasteriser; nullptr: nothing is captured
     // A bit per location whose colours some attachment keeps; what is behind the others is not computed. A program that
     // is used with any attachments keeps all.
     uint32_t keptColors = ~0u;
@@ -26,26 +28,38 @@ struct ShaderProgramDesc {
     Skips skips;
 };
 
+/// A stage of a pipeline that is compiled.
+struct StageProgram {
+    ir::Stage stage = ir::Stage::vertex;
+    std::shared_ptr<const BatchProgram> program;
+};
+
 /// Immutable; shared between threads.
 class ShaderProgram {
   public:
-    /// Links (what the fragment stage does not read is not computed) and compiles. Thread-safe.
+    /// Links (what the stage behind does not read is not computed) and compiles. Thread-safe.
     static Result<std::shared_ptr<const ShaderProgram>> create(const ShaderProgramDesc& desc);
 
     const Accuracy& accuracy() const { return accuracy_; }
     Isa isa() const { return isa_; }
     const Skips& skips() const { return skips_; }
-    const ir::Program& vertexIr() const { return vertex_->source(); }
+    const ir::Program& vertexIr() const { return vertex()->source(); }
     /// nullptr without a fragment stage.
     const ir::Program* fragmentIr() const { return fragment_ ? &fragment_->source() : nullptr; }
-    const std::shared_ptr<const BatchProgram>& vertex() const { return vertex_; }
+    const std::shared_ptr<const BatchProgram>& vertex() const { return stages_.front().program; }
+    /// Those before the rasteriser, in the order in which they run; the first is the vertex stage.
+    const std::vector<StageProgram>& stages() const { return stages_; }
+    /// nullptr: the pipeline has no such stage.
+    std::shared_ptr<const BatchProgram> stage(ir::Stage stage) const;
+    /// The program whose vertices the rasteriser gets.
+    const ir::Program& lastIr() const { return stages_.back().program->source(); }
     const std::shared_ptr<const BatchProgram>& fragment() const { return fragment_; }
     /// The fragment program in two (ir/split_samples.h); nullptr where it is not worth it.
     const std::shared_ptr<const BatchProgram>& pixelPart() const { return pixelPart_; }
     const std::shared_ptr<const BatchProgram>& samplePart() const { return samplePart_; }
     /// What draws capture while transform feedback is active.
     const CapturePlan& capture() const { return capture_; }
-    /// Vertex outputs that linking removed because nobody reads them, for explain().
+    /// Outputs before the rasteriser that linking removed because nobody reads them, for explain().
     uint32_t removedVaryings() const { return removedVaryings_; }
     /// Operations of the fragment shader that linking moved into the vertex program, for explain().
     const ir::LiftFacts& lifted() const { return lifted_; }
@@ -55,7 +69,8 @@ class ShaderProgram {
     Accuracy accuracy_;
     Isa isa_ = kLowestIsa;
     Skips skips_;
-    std::shared_ptr<const BatchProgram> vertex_, fragment_, pixelPart_, samplePart_;
+    std::vector<StageProgram> stages_;
+    std::shared_ptr<const BatchProgram> fragment_, pixelPart_, samplePart_;
     CapturePlan capture_;
     uint32_t removedVaryings_ = 0;
     ir::LiftFacts lifted_;

@@ -29,6 +29,8 @@ std::vector<Fact> frameFacts(const FrameCommands& commands, const PassStatistics
     add({s.computeInvocations, "compute programs", "invocations", "of the dispatches", "nothing was dispatched"});
     if (commands.draws == 0) return facts;
     add({s.vertexInvocations, "vertex programs", "vertices", "once per vertex and chunk", "no vertex was drawn"});
+    if (s.geometryInvocations != 0)
+        add({s.geometryInvocations, "geometry programs", "invocations", "once per primitive and invocation", ""});
     add({s.clippedPrimitives, "cutting primitives", "of them", "they cross a clip plane", "none crosses a clip plane"});
     add({s.rasterPrimitives, "rasterising", "primitives", "they are neither culled nor outside",
          "all are culled or outside"});

@@ -12,6 +12,7 @@
 
 #include "base/simd.h"
 #include "runtime/limits.h"
+#include "spirv_interp/ir/geometry_modes.h"
 
 namespace vernier {
 
@@ -50,9 +51,10 @@ struct PassTargets {
 struct PassStatistics {
     uint64_t inputVertices = 0;
     uint64_t inputPrimitives = 0;
-    uint64_t capturablePrimitives = 0;  // drawn while transform feedback was active
-    uint64_t capturedPrimitives = 0;    // of them, those that had room
-    uint64_t vertexInvocations = 0;     // depends on the chunking, which does not depend on threads
+    // By vertex stream: those before clipping; of them those while transform feedback was active; and that had room.
+    std::array<uint64_t, ir::kVertexStreams> generatedPrimitives{}, capturablePrimitives{}, capturedPrimitives{};
+    uint64_t vertexInvocations = 0;  // depends on the chunking, which does not depend on threads
+    uint64_t geometryInvocations = 0, geometryPrimitives = 0;  // of geometry programs; what they put out
     uint64_t clippingInvocations = 0;
     uint64_t clippingPrimitives = 0;   // not all outside; those to be culled are in it
     uint64_t clippedPrimitives = 0;    // primitives that really were cut

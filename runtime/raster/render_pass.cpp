@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/processor.h"
+#include "runtime/geometry/capture.h"
 #include "runtime/raster/attachment_ops.h"
 #include "runtime/raster/depth_resolve.h"
 #include "runtime/raster/hidden_work.h"
@@ -58,6 +59,10 @@ struct ThreadCounts {
         sums.clippingPrimitives += geometry.clippingPrimitives;
         sums.clippedPrimitives += geometry.clippedPrimitives;
         sums.rasterPrimitives += geometry.rasterPrimitives;
+        sums.geometryInvocations += geometry.geometryInvocations;
+        sums.geometryPrimitives += geometry.geometryPrimitives;
+        for (uint32_t stream = 0; stream < ir::kVertexStreams; ++stream)
+            sums.generatedPrimitives[stream] += geometry.generatedPrimitives[stream];
         geometry = {};
     }
 };
@@ -91,6 +96,7 @@ struct RenderPass::Impl {
     void cutIntoSteps(Wave& wave);
     void runChunk(Wave& wave, uint32_t index, uint32_t thread);
     void continueStipple(Wave& wave);
+    void writeCaptured(const Wave& wave);
     void collectTileWork(const Wave& wave);
     void runTile(uint32_t index, uint32_t thread, bool mayHide);
     void runTiles(Wave& ahead);
@@ -133,8 +139,9 @@ struct RenderPass::Impl {
     std::vector<uint32_t> activeTiles;
     bool loaded = false;  // load operations are done
     bool exactCounts = false;
-    bool stippled = false;  // some draw of the pass has stippled lines
-    double stipple = 0;     // the counter at the end of the last chunk
+    bool capturesStages = false;  // some draw's transform feedback has to wait for its stages
+    bool stippled = false;        // some draw of the pass has stippled lines
+    double stipple = 0;           // the counter at the end of the last chunk
     std::atomic<bool> outOfBudget{false};
 };
 
@@ -173,10 +180,11 @@ void RenderPass::Impl::cutIntoSteps(Wave& wave) {
                               last->primitives < kChunkPrimitives;
             if (!open && wave.stepCount == kChunksPerWave) break;
             Step& step = open ? wave.steps[wave.stepCount - 1] : newStep(command);
-            const auto count =
-                static_cast<uint32_t>(std::min<uint64_t>(kChunkPrimitives - step.primitives, total - nextPrimitive));
+            const uint32_t weight = draws[command.draw].primitiveWeight;
+            const uint32_t room = std::max((kChunkPrimitives - step.primitives) / weight, 1u);
+            const auto count = static_cast<uint32_t>(std::min<uint64_t>(room, total - nextPrimitive));
             step.ranges.push_back({command.draw, nextPrimitive, count});
-            step.primitives += count;
+            step.primitives += count * weight;
             nextPrimitive += count;
         }
         if (nextPrimitive < total) break;
@@ -211,6 +219,17 @@ void RenderPass::Impl::continueStipple(Wave& wave) {
         const size_t count = chunk.restartsStipple ? chunk.continuingShapes : chunk.shapes.size();
         for (size_t k = 0; k < count; ++k) chunk.shapes[k].stippleStart += stipple;
         stipple = chunk.restartsStipple ? chunk.stippleEnd : stipple + chunk.stippleEnd;
+    }
+}
+
+/// Where what stages have made goes is known when all before it is.
+void RenderPass::Impl::writeCaptured(const Wave& wave) {
+    for (uint32_t n = 0; n < wave.stepCount; ++n) {
+        PassStatistics& sums = counts[0].segments[wave.steps[n].segment];
+        for (const CapturedPrimitives& captured : wave.chunks[n].captured) {
+            sums.capturablePrimitives[captured.stream] += captured.primitives;
+            sums.capturedPrimitives[captured.stream] += vernier::writeCaptured(draws[captured.draw], captured);
+        }
     }
 }
 
@@ -301,6 +320,7 @@ void RenderPass::Impl::renderRecorded() {
     for (uint32_t n = 0, left = 1; left != 0; n ^= 1) {
         Wave &wave = waves[n], &ahead = waves[n ^ 1];
         if (stippled) continueStipple(wave);
+        if (capturesStages) writeCaptured(wave);
         collectTileWork(wave);
         cutIntoSteps(ahead);
         left = ahead.stepCount;
@@ -337,7 +357,7 @@ void RenderPass::begin(const PassTargets& targets) {
     self.grid = tileGridOf(targets.renderArea);
     self.grid.layers = targets.viewMask != 0 ? static_cast<uint32_t>(std::bit_width(targets.viewMask)) : targets.layers;
     self.loaded = false;
-    self.stippled = false;
+    self.stippled = self.capturesStages = false;
     self.stipple = 0;
     self.outOfBudget = false;
     self.exactCounts = false;
@@ -365,7 +385,7 @@ void RenderPass::Impl::add(PreparedDraw draw) {
     const DrawCall& call = draw.call;
     SegmentInput& input = self.segmentInputs[self.segment];
     for (const VertexRun& run : draw.runs) input.vertices += uint64_t{run.vertices} * call.instances;
-    if (call.capture != nullptr) {
+    if (call.capture != nullptr && call.capture->running == nullptr) {
         input.capturable += draw.primitives();
         input.captured += call.capture->primitives;
     }
@@ -377,6 +397,7 @@ void RenderPass::Impl::add(PreparedDraw draw) {
     draw.fragmentState = same ? self.draws.back().fragmentState : index;
     self.recordedPrimitives += draw.primitives();
     self.stippled |= draw.stipples;
+    self.capturesStages |= call.capture != nullptr && call.capture->running != nullptr;
     self.draws.push_back(std::move(draw));
     self.commands.push_back({index, nullptr, self.segment});
 }
@@ -432,8 +453,8 @@ PassStatistics RenderPass::statistics(uint32_t first, uint32_t end) const {
     for (size_t s = first; s < std::min<size_t>(end, impl_->segmentInputs.size()); ++s) {
         const SegmentInput& input = impl_->segmentInputs[s];
         sum.inputVertices += input.vertices;
-        sum.capturablePrimitives += input.capturable;
-        sum.capturedPrimitives += input.captured;
+        sum.capturablePrimitives[0] += input.capturable;
+        sum.capturedPrimitives[0] += input.captured;
         for (const ThreadCounts& thread : impl_->counts)
             if (s < thread.segments.size()) sum = combine(sum, thread.segments[s], std::plus<>{});
     }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "spirv_interp/ir/ops.h"
+
 namespace vernier {
 namespace {
 
@@ -202,8 +204,8 @@ ResourceBindings resolveBindings(const ir::Program& program, const BoundDescript
         uint32_t& size = sizes[static_cast<size_t>(tableOf(resource.kind))];
         base[r] = size;
         count[r] = resource.kind == ir::ResourceKind::pushConstants ? 1
-                   : resource.kind == ir::ResourceKind::workgroupMemory
-                       ? 0  // the work-group's context owns it
+                   : ir::isOfRunner(resource.kind)
+                       ? 0  // the context that runs the program owns it
                        : static_cast<uint32_t>(findDescriptors(resource, bound).slots.size());
         size += count[r];
     }

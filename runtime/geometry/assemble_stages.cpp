@@ -1,0 +1,56 @@
+// Primitives of draws with stages between the vertices and the rasteriser: their vertices, those stages, and what
+// comes out.
+#include <algorithm>
+
+#include "runtime/geometry/assemble.h"
+#include "runtime/geometry/geometry_stage.h"
+
+namespace vernier {
+
+/// The vertices of primitives as the stage behind the vertices gets them.
+void Assembler::numberInputs(const PreparedDraw& draw, const PrimitiveRange& range) {
+    startReuse();
+    const uint32_t each = draw.plan->inputVertices;
+    inputs_.verticesPerPrimitive = each;
+    inputs_.numbers.clear();
+    inputs_.ids.clear();
+    std::array<uint32_t, kMaxInputVertices> numbers;
+    auto instance = static_cast<uint32_t>(range.first / draw.primitivesPerInstance);
+    auto primitive = static_cast<uint32_t>(range.first % draw.primitivesPerInstance);
+    auto run = runAt(draw, primitive);
+    for (uint32_t left = range.count; left != 0; --left) {
+        inputVertices(draw.state->topology, primitive - run->firstPrimitive, run->primitives, numbers.data());
+        for (uint32_t v = 0; v < each; ++v)
+            inputs_.numbers.push_back(localVertex({vertexIndex(draw.call, run->first + numbers[v]), instance}));
+        inputs_.ids.push_back(primitive);
+        if (++primitive == draw.primitivesPerInstance) {
+            primitive = 0;
+            ++instance;
+            run = draw.runs.begin();
+        } else if (primitive == run->firstPrimitive + run->primitives) {
+            ++run;
+        }
+    }
+}
+
+/// From the vertices to those that the rasteriser gets, with the primitives that they make up.
+bool Assembler::runStages(const PreparedDraw& draw, uint64_t token, const PrimitiveRange& range, Chunk& chunk) {
+    numberInputs(draw, range);
+    bool finished = shadeForStages(draw, token, refs_, contexts_, inputs_.vertices);
+    statistics_.vertexInvocations += refs_.size();
+    if (draw.call.pipeline->geometryProgram() != nullptr) {
+        finished &= runGeometry(draw, token, inputs_, contexts_, outputs_, primitives_, otherStreams_);
+        statistics_.geometryInvocations +=
+            inputs_.ids.size() * draw.call.pipeline->geometryProgram()->source().geometry.invocations;
+        statistics_.geometryPrimitives += primitives_.size();
+        for (const std::vector<uint32_t>& points : otherStreams_) statistics_.geometryPrimitives += points.size();
+    }
+    // Points, each of them a vertex, but for the first stream.
+    statistics_.generatedPrimitives[0] += primitives_.size();
+    for (uint32_t stream = 1; stream < ir::kVertexStreams; ++stream)
+        statistics_.generatedPrimitives[stream] += otherStreams_[stream].size();
+    finishVertices(draw, outputs_, vertices_, chunk);
+    return finished;
+}
+
+}  // namespace vernier
