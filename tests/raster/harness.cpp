@@ -14,7 +14,9 @@ uint32_t padded(uint32_t size) {
     return (size + kPadding - 1) / kPadding * kPadding;
 }
 
-ir::Program load(const std::string& name, ir::Stage stage) {
+}  // namespace
+
+ir::Program loadForTest(const std::string& name, ir::Stage stage) {
     ShaderSource source;
     source.words = kShaders.at(name);
     source.stage = stage;
@@ -25,8 +27,6 @@ ir::Program load(const std::string& name, ir::Stage stage) {
     }
     return std::move(*program);
 }
-
-}  // namespace
 
 Surface::Surface(VkFormat format, uint32_t width, uint32_t height, uint32_t samples)
     : info_(findFormat(format)),
@@ -105,10 +105,12 @@ void setAdditive(GraphicsState& state) {
 }
 
 std::shared_ptr<const GraphicsPipeline> makePipeline(const PipelineOptions& options) {
-    const ir::Program vertex = load(options.vertex, ir::Stage::vertex);
-    ir::Program fragment;
-    if (!options.fragment.empty()) fragment = load(options.fragment, ir::Stage::fragment);
+    const ir::Program vertex = loadForTest(options.vertex, ir::Stage::vertex);
+    ir::Program geometry, fragment;
+    if (!options.geometry.empty()) geometry = loadForTest(options.geometry, ir::Stage::geometry);
+    if (!options.fragment.empty()) fragment = loadForTest(options.fragment, ir::Stage::fragment);
     auto program = ShaderProgram::create({.vertex = &vertex,
+                                          .geometry = options.geometry.empty() ? nullptr : &geometry,
                                           .fragment = options.fragment.empty() ? nullptr : &fragment,
                                           .accuracy = options.accuracy,
                                           .isa = options.isa,

@@ -50,9 +50,9 @@ struct Vertex {
 Vertex at(double x, double y, uint32_t width, uint32_t height, std::array<float, 4> color = {1, 1, 1, 1},
           float z = 0.5f);
 
-/// A pipeline with one vertex buffer of Vertex (locations 0 and 1). Empty fragment name: no fragment stage.
+/// A pipeline with one vertex buffer of Vertex (locations 0 and 1). Empty geometry or fragment name: no such stage.
 struct PipelineOptions {
-    std::string vertex = "color_vert", fragment = "color_frag";
+    std::string vertex = "color_vert", geometry, fragment = "color_frag";
     GraphicsState state;
     Accuracy accuracy;
     Isa isa = bestIsa();
@@ -62,6 +62,9 @@ struct PipelineOptions {
 /// State for one colour attachment, no blending, everything written.
 GraphicsState plainState(VkFormat color, VkFormat depth = VK_FORMAT_UNDEFINED);
 void setAdditive(GraphicsState& state);
+
+/// A shader by its name.
+ir::Program loadForTest(const std::string& name, ir::Stage stage);
 
 std::shared_ptr<const GraphicsPipeline> makePipeline(const PipelineOptions& options);
 
