@@ -89,7 +89,9 @@ GraphicsState graphicsStateOf(const VnContext_T& context) {
 
 VnResult recordDrawResources(VnContext context, const char* function) {
     const GraphicsPipeline& pipeline = *context->pipeline;
-    const ir::Program* programs[] = {&pipeline.vertexIr(), pipeline.fragmentIr()};
+    std::vector<const ir::Program*> programs;
+    for (const StageProgram& stage : pipeline.program().stages()) programs.push_back(&stage.program->source());
+    programs.push_back(pipeline.fragmentIr());
     if (VnResult result = recordResources(context, function, command::BindPoint::graphics, programs)) return result;
     context->resourcesChanged = false;
     return VN_SUCCESS;

@@ -27,6 +27,7 @@ VnResult vnGetStatistics(VnContext context, VnStatistics* statistics) {
                        .inputVertices = s.inputVertices,
                        .inputPrimitives = s.inputPrimitives,
                        .vertexInvocations = s.vertexInvocations,
+                       .geometryInvocations = s.geometryInvocations,
                        .clippedPrimitives = s.clippedPrimitives,
                        .rasterPrimitives = s.rasterPrimitives,
                        .fragmentInvocations = s.fragmentInvocations,

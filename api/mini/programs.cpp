@@ -9,9 +9,11 @@ namespace {
 
 Result<ir::Stage> stageOf(VkShaderStageFlagBits stage) {
     if (stage == VK_SHADER_STAGE_VERTEX_BIT) return ir::Stage::vertex;
+    if (stage == VK_SHADER_STAGE_GEOMETRY_BIT) return ir::Stage::geometry;
     if (stage == VK_SHADER_STAGE_FRAGMENT_BIT) return ir::Stage::fragment;
     if (stage == VK_SHADER_STAGE_COMPUTE_BIT) return ir::Stage::compute;
-    return unsupported("stage is " + std::to_string(stage) + "; only vertex, fragment and compute are supported");
+    return unsupported("stage is " + std::to_string(stage) +
+                       "; only vertex, geometry, fragment and compute are supported");
 }
 
 /// Shader errors have a code of their own: a broken module is no misuse of the API.
@@ -22,8 +24,8 @@ VnResult failShader(VnDevice device, const char* function, const Error& error) {
 
 VnResult createComputeProgram(VnDevice device, const VnProgramDesc& desc, const Accuracy& accuracy,
                               VnProgram* program) {
-    if (desc.vertex.id || desc.fragment.id)
-        return invalid(device, "vnCreateProgram", "compute stands beside vertex or fragment; it must stand alone");
+    if (desc.vertex.id || desc.geometry.id || desc.fragment.id)
+        return invalid(device, "vnCreateProgram", "compute stands beside other stages; it must stand alone");
     const auto compute = device->shaders.find(desc.compute.id);
     if (!compute || compute->program.stage != ir::Stage::compute)
         return badHandle(device, "vnCreateProgram", "compute shader");
@@ -82,8 +84,12 @@ VnResult vnCreateProgram(VnDevice device, const VnProgramDesc* desc, VnProgram* 
         const auto fragment = device->shaders.find(desc->fragment.id);
         if (desc->fragment.id && (!fragment || fragment->program.stage != ir::Stage::fragment))
             return badHandle(device, "vnCreateProgram", "fragment shader");
+        const auto geometry = device->shaders.find(desc->geometry.id);
+        if (desc->geometry.id && (!geometry || geometry->program.stage != ir::Stage::geometry))
+            return badHandle(device, "vnCreateProgram", "geometry shader");
         ShaderProgramDesc linked;
         linked.vertex = &vertex->program;
+        linked.geometry = geometry ? &geometry->program : nullptr;
         linked.fragment = fragment ? &fragment->program : nullptr;
         linked.accuracy = *accuracy;
         linked.isa = device->runtime->isa();

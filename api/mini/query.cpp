@@ -13,10 +13,12 @@ namespace {
 constexpr VkQueryPipelineStatisticFlags kStatistics =
     VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_VERTICES_BIT |
     VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_PRIMITIVES_BIT |
-    VK_QUERY_PIPELINE_STATISTIC_VERTEX_SHADER_INVOCATIONS_BIT | VK_QUERY_PIPELINE_STATISTIC_CLIPPING_INVOCATIONS_BIT |
+    VK_QUERY_PIPELINE_STATISTIC_VERTEX_SHADER_INVOCATIONS_BIT |
+    VK_QUERY_PIPELINE_STATISTIC_GEOMETRY_SHADER_INVOCATIONS_BIT |
+    VK_QUERY_PIPELINE_STATISTIC_GEOMETRY_SHADER_PRIMITIVES_BIT | VK_QUERY_PIPELINE_STATISTIC_CLIPPING_INVOCATIONS_BIT |
     VK_QUERY_PIPELINE_STATISTIC_CLIPPING_PRIMITIVES_BIT | VK_QUERY_PIPELINE_STATISTIC_FRAGMENT_SHADER_INVOCATIONS_BIT |
     VK_QUERY_PIPELINE_STATISTIC_COMPUTE_SHADER_INVOCATIONS_BIT;
-constexpr size_t kStatisticCount = 7;
+constexpr size_t kStatisticCount = 9;
 
 VkQueryType typeOf(VnQueryType type) {
     return type == VN_QUERY_OCCLUSION    ? VK_QUERY_TYPE_OCCLUSION
@@ -109,10 +111,10 @@ VnResult vnGetQueryResult(VnContext context, VnQuery query, VnQueryResult* resul
             result->value = values[0];
             return VN_SUCCESS;
         }
-        uint64_t* const fields[kStatisticCount] = {&result->inputVertices,      &result->inputPrimitives,
-                                                   &result->vertexInvocations,  &result->clippingInvocations,
-                                                   &result->clippingPrimitives, &result->fragmentInvocations,
-                                                   &result->computeInvocations};
+        uint64_t* const fields[kStatisticCount] = {
+            &result->inputVertices,       &result->inputPrimitives,     &result->vertexInvocations,
+            &result->geometryInvocations, &result->geometryPrimitives,  &result->clippingInvocations,
+            &result->clippingPrimitives,  &result->fragmentInvocations, &result->computeInvocations};
         for (size_t n = 0; n < kStatisticCount; ++n) *fields[n] = values[n];
         return VN_SUCCESS;
     });

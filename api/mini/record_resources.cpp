@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "api/mini/context_guard.h"
+#include "spirv_interp/ir/ops.h"
 
 using namespace vernier;
 using namespace vernier::mini;
@@ -14,7 +15,7 @@ std::string elementText(uint32_t set, uint32_t binding, size_t element) {
 }
 
 bool needsBinding(const ir::Resource& resource) {
-    return resource.kind != ir::ResourceKind::pushConstants && resource.kind != ir::ResourceKind::workgroupMemory;
+    return resource.kind != ir::ResourceKind::pushConstants && !ir::isOfRunner(resource.kind);
 }
 
 /// What a program's resource needs to find at its binding.

@@ -1,5 +1,7 @@
 // Barriers, events, queries and timestamps. The queue runs one command after the other, so that a barrier has
 // something to do only inside a render pass, where draws are collected.
+#include <algorithm>
+
 #include "api/vulkan/command_buffer.h"
 #include "api/vulkan/entry_points.h"
 #include "api/vulkan/sync.h"
@@ -72,19 +74,20 @@ VKAPI_ATTR void VKAPI_CALL CmdWaitEvents2(VkCommandBuffer commandBuffer, uint32_
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdBeginQuery(VkCommandBuffer commandBuffer, VkQueryPool queryPool, uint32_t query,
-                                         VkQueryControlFlags) {
-    recordQueries(commandBuffer, "vkCmdBeginQuery", query, 1, command::BeginQuery{object(queryPool), query});
+                                         VkQueryControlFlags flags) {
+    CmdBeginQueryIndexedEXT(commandBuffer, queryPool, query, flags, 0);
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdEndQuery(VkCommandBuffer commandBuffer, VkQueryPool queryPool, uint32_t query) {
     recordQueries(commandBuffer, "vkCmdEndQuery", query, 1, command::EndQuery{object(queryPool), query});
 }
 
-// There is one vertex stream: `index` is 0.
+// `index` is a vertex stream.
 
 VKAPI_ATTR void VKAPI_CALL CmdBeginQueryIndexedEXT(VkCommandBuffer commandBuffer, VkQueryPool queryPool, uint32_t query,
-                                                   VkQueryControlFlags flags, uint32_t) {
-    CmdBeginQuery(commandBuffer, queryPool, query, flags);
+                                                   VkQueryControlFlags, uint32_t index) {
+    recordQueries(commandBuffer, "vkCmdBeginQuery", query, 1,
+                  command::BeginQuery{object(queryPool), query, std::min(index, ir::kVertexStreams - 1)});
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdEndQueryIndexedEXT(VkCommandBuffer commandBuffer, VkQueryPool queryPool, uint32_t query,

@@ -8,6 +8,7 @@
 #include "runtime/resource/buffer_view.h"
 #include "runtime/resource/memory.h"
 #include "runtime/texture/texture.h"
+#include "spirv_interp/ir/geometry_modes.h"
 
 namespace vernier::vulkan {
 namespace {
@@ -56,6 +57,14 @@ void setComputeLimits(VkPhysicalDeviceLimits& limits) {
     std::copy_n(kMaxWorkGroupSize, 3, limits.maxComputeWorkGroupSize);
 }
 
+void setGeometryLimits(VkPhysicalDeviceLimits& limits) {
+    limits.maxGeometryShaderInvocations = ir::kMaxGeometryInvocations;
+    limits.maxGeometryInputComponents = kMaxInterfaceComponents;
+    limits.maxGeometryOutputComponents = kMaxInterfaceComponents;
+    limits.maxGeometryOutputVertices = ir::kMaxGeometryVertices;
+    limits.maxGeometryTotalOutputComponents = ir::kMaxGeometryComponents;
+}
+
 }  // namespace
 
 VkPhysicalDeviceLimits deviceLimits(const VkPhysicalDeviceFeatures& features, const Accuracy& accuracy) {
@@ -80,7 +89,7 @@ VkPhysicalDeviceLimits deviceLimits(const VkPhysicalDeviceFeatures& features, co
 
     // There is no tessellation: its limits stay 0.
 
-    // There are no geometry shaders: their limits stay 0.
+    if (features.geometryShader) setGeometryLimits(limits);
 
     limits.maxFragmentInputComponents = kMaxInterfaceComponents;
     limits.maxFragmentOutputAttachments = kMaxColorAttachments;

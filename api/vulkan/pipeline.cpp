@@ -1,6 +1,7 @@
 #include "api/vulkan/pipeline.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <string>
 
@@ -8,11 +9,25 @@
 #include "api/vulkan/device.h"
 #include "api/vulkan/entry_points.h"
 #include "api/vulkan/instance.h"
+#include "runtime/plan/check_state.h"
 #include "runtime/plan/plan.h"
+#include "spirv_interp/ir/names.h"
 #include "spirv_interp/program.h"
 
 namespace vernier::vulkan {
 namespace {
+
+struct StageKind {
+    VkShaderStageFlagBits bit;
+    ir::Stage stage;
+    const ir::Program* ShaderProgramDesc::*program;
+};
+/// In the order in which they run.
+constexpr StageKind kStages[] = {
+    {VK_SHADER_STAGE_VERTEX_BIT, ir::Stage::vertex, &ShaderProgramDesc::vertex},
+    {VK_SHADER_STAGE_GEOMETRY_BIT, ir::Stage::geometry, &ShaderProgramDesc::geometry},
+    {VK_SHADER_STAGE_FRAGMENT_BIT, ir::Stage::fragment, &ShaderProgramDesc::fragment},
+};
 
 /// Of a stage, as the runtime's loader wants it. `entries` holds what the specialization points to.
 ShaderSource shaderSource(const VkPipelineShaderStageCreateInfo& stage, ir::Stage kind,
@@ -73,36 +88,34 @@ std::unique_ptr<PlanCache> makePlanCache(const PipelineState& state, std::shared
 
 Result<std::shared_ptr<const ShaderProgram>> loadProgram(const Device& device, const VkGraphicsPipelineCreateInfo& info,
                                                          const PipelineState& state) {
-    const VkPipelineShaderStageCreateInfo* vertexStage = nullptr;
-    const VkPipelineShaderStageCreateInfo* fragmentStage = nullptr;
+    std::array<const VkPipelineShaderStageCreateInfo*, std::size(kStages)> given{};
     for (uint32_t i = 0; i < info.stageCount; ++i) {
         const VkPipelineShaderStageCreateInfo& stage = info.pStages[i];
-        switch (stage.stage) {
-            case VK_SHADER_STAGE_VERTEX_BIT:
-                vertexStage = &stage;
-                break;
-            case VK_SHADER_STAGE_FRAGMENT_BIT:
-                fragmentStage = &stage;
-                break;
-            default:
-                return unsupported("shader stage " + std::to_string(stage.stage) + " is not supported");
-        }
+        const auto kind = std::ranges::find(kStages, stage.stage, &StageKind::bit);
+        if (kind == std::end(kStages))
+            return unsupported("shader stage " + std::to_string(stage.stage) + " is not supported");
+        given[static_cast<size_t>(kind - kStages)] = &stage;
     }
-    if (vertexStage == nullptr) return invalidArgument("there is no vertex stage");
-    if (state.state.rasterizerDiscard) fragmentStage = nullptr;
+    if (given.front() == nullptr) return invalidArgument("there is no vertex stage");
+    if (state.state.rasterizerDiscard) given.back() = nullptr;
 
-    CaptureLayout capture;
-    Result<ir::Program> vertex = loadStage(*vertexStage, ir::Stage::vertex, capture);
-    if (!vertex) return Error{vertex.error().code, "vertex shader: " + vertex.error().message};
     ShaderProgramDesc desc;
-    desc.vertex = &*vertex;
-    desc.capture = &capture;
-    Result<ir::Program> fragment = ir::Program{};
-    if (fragmentStage != nullptr) {
-        fragment = loadStage(*fragmentStage, ir::Stage::fragment);
-        if (!fragment) return Error{fragment.error().code, "fragment shader: " + fragment.error().message};
-        desc.fragment = &*fragment;
+    std::array<ir::Program, std::size(kStages)> programs;
+    CaptureLayout capture;
+    for (size_t n = 0; n < programs.size(); ++n) {
+        if (given[n] == nullptr) continue;
+        // Transform feedback takes what the last stage before the rasteriser puts out.
+        CaptureLayout ignored;
+        const StageKind& kind = kStages[n];
+        CaptureLayout& kept = kind.stage == ir::Stage::fragment ? ignored : capture = {};
+        Result<ir::Program> program = loadStage(*given[n], kind.stage, kept);
+        if (!program)
+            return Error{program.error().code,
+                         std::string(ir::nameOf(kind.stage)) + " shader: " + program.error().message};
+        programs[n] = std::move(program).value();
+        desc.*kind.program = &programs[n];
     }
+    desc.capture = &capture;
     desc.keptColors = keptColors(state);
     desc.accuracy = device.physicalDevice.accuracy;
     desc.isa = device.runtime->isa();
@@ -117,6 +130,10 @@ VkResult createOne(const Device& device, const VkGraphicsPipelineCreateInfo& inf
     auto program = loadProgram(device, info, *state);
     if (!program) return device.report("vkCreateGraphicsPipelines", program.error());
     if (state->isDynamic(PlanState::VERTEX_INPUT_EXT)) inventVertexInput((*program)->vertexIr(), state->state);
+    // What draws set fits the geometry stage; what stands here meanwhile need not.
+    const auto geometry = (*program)->stage(ir::Stage::geometry);
+    if (geometry != nullptr && state->isDynamic(PlanState::PRIMITIVE_TOPOLOGY))
+        state->state.topology = topologyOf(geometry->source().geometry.input);
     auto graphics = GraphicsPipeline::create({state->state, *program});
     if (!graphics) return device.report("vkCreateGraphicsPipelines", graphics.error());
     device.physicalDevice.instance.explainLog.pipeline("graphics", (*graphics)->plan().facts);

@@ -37,7 +37,9 @@ struct Pipeline {
           dynamicMask(mask),
           viewportCountDynamic(countsViewports),
           plans(std::move(cache)),
-          vertexAddresses(usesAddresses(graphics->vertexIr())),
+          vertexAddresses(
+              std::ranges::any_of(graphics->program().stages(),
+                                  [](const StageProgram& stage) { return usesAddresses(stage.program->source()); })),
           fragmentAddresses(graphics->fragmentIr() != nullptr && usesAddresses(*graphics->fragmentIr())) {}
     explicit Pipeline(std::shared_ptr<const ComputePipeline> made)
         : compute(std::move(made)), computeAddresses(usesAddresses(compute->ir())) {}
@@ -49,8 +51,8 @@ struct Pipeline {
     DynamicState fixed;
     uint32_t dynamicMask = 0;
     bool viewportCountDynamic = false;
-    std::unique_ptr<PlanCache> plans;  // nullptr: `graphics` is the only one
-    bool vertexAddresses = false, fragmentAddresses = false;
+    std::unique_ptr<PlanCache> plans;                         // nullptr: `graphics` is the only one
+    bool vertexAddresses = false, fragmentAddresses = false;  // before the rasteriser, and behind it
     std::shared_ptr<const ComputePipeline> compute;
     bool computeAddresses = false;
 };

@@ -21,13 +21,24 @@ struct Executable {
     const BatchProgram* program;
 };
 
+Executable executableOf(const StageProgram& stage) {
+    const BatchProgram* program = stage.program.get();
+    switch (stage.stage) {
+        case ir::Stage::geometry:
+            return {"geometry", "The geometry program, once per primitive and invocation", VK_SHADER_STAGE_GEOMETRY_BIT,
+                    program};
+        default:
+            return {"vertex", "The vertex program, once per vertex and chunk", VK_SHADER_STAGE_VERTEX_BIT, program};
+    }
+}
+
 std::vector<Executable> executablesOf(const Pipeline& pipeline) {
     if (pipeline.compute)
         return {{"compute", "The compute program, a batch of invocations at a time", VK_SHADER_STAGE_COMPUTE_BIT,
                  pipeline.compute->program().get()}};
     const GraphicsPipeline& graphics = *pipeline.graphics;
-    std::vector<Executable> list{{"vertex", "The vertex program, once per vertex and chunk", VK_SHADER_STAGE_VERTEX_BIT,
-                                  graphics.vertexProgram().get()}};
+    std::vector<Executable> list;
+    for (const StageProgram& stage : graphics.program().stages()) list.push_back(executableOf(stage));
     if (!graphics.plan().runsFragments) return list;
     constexpr VkShaderStageFlags kFragment = VK_SHADER_STAGE_FRAGMENT_BIT;
     if (graphics.plan().splitSamples) {

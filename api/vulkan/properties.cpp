@@ -15,8 +15,8 @@
 namespace vernier::vulkan {
 namespace {
 
-constexpr VkShaderStageFlags kShaderStages =
-    VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
+constexpr VkShaderStageFlags kShaderStages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_GEOMETRY_BIT |
+                                             VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
 
 /// A name, a number and what tells apart the devices of this driver.
 void fillUuid(uint8_t (&uuid)[VK_UUID_SIZE], const char (&name)[9], uint32_t number, const PhysicalDevice& device) {
@@ -47,7 +47,7 @@ void fill(const PhysicalDevice&, VkPhysicalDeviceSubgroupProperties& p) {
 }
 
 void fill(const PhysicalDevice&, VkPhysicalDeviceTransformFeedbackPropertiesEXT& p) {
-    p.maxTransformFeedbackStreams = 1;
+    p.maxTransformFeedbackStreams = ir::kVertexStreams;
     p.maxTransformFeedbackBuffers = kCaptureBuffers;
     p.maxTransformFeedbackBufferSize = UINT32_MAX;  // what counters can tell
     // Bytes of a vertex, with gaps.

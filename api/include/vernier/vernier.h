@@ -243,7 +243,7 @@ typedef struct VnSpecialization {
 
 typedef struct VnShaderDesc {
     uint32_t _start;
-    VkShaderStageFlagBits stage; /* VK_SHADER_STAGE_VERTEX_BIT, _FRAGMENT_BIT or _COMPUTE_BIT */
+    VkShaderStageFlagBits stage; /* VK_SHADER_STAGE_VERTEX_BIT, _GEOMETRY_BIT, _FRAGMENT_BIT or _COMPUTE_BIT */
     const uint32_t* words;       /* a SPIR-V module; copied */
     size_t wordCount;
     const char* entryPoint;                  /* NULL: "main" */
@@ -261,6 +261,7 @@ typedef struct VnProgramDesc {
     VnShader vertex;
     VnShader fragment; /* {0}: no fragment stage: only depth and stencil are written */
     VnShader compute;  /* stands alone: a program for dispatches */
+    VnShader geometry; /* {0}: none. Draws have a topology of the primitives that it takes */
     VnProfile profile; /* 0: the device's, with its axes */
     const char* axes;  /* NULL, or the axes to change in that: "axis=position ..." */
     uint32_t _end;
@@ -418,8 +419,8 @@ typedef struct VnPassDesc {
 } VnPassDesc;
 
 /* Starts drawing to the attachments, which all have the same sample count. Of views with several layers all that every
- * view has are drawn to: the vertex shader chooses with Layer. Sets all viewports and scissors to the render area. A
- * program must not read an attachment of the pass it runs in, unless vnPassBarrier stands between. */
+ * view has are drawn to: the vertex or geometry shader chooses with Layer. Sets all viewports and scissors to the
+ * render area. A program must not read an attachment of the pass it runs in, unless vnPassBarrier stands between. */
 VN_API VnResult vnBeginPass(VnContext context, const VnPassDesc* desc);
 VN_API VnResult vnEndPass(VnContext context);
 /* What the draws of the pass have written so far can be read by those to come: with subpassLoad, whose input attachment
@@ -464,7 +465,7 @@ VN_API VnResult vnPushConstants(VnContext context, uint32_t offset, const void* 
 /* Viewport and scissor 0. */
 VN_API VnResult vnSetViewport(VnContext context, const VkViewport* viewport);
 VN_API VnResult vnSetScissor(VnContext context, const VkRect2D* scissor);
-/* Any of the 16 among which the vertex shader chooses with ViewportIndex. */
+/* Any of the 16 among which the vertex or geometry shader chooses with ViewportIndex. */
 VN_API VnResult vnSetViewports(VnContext context, uint32_t first, uint32_t count, const VkViewport* viewports);
 VN_API VnResult vnSetScissors(VnContext context, uint32_t first, uint32_t count, const VkRect2D* scissors);
 /* `primitiveRestart` nonzero: the largest index starts a new strip or fan. */
@@ -546,6 +547,7 @@ typedef struct VnStatistics {
     uint64_t draws;
     uint64_t inputVertices, inputPrimitives;
     uint64_t vertexInvocations;
+    uint64_t geometryInvocations;
     uint64_t clippedPrimitives;   /* really cut, not merely tested */
     uint64_t rasterPrimitives;    /* reached the rasteriser */
     uint64_t fragmentInvocations; /* without helpers */
@@ -574,8 +576,9 @@ typedef enum VnQueryType {
 } VnQueryType;
 typedef struct VnQueryResult {
     uint64_t value;
-    uint64_t inputVertices, inputPrimitives, vertexInvocations, clippingInvocations, clippingPrimitives;
-    uint64_t fragmentInvocations, computeInvocations;
+    uint64_t inputVertices, inputPrimitives, vertexInvocations;
+    uint64_t geometryInvocations, geometryPrimitives; /* primitives that came out */
+    uint64_t clippingInvocations, clippingPrimitives, fragmentInvocations, computeInvocations;
 } VnQueryResult;
 
 VN_API VnResult vnCreateQuery(VnDevice device, VnQueryType type, VnQuery* query);
