@@ -14,12 +14,14 @@ void Machine<Number>::createInterface(const InterfaceValues<Number>& inputs) {
         if (layout.output) continue;
         for (const InterfaceCell& cell : layout.cells) {
             Scalar<Number>& target = object.cells[cell.cell];
+            if (cell.vertex > inputs.vertices.size()) continue;
+            const InterfaceValues<Number>& from = cell.vertex == 0 ? inputs : inputs.vertices[cell.vertex - 1];
             if (cell.isBuiltin) {
                 if (cell.builtin == spv::BuiltInHelperInvocation) target.bits = helper_ ? 1 : 0;
-                const auto found = inputs.builtins.find(cell.builtin);
-                if (found != inputs.builtins.end() && cell.element < found->second.size())
+                const auto found = from.builtins.find(cell.builtin);
+                if (found != from.builtins.end() && cell.element < found->second.size())
                     target = found->second[cell.element];
-            } else if (const auto found = inputs.locations.find(cell.location); found != inputs.locations.end()) {
+            } else if (const auto found = from.locations.find(cell.location); found != from.locations.end()) {
                 target = found->second[cell.component];
                 if (module_.types[cell.type].width == 64 && cell.component < 3 &&
                     module_.types[cell.type].kind == TypeKind::integer)
@@ -44,12 +46,14 @@ Outcome<Number> Machine<Number>::outcome() const {
         for (const InterfaceCell& cell : layout.cells) {
             if (!object.written[cell.cell]) continue;
             const Scalar<Number>& scalar = object.cells[cell.cell];
+            if (result.outputs.vertices.size() < cell.vertex) result.outputs.vertices.resize(cell.vertex);
+            InterfaceValues<Number>& to = cell.vertex == 0 ? result.outputs : result.outputs.vertices[cell.vertex - 1];
             if (cell.isBuiltin) {
-                auto& scalars = result.outputs.builtins[cell.builtin];
+                auto& scalars = to.builtins[cell.builtin];
                 if (scalars.size() <= cell.element) scalars.resize(cell.element + 1);
                 scalars[cell.element] = scalar;
             } else {
-                Texel<Number>& texel = result.outputs.locations[cell.location];
+                Texel<Number>& texel = to.locations[cell.location];
                 texel[cell.component] = scalar;
                 const Type& type = module_.types[cell.type];
                 if (type.kind == TypeKind::integer && type.isSigned && type.width < 32) {

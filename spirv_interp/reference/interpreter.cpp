@@ -40,10 +40,23 @@ Value<Number> constantValue(const ModuleData& module, const Constant& constant) 
     return value;
 }
 
+bool isSupported(spv::ExecutionModel model) {
+    switch (model) {
+        case spv::ExecutionModelVertex:
+        case spv::ExecutionModelTessellationControl:
+        case spv::ExecutionModelTessellationEvaluation:
+        case spv::ExecutionModelFragment:
+        case spv::ExecutionModelGLCompute:
+            return true;
+        default:
+            return false;
+    }
+}
+
 /// A quad or a single invocation. There is no work-group to wait for.
 template <class Number>
 void driveAlone(std::vector<std::optional<Machine<Number>>>& machines) {
-    if (!drive(machines)) fail("OpControlBarrier outside a compute shader");
+    if (!drive(machines)) fail("OpControlBarrier outside a compute or tessellation control shader");
 }
 
 }  // namespace
@@ -81,8 +94,7 @@ template <class Number>
 Result<Interpreter<Number>> Interpreter<Number>::create(const Module& module, spv::ExecutionModel model,
                                                         std::string_view entryPoint, const Options& options) {
     return guarded<Interpreter>([&]() -> Result<Interpreter> {
-        if (model != spv::ExecutionModelVertex && model != spv::ExecutionModelFragment &&
-            model != spv::ExecutionModelGLCompute)
+        if (!isSupported(model))
             return unsupported("SPIR-V reference interpreter: execution model " +
                                std::to_string(static_cast<uint32_t>(model)));
         const auto& entries = module.entryPoints();
@@ -124,6 +136,12 @@ Result<std::array<Outcome<Number>, 4>> Interpreter<Number>::runQuad(
         for (size_t k = 0; k < 4; ++k) outcomes[k] = machines[k]->outcome();
         return outcomes;
     });
+}
+
+template <class Number>
+Result<InterfaceValues<Number>> Interpreter<Number>::runPatch(const InterfaceValues<Number>& inputs,
+                                                              Resources<Number>& resources) const {
+    return guarded<InterfaceValues<Number>>([&] { return reference::runPatch(state_->program, inputs, resources); });
 }
 
 template <class Number>

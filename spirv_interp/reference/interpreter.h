@@ -1,5 +1,5 @@
-// The reference interpreter: SPIR-V vertex, fragment and compute shaders, one invocation at a time, in any of three
-// number types. It is slow, plain and meant to be obviously right: the judge of the batch interpreter, and
+// The reference interpreter: SPIR-V vertex, tessellation, fragment and compute shaders, one invocation at a time, in
+// any of three number types. It is slow, plain and meant to be obviously right: the judge of the batch interpreter, and
 // the shader of the oracle.
 //
 // Where SPIR-V leaves a result open, this is what is done: integer division and remainder by zero give 0,
@@ -44,6 +44,7 @@ struct ExecutionModes {
     bool depthReplacing = false;
     bool depthGreater = false, depthLess = false, depthUnchanged = false;
     std::array<uint32_t, 3> localSize{1, 1, 1};  // LocalSize; LocalSizeId's values
+    uint32_t outputVertices = 0;
 };
 
 /// Subgroups are consecutive invocations of a work-group by LocalInvocationIndex; the last may be incomplete.
@@ -99,6 +100,9 @@ struct InterfaceVariable {
     uint32_t elements = 1;    // of all array dimensions together
     bool isArray = false;
     bool flat = false, noPerspective = false, centroid = false, sample = false;
+    /// Of what is an array over the vertices of a primitive or patch (inputs of geometry and tessellation stages,
+    /// outputs of tessellation control), the value of one of them: its number, and one. 0: no such array.
+    uint32_t vertex = 0;
     /// Of what PerVertexKHR declares, the value of one vertex: `index` is the vertex's number.
     bool perVertex = false;
     uint32_t locations = 1;  // taken up
@@ -183,6 +187,8 @@ struct InterfaceValues {
     std::map<Location, Texel<Number>> locations;
     /// Scalars of the built-in in order: 4 for Position, n for ClipDistance, 1 for VertexIndex...
     std::map<spv::BuiltIn, std::vector<Scalar<Number>>> builtins;
+    /// What arrays over vertices hold for each of them: the locations and built-ins of one vertex.
+    std::vector<InterfaceValues> vertices;
 
     void setFloat(spv::BuiltIn builtin, std::initializer_list<Number> values) {
         auto& scalars = builtins[builtin];
@@ -276,7 +282,7 @@ struct Options {
 template <class Number>
 class Interpreter {
   public:
-    /// Vertex, fragment and compute entry points.
+    /// Vertex, tessellation, fragment and compute entry points.
     static Result<Interpreter> create(const Module& module, spv::ExecutionModel model,
                                       std::string_view entryPoint = "main", const Options& options = {});
 
@@ -291,7 +297,11 @@ class Interpreter {
     /// Of a compute entry point: LocalSize, or the constant decorated WorkgroupSize.
     std::array<uint32_t, 3> localSize() const;
 
-    /// One invocation on its own: all derivatives are 0.
+    /// The invocations of a tessellation control stage for one patch, in one subgroup, as those of a work-group; their
+    /// InvocationId need not be among `inputs`. Returns the outputs: those of the patch, and those of its vertices.
+    Result<InterfaceValues<Number>> runPatch(const InterfaceValues<Number>& inputs, Resources<Number>& resources) const;
+
+    /// One invocation on its own, but of tessellation control: all derivatives are 0.
     Result<Outcome<Number>> run(const InterfaceValues<Number>& inputs, Resources<Number>& resources) const;
 
     /// The four fragments (0,0) (1,0) (0,1) (1,1) of a quad, in step at derivatives and implicit levels of

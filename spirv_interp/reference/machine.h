@@ -108,7 +108,7 @@ class Machine {
     using GroupValues = std::vector<Scalars<Number>>;
 
     /// `invocation`: the place in the group that exchanges values: a quad, or a subgroup. `shared`: nullptr outside
-    /// compute; filled in by the first invocation that names a variable.
+    /// compute and tessellation control; filled in by the first invocation that names a variable.
     Machine(const Program<Number>& program, const InterfaceValues<Number>& inputs, Resources<Number>& resources,
             uint32_t invocation, bool helper, SharedObjects<Number>* shared = nullptr);
 
@@ -193,6 +193,7 @@ class Machine {
     bool executeBallot(const Instruction& i, size_t first);
     bool executeShuffle(const Instruction& i, size_t first);
     bool executeReduction(const Instruction& i);
+    bool isShared(const Variable& variable) const;
     Pointer<Number> variablePointer(const Variable& variable);
     const Pointer<Number>& pointer(Id id);
     void createInterface(const InterfaceValues<Number>& inputs);

@@ -29,6 +29,13 @@ void writeScalar(std::span<std::byte> bytes, uint64_t offset, const Type& type, 
 
 }  // namespace
 
+/// One object for all invocations of a work-group, or of a patch: its outputs.
+template <class Number>
+bool Machine<Number>::isShared(const Variable& variable) const {
+    return variable.storage == spv::StorageClassWorkgroup ||
+           (variable.storage == spv::StorageClassOutput && shared_ != nullptr);
+}
+
 template <class Number>
 Pointer<Number> Machine<Number>::variablePointer(const Variable& variable) {
     Pointer<Number> pointer;
@@ -36,6 +43,7 @@ Pointer<Number> Machine<Number>::variablePointer(const Variable& variable) {
     const Type& type = module_.types[pointer.type];
     const Decorations& d = module_.decorationsOf(variable.id);
     pointer.descriptor = {d.set.value_or(0), d.binding.value_or(0), 0};
+    const bool shared = isShared(variable);
     switch (variable.storage) {
         case spv::StorageClassUniformConstant:
             pointer.atDescriptors = type.isArray();
@@ -55,23 +63,22 @@ Pointer<Number> Machine<Number>::variablePointer(const Variable& variable) {
                 pointer.kind = BufferKind::storage;
             return pointer;
         }
-        case spv::StorageClassWorkgroup: {
+        case spv::StorageClassWorkgroup:
             if (shared_ == nullptr) fail("work-group variable " + name(variable.id) + " outside a compute shader");
-            auto& object = (*shared_)[static_cast<uint32_t>(&variable - module_.variables.data())];
-            pointer.object = object;
-            if (object) return pointer;
             break;
-        }
         default:
             break;
+    }
+    if (shared) {
+        pointer.object = (*shared_)[static_cast<uint32_t>(&variable - module_.variables.data())];
+        if (pointer.object) return pointer;
     }
     const uint64_t count = module_.valueScalars(type);
     charge(count);
     pointer.object = std::make_shared<Object<Number>>();
     pointer.object->cells.resize(count);
     pointer.object->written.resize(count);
-    if (variable.storage == spv::StorageClassWorkgroup)
-        (*shared_)[static_cast<uint32_t>(&variable - module_.variables.data())] = pointer.object;
+    if (shared) (*shared_)[static_cast<uint32_t>(&variable - module_.variables.data())] = pointer.object;
     if (variable.initializer != 0) store(pointer, data(variable.initializer, count));
     return pointer;
 }

@@ -35,7 +35,7 @@ inline constexpr uint32_t kMaxTypeDepth = 64;
 struct Decorations {
     std::optional<uint32_t> location, component, index, builtin, specId, arrayStride, matrixStride, offset, binding,
         set, inputAttachmentIndex;
-    bool flat = false, noPerspective = false, centroid = false, sample = false, perVertex = false;
+    bool flat = false, noPerspective = false, centroid = false, sample = false, perVertex = false, patch = false;
     bool block = false, bufferBlock = false, rowMajor = false, isVolatile = false;
     bool towardsZero = false;  // FPRoundingMode
 };
@@ -160,6 +160,7 @@ struct InterfaceCell {
     uint32_t element = 0;  // of the built-in
     Location location;
     uint32_t component = 0;
+    uint32_t vertex = 0;  // as InterfaceVariable::vertex
 };
 
 struct InterfaceLayout {

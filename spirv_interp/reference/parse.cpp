@@ -255,6 +255,9 @@ class Parser {
                 case spv::ExecutionModeDepthUnchanged:
                     modes.depthUnchanged = true;
                     break;
+                case spv::ExecutionModeOutputVertices:
+                    modes.outputVertices = i.operand(2);
+                    break;
                 case spv::ExecutionModeLocalSize:
                 case spv::ExecutionModeLocalSizeId:
                     for (size_t d = 0; d < 3; ++d) modes.localSize[d] = i.operand(2 + d);
@@ -288,6 +291,7 @@ class Parser {
         take(d.noPerspective, from.noPerspective);
         take(d.centroid, from.centroid);
         take(d.perVertex, from.perVertex);
+        take(d.patch, from.patch);
         take(d.sample, from.sample);
         take(d.block, from.block);
         take(d.bufferBlock, from.bufferBlock);
@@ -345,6 +349,9 @@ class Parser {
                 break;
             case spv::DecorationPerVertexKHR:
                 d.perVertex = true;
+                break;
+            case spv::DecorationPatch:
+                d.patch = true;
                 break;
             case spv::DecorationBlock:
                 d.block = true;

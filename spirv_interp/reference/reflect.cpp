@@ -10,8 +10,8 @@ namespace {
 /// its place.
 class InterfaceWalker {
   public:
-    InterfaceWalker(const ModuleData& module, EntryPointData& entry, InterfaceLayout& layout)
-        : module_(module), entry_(entry), layout_(layout) {}
+    InterfaceWalker(const ModuleData& module, spv::ExecutionModel model, EntryPointData& entry, InterfaceLayout& layout)
+        : module_(module), model_(model), entry_(entry), layout_(layout) {}
 
     void run(const Variable& variable) {
         const Type& type = module_.types[module_.types[variable.pointerType].element];
@@ -22,6 +22,15 @@ class InterfaceWalker {
             place.name = found->second;
         apply(place, module_.decorationsOf(variable.id));
         next_ = place.location;
+        if (isOverVertices(variable, type, place.output)) {
+            const Type& ofVertex = module_.types[type.element];
+            for (uint32_t vertex = 0; vertex < type.count; ++vertex) {
+                place.vertex = vertex + 1;
+                next_ = place.location;
+                visit(ofVertex, place, vertex * ofVertex.scalars);
+            }
+            return;
+        }
         const Type& element = module_.types[type.element];
         const bool ofMembers = element.kind == TypeKind::structure && module_.decorationsOf(element.id, 0).perVertex;
         if (place.output || type.kind != TypeKind::array || (!place.perVertex && !ofMembers)) {
@@ -38,6 +47,17 @@ class InterfaceWalker {
     }
 
   private:
+    /// Arrayed interfaces: "Interface Matching" in the Vulkan specification.
+    bool isOverVertices(const Variable& variable, const Type& type, bool output) const {
+        const bool control = model_ == spv::ExecutionModelTessellationControl;
+        const bool arrayed = output ? control
+                                    : control || model_ == spv::ExecutionModelTessellationEvaluation ||
+                                          model_ == spv::ExecutionModelGeometry;
+        if (!arrayed || type.kind != TypeKind::array || module_.decorationsOf(variable.id).patch) return false;
+        const Type& element = module_.types[type.element];
+        return element.kind != TypeKind::structure || !module_.decorationsOf(element.id, 0).patch;
+    }
+
     void apply(InterfaceVariable& place, const Decorations& d) {
         if (d.builtin) {
             place.isBuiltin = true;
@@ -104,18 +124,20 @@ class InterfaceWalker {
             const InterfaceVariable::Place at = place.placeOf(k);
             cell.location = Location(at.location, place.index);
             cell.component = at.component;
+            cell.vertex = place.vertex;
         }
         if (!place.isBuiltin) next_ = place.location + place.locations;
         entry_.variables.push_back(std::move(place));
     }
 
     const ModuleData& module_;
+    const spv::ExecutionModel model_;
     EntryPointData& entry_;
     InterfaceLayout& layout_;
     uint32_t next_ = 0;  // location of the next member
 };
 
-void reflectEntryPoint(const ModuleData& module, EntryPointData& entry) {
+void reflectEntryPoint(const ModuleData& module, spv::ExecutionModel model, EntryPointData& entry) {
     std::sort(entry.interface.begin(), entry.interface.end());
     entry.interface.erase(std::unique(entry.interface.begin(), entry.interface.end()), entry.interface.end());
     for (const Id id : entry.interface) {
@@ -126,7 +148,7 @@ void reflectEntryPoint(const ModuleData& module, EntryPointData& entry) {
         InterfaceLayout layout;
         layout.variable = info.index;
         layout.output = variable.storage == spv::StorageClassOutput;
-        InterfaceWalker(module, entry, layout).run(variable);
+        InterfaceWalker(module, model, entry, layout).run(variable);
         entry.layouts.push_back(std::move(layout));
     }
 }
@@ -197,7 +219,8 @@ ScalarKind scalarKind(const Type& type) {
 }
 
 void reflect(ModuleData& module) {
-    for (EntryPointData& entry : module.entryPointData) reflectEntryPoint(module, entry);
+    for (size_t k = 0; k < module.entryPoints.size(); ++k)
+        reflectEntryPoint(module, module.entryPoints[k].model, module.entryPointData[k]);
     for (const Variable& variable : module.variables) {
         const Type& type = module.types[module.types[variable.pointerType].element];
         switch (variable.storage) {

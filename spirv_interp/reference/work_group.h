@@ -1,4 +1,4 @@
-// A work-group: its invocations as machines, in subgroups, that meet at barriers.
+// A work-group, or the invocations of tessellation control for a patch: machines, in subgroups, that meet at barriers.
 #pragma once
 
 #include "spirv_interp/reference/machine.h"
@@ -7,6 +7,11 @@ namespace vernier::reference {
 
 /// The constant decorated WorkgroupSize, or else the entry point's LocalSize.
 std::array<uint32_t, 3> workGroupSize(const ModuleData& module, size_t entryPoint);
+
+/// Throws Failure.
+template <class Number>
+InterfaceValues<Number> runPatch(const Program<Number>& program, const InterfaceValues<Number>& inputs,
+                                 Resources<Number>& resources);
 
 /// Throws Failure.
 template <class Number>

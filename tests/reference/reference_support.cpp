@@ -39,6 +39,12 @@ Words compileVertex(std::string_view source, int vulkanMinor) {
 Words compileFragment(std::string_view source, int vulkanMinor, bool names) {
     return compile(VK_SHADER_STAGE_FRAGMENT_BIT, source, vulkanMinor, names);
 }
+Words compileControl(std::string_view source) {
+    return compile(VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT, source, 1, false);
+}
+Words compileEvaluation(std::string_view source) {
+    return compile(VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT, source, 1, false);
+}
 
 Words assemble(std::string_view source) {
     spvtools::SpirvTools tools(SPV_ENV_UNIVERSAL_1_5);

@@ -19,6 +19,8 @@ using Words = std::vector<uint32_t>;
 /// and OpLine.
 Words compileVertex(std::string_view source, int vulkanMinor = 1);
 Words compileFragment(std::string_view source, int vulkanMinor = 1, bool names = false);
+Words compileControl(std::string_view source);
+Words compileEvaluation(std::string_view source);
 Words assemble(std::string_view source);
 
 /// "#version 450", inputs v (vec4, location 0), i (ivec4, 1), u (uvec4, 2), outputs r (vec4, 0), ri (ivec4,
