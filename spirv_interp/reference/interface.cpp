@@ -1,4 +1,6 @@
 // The inputs of an invocation, and what it leaves in its outputs.
+#include <utility>
+
 #include "spirv_interp/reference/integer_ops.h"
 #include "spirv_interp/reference/machine.h"
 
@@ -35,19 +37,18 @@ void Machine<Number>::createInterface(const InterfaceValues<Number>& inputs) {
     }
 }
 
+/// The outputs as they are now.
 template <class Number>
-Outcome<Number> Machine<Number>::outcome() const {
-    Outcome<Number> result;
-    result.discarded = discarded_;
-    result.steps = steps_;
+InterfaceValues<Number> Machine<Number>::outputs() const {
+    InterfaceValues<Number> result;
     for (const InterfaceLayout& layout : module_.entryPointData[program_.entryPoint].layouts) {
         if (!layout.output) continue;
         const Object<Number>& object = *variables_[layout.variable]->object;
         for (const InterfaceCell& cell : layout.cells) {
             if (!object.written[cell.cell]) continue;
             const Scalar<Number>& scalar = object.cells[cell.cell];
-            if (result.outputs.vertices.size() < cell.vertex) result.outputs.vertices.resize(cell.vertex);
-            InterfaceValues<Number>& to = cell.vertex == 0 ? result.outputs : result.outputs.vertices[cell.vertex - 1];
+            if (result.vertices.size() < cell.vertex) result.vertices.resize(cell.vertex);
+            InterfaceValues<Number>& to = cell.vertex == 0 ? result : result.vertices[cell.vertex - 1];
             if (cell.isBuiltin) {
                 auto& scalars = to.builtins[cell.builtin];
                 if (scalars.size() <= cell.element) scalars.resize(cell.element + 1);
@@ -69,8 +70,27 @@ Outcome<Number> Machine<Number>::outcome() const {
     return result;
 }
 
+/// The outputs keep their values, where the specification leaves them undefined.
+template <class Number>
+void Machine<Number>::emitVertex(uint32_t stream) {
+    if (vertices_.size() >= module_.entryPoints[program_.entryPoint].modes.outputVertices) return;
+    charge(1);
+    vertices_.push_back({outputs(), stream, std::exchange(startsStrip_, false)});
+}
+
+template <class Number>
+Outcome<Number> Machine<Number>::outcome() const {
+    Outcome<Number> result;
+    result.outputs = outputs();
+    result.vertices = vertices_;
+    result.discarded = discarded_;
+    result.steps = steps_;
+    return result;
+}
+
 #define VERNIER_INSTANTIATE(Number)                                                 \
     template void Machine<Number>::createInterface(const InterfaceValues<Number>&); \
+    template void Machine<Number>::emitVertex(uint32_t);                            \
     template Outcome<Number> Machine<Number>::outcome() const;
 VERNIER_INSTANTIATE(float)
 VERNIER_INSTANTIATE(double)

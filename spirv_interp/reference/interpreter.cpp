@@ -45,6 +45,7 @@ bool isSupported(spv::ExecutionModel model) {
         case spv::ExecutionModelVertex:
         case spv::ExecutionModelTessellationControl:
         case spv::ExecutionModelTessellationEvaluation:
+        case spv::ExecutionModelGeometry:
         case spv::ExecutionModelFragment:
         case spv::ExecutionModelGLCompute:
             return true;

@@ -1,6 +1,6 @@
-// The reference interpreter: SPIR-V vertex, tessellation, fragment and compute shaders, one invocation at a time, in
-// any of three number types. It is slow, plain and meant to be obviously right: the judge of the batch interpreter, and
-// the shader of the oracle.
+// The reference interpreter: SPIR-V vertex, tessellation, geometry, fragment and compute shaders, one invocation at a
+// time, in any of three number types. It is slow, plain and meant to be obviously right: the judge of the batch
+// interpreter, and the shader of the oracle.
 //
 // Where SPIR-V leaves a result open, this is what is done: integer division and remainder by zero give 0,
 // INT_MIN / -1 gives INT_MIN; shift counts are taken modulo the width; float to integer truncates, saturates,
@@ -45,6 +45,7 @@ struct ExecutionModes {
     bool depthGreater = false, depthLess = false, depthUnchanged = false;
     std::array<uint32_t, 3> localSize{1, 1, 1};  // LocalSize; LocalSizeId's values
     uint32_t outputVertices = 0;
+    uint32_t invocations = 1;  // of a geometry stage, for each primitive
 };
 
 /// Subgroups are consecutive invocations of a work-group by LocalInvocationIndex; the last may be incomplete.
@@ -208,12 +209,21 @@ struct InterfaceValues {
     }
 };
 
+/// What OpEmitVertex or OpEmitStreamVertex has put out: the outputs as they were.
+template <class Number>
+struct EmittedVertex {
+    InterfaceValues<Number> outputs;
+    uint32_t stream = 0;
+    bool startsStrip = false;  // the first, or the first behind OpEndPrimitive or OpEndStreamPrimitive
+};
+
 /// What became of one invocation.
 template <class Number>
 struct Outcome {
     InterfaceValues<Number> outputs;
-    bool discarded = false;  // by OpKill, OpTerminateInvocation or OpDemoteToHelperInvocation
-    uint64_t steps = 0;      // instructions executed
+    std::vector<EmittedVertex<Number>> vertices;  // of a geometry stage, at most OutputVertices: more are dropped
+    bool discarded = false;                       // by OpKill, OpTerminateInvocation or OpDemoteToHelperInvocation
+    uint64_t steps = 0;                           // instructions executed
 };
 
 /// Stands in for the functions whose accuracy an implementation chooses: the trigonometric, hyperbolic, exponential
@@ -282,7 +292,7 @@ struct Options {
 template <class Number>
 class Interpreter {
   public:
-    /// Vertex, tessellation, fragment and compute entry points.
+    /// Vertex, tessellation, geometry, fragment and compute entry points.
     static Result<Interpreter> create(const Module& module, spv::ExecutionModel model,
                                       std::string_view entryPoint = "main", const Options& options = {});
 

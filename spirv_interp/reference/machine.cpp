@@ -127,6 +127,16 @@ bool Machine<Number>::executeControl(const Instruction& i) {
         case spv::OpIsHelperInvocationEXT:
             setResult(i, Scalar<Number>::ofBits(helper_ ? 1 : 0));
             return true;
+        case spv::OpEmitVertex:
+            emitVertex(0);
+            return true;
+        case spv::OpEmitStreamVertex:
+            emitVertex(static_cast<uint32_t>(bits(i.operand(0))));
+            return true;
+        case spv::OpEndPrimitive:
+        case spv::OpEndStreamPrimitive:
+            startsStrip_ = true;
+            return true;
         case spv::OpUnreachable:
             fail("OpUnreachable was reached");
         case spv::OpPhi:

@@ -149,6 +149,8 @@ class Machine {
     void execute(const Instruction& i);
     bool executeControl(const Instruction& i);
     void demote();
+    InterfaceValues<Number> outputs() const;
+    void emitVertex(uint32_t stream);
     void charge(uint64_t steps);
     void observe(const Instruction& i) const;
     /// True when the others have come and their values are in group_; false when the machine has to wait for them
@@ -255,6 +257,8 @@ class Machine {
     bool combining_ = false;  // inside of an atomic instruction that reads and writes
     Status status_ = Status::running;
     uint64_t steps_ = 0;
+    std::vector<EmittedVertex<Number>> vertices_;
+    bool startsStrip_ = true;
     std::vector<Frame> frames_;
     std::vector<std::optional<Pointer<Number>>> variables_;  // as ModuleData::variables
     mutable std::vector<Pointer<Number>> pointers_;          // logical pointers that were stored

@@ -258,6 +258,9 @@ class Parser {
                 case spv::ExecutionModeOutputVertices:
                     modes.outputVertices = i.operand(2);
                     break;
+                case spv::ExecutionModeInvocations:
+                    modes.invocations = i.operand(2);
+                    break;
                 case spv::ExecutionModeLocalSize:
                 case spv::ExecutionModeLocalSizeId:
                     for (size_t d = 0; d < 3; ++d) modes.localSize[d] = i.operand(2 + d);

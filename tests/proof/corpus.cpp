@@ -90,8 +90,12 @@ std::vector<std::string> corpusFiles(const std::string& extension) {
 
 Words compileGlsl(ir::Stage stage, const std::string& source, int vulkanMinor) {
     static const CompilerReference kReference;
-    constexpr VkShaderStageFlagBits kStages[] = {VK_SHADER_STAGE_VERTEX_BIT, VK_SHADER_STAGE_FRAGMENT_BIT,
-                                                 VK_SHADER_STAGE_COMPUTE_BIT};
+    constexpr VkShaderStageFlagBits kStages[] = {VK_SHADER_STAGE_VERTEX_BIT,
+                                                 VK_SHADER_STAGE_FRAGMENT_BIT,
+                                                 VK_SHADER_STAGE_COMPUTE_BIT,
+                                                 VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT,
+                                                 VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT,
+                                                 VK_SHADER_STAGE_GEOMETRY_BIT};
     VnGlslDesc desc{};
     desc.stage = kStages[static_cast<size_t>(stage)];
     desc.source = source.data();
@@ -121,6 +125,7 @@ CorpusProgram loadCorpusProgram(const std::string& file) {
     }
     program.subject.name = file;
     program.subject.stage = file.ends_with(".vert")   ? ir::Stage::vertex
+                            : file.ends_with(".geom") ? ir::Stage::geometry
                             : file.ends_with(".frag") ? ir::Stage::fragment
                                                       : ir::Stage::compute;
     program.subject.words = compileGlsl(program.subject.stage, program.source, vulkanMinor);

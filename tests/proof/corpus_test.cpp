@@ -21,6 +21,7 @@ std::string testName(const testing::TestParamInfo<std::string>& info) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Vertex, Corpus, testing::ValuesIn(corpusFiles(".vert")), testName);
+INSTANTIATE_TEST_SUITE_P(Geometry, Corpus, testing::ValuesIn(corpusFiles(".geom")), testName);
 INSTANTIATE_TEST_SUITE_P(Fragment, Corpus, testing::ValuesIn(corpusFiles(".frag")), testName);
 INSTANTIATE_TEST_SUITE_P(Compute, Corpus, testing::ValuesIn(corpusFiles(".comp")), testName);
 

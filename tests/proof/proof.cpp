@@ -4,6 +4,8 @@
 #include <cstring>
 #include <sstream>
 
+#include "spirv_interp/ir/place_vertices.h"
+
 namespace vernier::proof {
 namespace {
 
@@ -81,6 +83,21 @@ std::vector<Shape> maskShapes(const Case& subject) {
     return shapes;
 }
 
+size_t outputCount(const ir::Program& program) {
+    if (program.stage != ir::Stage::geometry) return program.outputs.size();
+    return size_t{ir::wordsOfVertex(program)} * program.geometry.outputVertices + 1;
+}
+
+const ir::InterfaceSlot& outputAt(const ir::Program& program, size_t output) {
+    if (program.stage != ir::Stage::geometry) return program.outputs[output];
+    return output + 1 == outputCount(program) ? program.outputs.back()
+                                              : program.outputs[output % ir::wordsOfVertex(program)];
+}
+
+uint32_t invocationOfInput(const ir::Program& program, const ir::InterfaceSlot& slot, uint32_t invocation) {
+    return program.stage == ir::Stage::geometry ? invocation * 8 + slot.index : invocation;
+}
+
 Program lower(const Case& subject) {
     Program result;
     ShaderSource source;
@@ -113,12 +130,13 @@ std::string compare(const ir::Program& program, const Shape& shape, const Ending
         if (!expected.live[k]) continue;
         for (size_t s = 0; s < expected.outputs.size(); ++s) {
             const uint32_t a = expected.outputs[s][k], b = got.outputs[s][k];
-            const bool floating = program.outputs[s].type == ir::Type::f32;
+            const ir::InterfaceSlot& output = outputAt(program, s);
+            const bool floating = output.type == ir::Type::f32;
             if (!expected.written[s][k] || a == b || (floating && sameWord(a, b))) continue;
-            lines.add("invocation " + std::to_string(k) + " output " + std::to_string(program.outputs[s].location) +
-                      "." + std::to_string(program.outputs[s].component) + " (built-in " +
-                      std::to_string(static_cast<int>(program.outputs[s].builtin)) + "): " + hex(b) + " instead of " +
-                      hex(a));
+            lines.add("invocation " + std::to_string(k) + " output " + std::to_string(output.location) + "." +
+                      std::to_string(output.component) + " (built-in " +
+                      std::to_string(static_cast<int>(output.builtin)) + ", number " + std::to_string(s) +
+                      "): " + hex(b) + " instead of " + hex(a));
         }
     }
     for (const auto& [slot, bytes] : expected.memory->buffers()) {

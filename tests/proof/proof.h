@@ -37,7 +37,7 @@ struct Case {
     Words words;
     ir::Stage stage = ir::Stage::fragment;
     std::vector<SpecConstant> specialization;
-    uint32_t invocations = 64;                // vertex and fragment: a multiple of 4
+    uint32_t invocations = 64;                // all but compute: a multiple of 4
     std::array<uint32_t, 3> groups{1, 1, 1};  // compute
     World world;
 };
@@ -53,12 +53,20 @@ std::vector<Shape> maskShapes(const Case& subject);
 
 /// What one run leaves behind.
 struct Ending {
-    std::vector<std::vector<uint32_t>> outputs;  // by slot of the program, by invocation
-    std::vector<std::vector<bool>> written;      // likewise; all true after a run by batches
-    std::vector<bool> live;                      // has effects and was not discarded
+    // By slot of the program, by invocation. Of a geometry program for every vertex that there may be, one vertex after
+    // the other, and the last is how many there are.
+    std::vector<std::vector<uint32_t>> outputs;
+    std::vector<std::vector<bool>> written;  // likewise; all true after a run by batches
+    std::vector<bool> live;                  // has effects and was not discarded
     std::unique_ptr<Memory> memory;
     std::string error;  // empty: the run ended well
 };
+
+/// Of Ending::outputs.
+size_t outputCount(const ir::Program& program);
+const ir::InterfaceSlot& outputAt(const ir::Program& program, size_t output);
+/// Of an input slot, so that the vertices of a primitive differ.
+uint32_t invocationOfInput(const ir::Program& program, const ir::InterfaceSlot& slot, uint32_t invocation);
 
 struct Program {
     ir::Program ir;

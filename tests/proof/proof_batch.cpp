@@ -3,6 +3,8 @@
 #include <bit>
 #include <cstring>
 
+#include "spirv_interp/ir/ops.h"
+#include "spirv_interp/ir/place_vertices.h"
 #include "tests/proof/proof.h"
 
 namespace vernier::proof {
@@ -71,9 +73,9 @@ class Bindings {
   public:
     Bindings(const ir::Program& program, Memory& memory) {
         for (const ir::Resource& r : program.resources) {
-            const uint32_t count = r.kind == ir::ResourceKind::workgroupMemory ? 0
-                                   : r.arraySize == 0                          ? kRuntimeArray
-                                                                               : std::min(r.arraySize, kMaxArray);
+            const uint32_t count = ir::isOfRunner(r.kind) ? 0
+                                   : r.arraySize == 0     ? kRuntimeArray
+                                                          : std::min(r.arraySize, kMaxArray);
             base_.push_back(static_cast<uint32_t>(isBuffer(r.kind)                      ? buffers_.size()
                                                   : r.kind == ir::ResourceKind::sampler ? samplers_.size()
                                                                                         : images_.size()));
@@ -120,10 +122,27 @@ struct Interpolation {
     }
 };
 
+void takeVertices(const ir::Program& program, const BatchContext& context, uint32_t first, uint32_t lanes,
+                  Ending& ending) {
+    const uint32_t words = ir::wordsOfVertex(program);
+    const auto* counts = reinterpret_cast<const uint32_t*>(context.output(words));
+    for (uint32_t lane = 0; lane < lanes; ++lane) {
+        if (!ending.live[first + lane]) continue;
+        ending.outputs.back()[first + lane] = counts[lane];
+        for (uint32_t v = 0; v < std::min(counts[lane], program.geometry.outputVertices); ++v)
+            for (uint32_t k = 0; k < words; ++k)
+                ending.outputs[size_t{v} * words + k][first + lane] =
+                    context.stageMemory()[ir::placeOfVertex(program, v, k) + lane];
+    }
+}
+
 }  // namespace
 
-Ending runBatch(const Case& subject, const ir::Program& program, const Shape& shape, const BatchOptions& options) {
+Ending runBatch(const Case& subject, const ir::Program& given, const Shape& shape, const BatchOptions& options) {
     Ending ending;
+    ir::Program program = given;
+    const bool vertices = program.stage == ir::Stage::geometry;
+    if (vertices) ir::placeVertices(program);
     ending.memory = std::make_unique<Memory>(subject.world);
     const auto compiled = BatchProgram::compile(program, options);
     if (!compiled) {
@@ -146,10 +165,10 @@ Ending runBatch(const Case& subject, const ir::Program& program, const Shape& sh
     Interpolation interpolation{&subject.world, &program, 0};
     context.setInterpolator({&interpolation, Interpolation::at});
     context.beginDraw(bindings.get());
-    ending.outputs.assign(program.outputs.size(), std::vector<uint32_t>(subject.invocations));
-    ending.written.assign(program.outputs.size(), std::vector<bool>(subject.invocations, true));
+    ending.outputs.assign(outputCount(program), std::vector<uint32_t>(subject.invocations));
+    ending.written.assign(outputCount(program), std::vector<bool>(subject.invocations, true));
     ending.live.assign(subject.invocations, false);
-    const uint32_t capacity = (*compiled)->lanes();
+    const uint32_t capacity = std::min((*compiled)->lanes(), vertices ? ir::kVertexLanes : ~0u);
     for (uint32_t first = 0; first < subject.invocations; first += capacity) {
         const uint32_t lanes = std::min(capacity, subject.invocations - first);
         interpolation.first = first;
@@ -164,7 +183,10 @@ Ending runBatch(const Case& subject, const ir::Program& program, const Shape& sh
         for (uint32_t slot = 0; slot < program.inputs.size(); ++slot) {
             auto* row = reinterpret_cast<uint32_t*>(context.input(slot));
             for (uint32_t lane = 0; row != nullptr && lane < lanes; ++lane) {
-                const uint32_t word = subject.world.input(first + lane, program.inputs[slot]);
+                const ir::InterfaceSlot& input = program.inputs[slot];
+                const uint32_t word = input.builtin == ir::Builtin::stageOffset
+                                          ? lane * 4
+                                          : subject.world.input(invocationOfInput(program, input, first + lane), input);
                 row[lane] = program.inputs[slot].type == ir::Type::b1 ? (word != 0 ? ~0u : 0) : word;
             }
         }
@@ -173,6 +195,10 @@ Ending runBatch(const Case& subject, const ir::Program& program, const Shape& sh
             return ending;
         }
         for (uint32_t lane = 0; lane < lanes; ++lane) ending.live[first + lane] = context.liveMask()[lane] != 0;
+        if (vertices) {
+            takeVertices(program, context, first, lanes, ending);
+            continue;
+        }
         for (uint32_t slot = 0; slot < program.outputs.size(); ++slot) {
             const auto* row = reinterpret_cast<const uint32_t*>(context.output(slot));
             if (row != nullptr) std::copy_n(row, lanes, ending.outputs[slot].begin() + first);

@@ -5,6 +5,7 @@
 #include <spirv/unified1/GLSL.std.450.h>
 
 #include "spirv_interp/ir/builder.h"
+#include "spirv_interp/ir/place_vertices.h"
 #include "tests/proof/proof.h"
 
 namespace vernier::proof {
@@ -98,6 +99,7 @@ constexpr std::pair<spv::BuiltIn, ir::Builtin> kBuiltins[] = {
     {spv::BuiltInSampleId, ir::Builtin::sampleId},
     {spv::BuiltInSamplePosition, ir::Builtin::samplePosition},
     {spv::BuiltInPrimitiveId, ir::Builtin::primitiveId},
+    {spv::BuiltInInvocationId, ir::Builtin::invocationId},
     {spv::BuiltInFragDepth, ir::Builtin::fragDepth},
     {spv::BuiltInFragStencilRefEXT, ir::Builtin::fragStencilRef},
 };
@@ -129,8 +131,8 @@ class ReferenceRun final : public reference::Resources<Number> {
 
     Ending run() {
         ending_.memory = std::make_unique<Memory>(subject_.world);
-        ending_.outputs.assign(interface_.outputs.size(), std::vector<uint32_t>(subject_.invocations));
-        ending_.written.assign(interface_.outputs.size(), std::vector<bool>(subject_.invocations));
+        ending_.outputs.assign(outputCount(interface_), std::vector<uint32_t>(subject_.invocations));
+        ending_.written.assign(outputCount(interface_), std::vector<bool>(subject_.invocations));
         ending_.live.assign(subject_.invocations, false);
         std::map<uint32_t, uint64_t> specialization;
         for (const SpecConstant& s : subject_.specialization) specialization[s.id] = s.value;
@@ -144,8 +146,12 @@ class ReferenceRun final : public reference::Resources<Number> {
         options.stepwise = true;
         options.elementary = &kByTier[static_cast<size_t>(tier_)];
         options.stepBudget = 1u << 27;
-        constexpr spv::ExecutionModel kModels[] = {spv::ExecutionModelVertex, spv::ExecutionModelFragment,
-                                                   spv::ExecutionModelGLCompute};
+        constexpr spv::ExecutionModel kModels[] = {spv::ExecutionModelVertex,
+                                                   spv::ExecutionModelFragment,
+                                                   spv::ExecutionModelGLCompute,
+                                                   spv::ExecutionModelTessellationControl,
+                                                   spv::ExecutionModelTessellationEvaluation,
+                                                   spv::ExecutionModelGeometry};
         const spv::ExecutionModel model = kModels[static_cast<size_t>(subject_.stage)];
         const auto interpreter = reference::Interpreter<Number>::create(*module, model, "main", options);
         if (!interpreter) return failed(interpreter.error().message);
@@ -239,12 +245,16 @@ class ReferenceRun final : public reference::Resources<Number> {
         return std::move(ending_);
     }
 
-    reference::InterfaceValues<Number> inputsOf(uint32_t invocation) const {
-        reference::InterfaceValues<Number> inputs;
+    reference::InterfaceValues<Number> inputsOf(uint32_t whose) const {
+        reference::InterfaceValues<Number> all;
         for (const reference::InterfaceVariable& v : variables_) {
             if (v.output) continue;
             const bool wide = isWide(v.kind), floating = isFloating(v.kind);
             ir::InterfaceSlot slot;
+            slot.index = static_cast<uint8_t>(v.vertex);
+            const uint32_t invocation = invocationOfInput(interface_, slot, whose);
+            if (all.vertices.size() < v.vertex) all.vertices.resize(v.vertex);
+            reference::InterfaceValues<Number>& inputs = v.vertex == 0 ? all : all.vertices[v.vertex - 1];
             slot.type = floating && !wide ? ir::Type::f32 : ir::Type::i32;
             if (v.isBuiltin) {
                 const auto builtin = builtinOf(v.builtin, false);
@@ -273,7 +283,7 @@ class ReferenceRun final : public reference::Resources<Number> {
                         Scalar::ofNumber(static_cast<Number>(std::bit_cast<double>(uint64_t{high} << 32 | low)));
             }
         }
-        return inputs;
+        return all;
     }
 
     void runOne(const reference::Interpreter<Number>& interpreter) {
@@ -309,29 +319,49 @@ class ReferenceRun final : public reference::Resources<Number> {
 
     void note(uint32_t invocation, const reference::Outcome<Number>& outcome) {
         ending_.live[invocation] = !outcome.discarded;
+        if (subject_.stage != ir::Stage::geometry) return noteOutputs(invocation, outcome.outputs, 0);
+        const size_t words = interface_.outputs.size() - 1;
+        for (size_t v = 0; v < outcome.vertices.size(); ++v) {
+            const reference::EmittedVertex<Number>& vertex = outcome.vertices[v];
+            noteOutputs(invocation, vertex.outputs, v * words, vertex.stream);
+            for (size_t s = 0; s < words; ++s)
+                if (interface_.outputs[s].builtin == ir::Builtin::vertexFlags)
+                    noteWord(v * words + s, invocation,
+                             (vertex.startsStrip ? ir::kStartsStrip : 0) | vertex.stream << ir::kStreamBit);
+        }
+        noteWord(ending_.outputs.size() - 1, invocation, static_cast<uint32_t>(outcome.vertices.size()));
+    }
+
+    void noteWord(size_t output, uint32_t invocation, uint32_t word) {
+        ending_.outputs[output][invocation] = word;
+        ending_.written[output][invocation] = true;
+    }
+
+    /// The outputs of an invocation, or of one of its vertices, those of the stream: from `first` on.
+    void noteOutputs(uint32_t invocation, const reference::InterfaceValues<Number>& outputs, size_t first,
+                     std::optional<uint32_t> stream = {}) {
         for (size_t s = 0; s < interface_.outputs.size(); ++s) {
             const ir::InterfaceSlot& slot = interface_.outputs[s];
+            if (stream && slot.index != *stream) continue;
+            const uint32_t index = stream ? 0 : slot.index;
             const Scalar* scalar = nullptr;
             if (slot.builtin != ir::Builtin::user) {
-                const auto found = outcome.outputs.builtins.find(builtinOf(slot.builtin));
-                if (found != outcome.outputs.builtins.end() && slot.component < found->second.size())
+                const auto found = outputs.builtins.find(builtinOf(slot.builtin));
+                if (found != outputs.builtins.end() && slot.component < found->second.size())
                     scalar = &found->second[slot.component];
             } else {
-                const auto found = outcome.outputs.locations.find(reference::Location(slot.location, slot.index));
-                if (found != outcome.outputs.locations.end()) scalar = &found->second[slot.component];
+                const auto found = outputs.locations.find(reference::Location(slot.location, index));
+                if (found != outputs.locations.end()) scalar = &found->second[slot.component];
             }
             if (const auto half = halfOfDouble(slot)) {
-                const auto found = outcome.outputs.locations.find(reference::Location(half->location, slot.index));
-                if (found == outcome.outputs.locations.end()) continue;
+                const auto found = outputs.locations.find(reference::Location(half->location, index));
+                if (found == outputs.locations.end()) continue;
                 const auto bits = std::bit_cast<uint64_t>(static_cast<double>(found->second[half->component].number));
-                ending_.outputs[s][invocation] =
-                    static_cast<uint32_t>(half->component == slot.component ? bits : bits >> 32);
-                ending_.written[s][invocation] = true;
-                continue;
+                noteWord(first + s, invocation,
+                         static_cast<uint32_t>(half->component == slot.component ? bits : bits >> 32));
+            } else if (scalar != nullptr) {
+                noteWord(first + s, invocation, bitsOf(*scalar, slot.type == ir::Type::f32));
             }
-            if (scalar == nullptr) continue;
-            ending_.outputs[s][invocation] = bitsOf(*scalar, slot.type == ir::Type::f32);
-            ending_.written[s][invocation] = true;
         }
     }
 
@@ -339,7 +369,8 @@ class ReferenceRun final : public reference::Resources<Number> {
     std::optional<reference::InterfaceVariable::Place> halfOfDouble(const ir::InterfaceSlot& slot) const {
         if (slot.builtin != ir::Builtin::user) return std::nullopt;
         for (const reference::InterfaceVariable& v : variables_) {
-            if (!v.output || v.isBuiltin || v.index != slot.index || v.kind != reference::ScalarKind::float64) continue;
+            const uint32_t index = subject_.stage == ir::Stage::geometry ? 0 : slot.index;  // else a vertex stream
+            if (!v.output || v.isBuiltin || v.index != index || v.kind != reference::ScalarKind::float64) continue;
             for (uint32_t k = 0; k < v.scalars(); ++k) {
                 const auto at = v.placeOf(k);
                 if (at.location == slot.location && at.component == (slot.component & ~1u)) return at;

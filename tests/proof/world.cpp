@@ -249,6 +249,8 @@ uint32_t World::input(uint32_t invocation, const ir::InterfaceSlot& slot) const 
                    : slot.component == 1 ? number(y + 8.5)
                    : slot.component == 2 ? number(0.25 + invocation * 0x1p-10)
                                          : number(1.0 / (1 + invocation % 7));
+        case ir::Builtin::position:
+        case ir::Builtin::pointSize:
         case ir::Builtin::pointCoord:
         case ir::Builtin::samplePosition:
         case ir::Builtin::clipDistance:
@@ -262,6 +264,8 @@ uint32_t World::input(uint32_t invocation, const ir::InterfaceSlot& slot) const 
             return invocation % 4;
         case ir::Builtin::primitiveId:
             return invocation / 8;
+        case ir::Builtin::invocationId:
+            return invocation / 8 % 3;
         case ir::Builtin::vertexIndex:
             return invocation + 3;
         case ir::Builtin::instanceIndex:

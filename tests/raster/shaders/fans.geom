@@ -4,7 +4,6 @@ layout(points, invocations = 3) in;
 layout(triangle_strip, max_vertices = 8) out;
 layout(location = 0) in vec4 color[];
 layout(location = 0) out vec4 outColor;
-layout(push_constant) uniform Nothing { int unused; };
 void corner(float x, float y) {
     gl_Position = gl_in[0].gl_Position + vec4(x, y, 0.0, 0.0);
     EmitVertex();
