@@ -1,5 +1,7 @@
 #include "spirv_interp/ir/analyse.h"
 
+#include <algorithm>
+
 #include "spirv_interp/ir/ops.h"
 
 namespace vernier::ir {
@@ -28,6 +30,11 @@ void dropUnusedSlots(Program& program) {
             for (uint32_t i = 0; i < immHigh(inst); ++i) inputs[immLow(inst) + i] = true;
         }
     }
+    // Where outputs have places in memory, they tell what lies there.
+    const bool placed = std::any_of(program.resources.begin(), program.resources.end(), [](const Resource& resource) {
+        return resource.kind == ResourceKind::stageMemory;
+    });
+    if (placed) outputs.assign(outputs.size(), true);
     const std::vector<uint32_t> newInput = dropUnused(program.inputs, inputs);
     const std::vector<uint32_t> newOutput = dropUnused(program.outputs, outputs);
     for (Block& block : program.blocks) {

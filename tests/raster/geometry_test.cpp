@@ -220,7 +220,10 @@ TEST_F(Geometry, ManyPrimitivesInTheirOrderWhateverRunsThem) {
 TEST_F(Geometry, PrimitivesThatDoNotFitAreRefused) {
     const ir::Program vertex = loadForTest("color_vert", ir::Stage::vertex),
                       geometry = loadForTest("pass_geom", ir::Stage::geometry);
-    auto program = ShaderProgram::create({.vertex = &vertex, .geometry = &geometry});
+    ShaderProgramDesc desc;
+    desc.vertex = &vertex;
+    desc.geometry = &geometry;
+    auto program = ShaderProgram::create(desc);
     ASSERT_TRUE(program) << program.error().message;
     GraphicsState state = plainState(kWide);
     state.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
