@@ -63,11 +63,6 @@ void callImage(const ImageBinding& binding, const ImageCall& call) {
     }
 }
 
-bool isBuffer(ir::ResourceKind kind) {
-    return kind == ir::ResourceKind::uniformBuffer || kind == ir::ResourceKind::storageBuffer ||
-           kind == ir::ResourceKind::pushConstants;
-}
-
 /// The descriptors of a program over a Memory.
 class Bindings {
   public:
@@ -76,13 +71,13 @@ class Bindings {
             const uint32_t count = ir::isOfRunner(r.kind) ? 0
                                    : r.arraySize == 0     ? kRuntimeArray
                                                           : std::min(r.arraySize, kMaxArray);
-            base_.push_back(static_cast<uint32_t>(isBuffer(r.kind)                      ? buffers_.size()
+            base_.push_back(static_cast<uint32_t>(ir::isBuffer(r.kind)                  ? buffers_.size()
                                                   : r.kind == ir::ResourceKind::sampler ? samplers_.size()
                                                                                         : images_.size()));
             count_.push_back(count);
             for (uint32_t element = 0; element < count; ++element) {
                 const Slot slot{r.set, r.binding, element};
-                if (isBuffer(r.kind)) {
+                if (ir::isBuffer(r.kind)) {
                     auto& bytes = memory.buffer(r.kind == ir::ResourceKind::pushConstants ? kPushConstants : slot);
                     buffers_.push_back({bytes.data(), static_cast<uint32_t>(bytes.size())});
                 } else if (r.kind == ir::ResourceKind::sampler) {

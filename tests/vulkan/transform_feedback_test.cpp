@@ -46,7 +46,7 @@ TEST_F(TransformFeedbackTest, featuresAndLimits) {
     EXPECT_EQ(properties.maxTransformFeedbackBuffers, 4u);
     EXPECT_GE(properties.maxTransformFeedbackBufferSize, VkDeviceSize{1} << 27);
     EXPECT_GE(properties.maxTransformFeedbackBufferDataStride, 512u);
-    EXPECT_EQ(properties.maxTransformFeedbackStreams, 1u);
+    EXPECT_EQ(properties.maxTransformFeedbackStreams, 4u);
     EXPECT_TRUE(properties.transformFeedbackQueries && properties.transformFeedbackDraw);
     EXPECT_FALSE(properties.transformFeedbackRasterizationStreamSelect);
 }
