@@ -23,6 +23,17 @@ struct Output {
     std::string log;
 };
 
+/// The compiler's own, but for what Vernier has more of.
+const TBuiltInResource& limits() {
+    static const TBuiltInResource limits = [] {
+        TBuiltInResource all = *GetDefaultResources();
+        all.maxGeometryOutputVertices = 1024;
+        all.maxGeometryTotalOutputComponents = 16384;
+        return all;
+    }();
+    return limits;
+}
+
 std::optional<EShLanguage> languageOf(VkShaderStageFlagBits stage) {
     switch (stage) {
         case VK_SHADER_STAGE_VERTEX_BIT:
@@ -107,7 +118,7 @@ VnGlslResult compile(const VnGlslDesc& desc, Output& output) {
     const EShMessages messages = static_cast<EShMessages>(flags);
     constexpr int kDefaultVersion = 450;
 
-    const bool parsed = shader.parse(GetDefaultResources(), kDefaultVersion, false, messages);
+    const bool parsed = shader.parse(&limits(), kDefaultVersion, false, messages);
     output.log = shader.getInfoLog();
     if (!parsed) return VN_GLSL_ERROR_COMPILE_FAILED;
     glslang::TProgram program;
