@@ -137,9 +137,9 @@ TEST(DriverLibrary, speaksToTheLoaderDirectly) {
 TEST_F(DriverTest, featuresNotListedAreRefused) {
     VkPhysicalDeviceFeatures features{};
     vkGetPhysicalDeviceFeatures(physicalDevice, &features);
-    ASSERT_EQ(features.geometryShader, VK_FALSE);
+    ASSERT_EQ(features.sparseBinding, VK_FALSE);
     VkPhysicalDeviceFeatures wanted{};
-    wanted.geometryShader = VK_TRUE;
+    wanted.sparseBinding = VK_TRUE;
     const float priority = 1;
     auto queueInfo = make<VkDeviceQueueCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO);
     queueInfo.queueCount = 1;
@@ -151,7 +151,7 @@ TEST_F(DriverTest, featuresNotListedAreRefused) {
     VkDevice refused = VK_NULL_HANDLE;
     EXPECT_EQ(vkCreateDevice(physicalDevice, &info, nullptr, &refused), VK_ERROR_FEATURE_NOT_PRESENT);
     // The loader adds a message of its own.
-    EXPECT_THAT(messages, testing::Contains(testing::HasSubstr("geometryShader")));
+    EXPECT_THAT(messages, testing::Contains(testing::HasSubstr("sparseBinding")));
 }
 
 TEST_F(DriverTest, enumerationsFollowTheTwoCallIdiom) {

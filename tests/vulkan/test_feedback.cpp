@@ -21,9 +21,10 @@ std::vector<const char*> FeedbackTest::moreExtensions() {
 }
 
 void* FeedbackTest::moreFeatures() {
-    feedback_.transformFeedback = VK_TRUE;
+    feedback_.transformFeedback = feedback_.geometryStreams = VK_TRUE;
     provoking_.provokingVertexLast = provoking_.transformFeedbackPreservesProvokingVertex = VK_TRUE;
-    generated_.primitivesGeneratedQuery = generated_.primitivesGeneratedQueryWithRasterizerDiscard = VK_TRUE;
+    generated_.primitivesGeneratedQuery = generated_.primitivesGeneratedQueryWithRasterizerDiscard =
+        generated_.primitivesGeneratedQueryWithNonZeroStreams = VK_TRUE;
     feedback_.pNext = &provoking_;
     provoking_.pNext = &generated_;
     return &feedback_;
@@ -65,6 +66,7 @@ FeedbackTest::Captured FeedbackTest::capture(const Feedback& feedback) {
     PipelineDesc desc;
     desc.extent = kExtent;
     desc.vertex = makeShader(VK_SHADER_STAGE_VERTEX_BIT, feedback.vertex);
+    if (!feedback.geometry.empty()) desc.geometry = makeShader(VK_SHADER_STAGE_GEOMETRY_BIT, feedback.geometry);
     if (!feedback.discard) desc.fragment = makeShader(VK_SHADER_STAGE_FRAGMENT_BIT, feedback.fragment);
     desc.change = [&](const PipelineStates& states) {
         states.assembly.topology = feedback.topology;
@@ -100,8 +102,8 @@ FeedbackTest::Captured FeedbackTest::capture(const Feedback& feedback) {
         std::memcpy(indices.data, feedback.indices.data(), indices.size);
         vkCmdBindIndexBuffer(commands, indices.buffer, 0, VK_INDEX_TYPE_UINT16);
     }
-    vk.beginQuery(commands, written, 0, 0, 0);
-    vk.beginQuery(commands, generated, 0, 0, 0);
+    vk.beginQuery(commands, written, 0, 0, feedback.stream);
+    vk.beginQuery(commands, generated, 0, 0, feedback.stream);
     bool active = false, resumes = false;
     const auto pause = [&] {
         if (!active) return;
@@ -126,8 +128,8 @@ FeedbackTest::Captured FeedbackTest::capture(const Feedback& feedback) {
         }
     }
     pause();
-    vk.endQuery(commands, generated, 0, 0);
-    vk.endQuery(commands, written, 0, 0);
+    vk.endQuery(commands, generated, 0, feedback.stream);
+    vk.endQuery(commands, written, 0, feedback.stream);
     submit(commands);
 
     Captured result;

@@ -23,6 +23,8 @@ class FeedbackTest : public DrawTest {
         bool lastProvokes = false, restart = false, discard = true;
         std::vector<uint16_t> indices;          // empty: not indexed
         std::string vertex;                     // GLSL
+        std::string geometry;                   // GLSL; empty: none
+        uint32_t stream = 0;                    // that queries count
         std::string fragment;                   // GLSL; none where rasteriser discard is on
         std::vector<VkDeviceSize> sizes{1024};  // by buffer
         VkDeviceSize offset = 0;                // of the bound ranges in their buffers

@@ -65,8 +65,9 @@ DrawTest::Pass DrawTest::makePass(const TestImage& color, const TestImage* depth
     return result;
 }
 
-VkPipelineLayout DrawTest::makeLayout(const std::vector<VkDescriptorSetLayout>& sets, uint32_t pushBytes) {
-    const VkPushConstantRange range{VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0, pushBytes};
+VkPipelineLayout DrawTest::makeLayout(const std::vector<VkDescriptorSetLayout>& sets, uint32_t pushBytes,
+                                      VkShaderStageFlags pushStages) {
+    const VkPushConstantRange range{pushStages, 0, pushBytes};
     auto info = make<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
     info.setLayoutCount = static_cast<uint32_t>(sets.size());
     info.pSetLayouts = sets.data();
@@ -90,6 +91,7 @@ VkPipeline DrawTest::makePipeline(VkRenderPass pass, const PipelineDesc& desc, V
         info.pSpecializationInfo = special;
     };
     addStage(VK_SHADER_STAGE_VERTEX_BIT, desc.vertex, nullptr);
+    addStage(VK_SHADER_STAGE_GEOMETRY_BIT, desc.geometry, desc.specialization);
     addStage(VK_SHADER_STAGE_FRAGMENT_BIT, desc.fragment, desc.specialization);
 
     auto input = make<VkPipelineVertexInputStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);

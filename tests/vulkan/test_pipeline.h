@@ -33,14 +33,14 @@ class DrawTest : public VulkanTest {
         std::vector<VkPipelineColorBlendAttachmentState>& blends;
     };
     struct PipelineDesc {
-        VkShaderModule vertex = VK_NULL_HANDLE, fragment = VK_NULL_HANDLE;
+        VkShaderModule vertex = VK_NULL_HANDLE, geometry = VK_NULL_HANDLE, fragment = VK_NULL_HANDLE;
         VkPipelineLayout layout = VK_NULL_HANDLE;  // VK_NULL_HANDLE: an empty one
         uint32_t subpass = 0;
         VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
         VkPipelineCreateFlags flags = 0;
         bool depthTest = false;
         uint32_t colorCount = 1;
-        const VkSpecializationInfo* specialization = nullptr;  // of the fragment stage
+        const VkSpecializationInfo* specialization = nullptr;  // of the geometry and the fragment stage
         std::vector<VkVertexInputBindingDescription> bindings;
         std::vector<VkVertexInputAttributeDescription> attributes;
         std::vector<VkDynamicState> dynamic;
@@ -50,7 +50,9 @@ class DrawTest : public VulkanTest {
     };
     VkPipeline makePipeline(VkRenderPass pass, const PipelineDesc& desc, VkResult expected = VK_SUCCESS);
 
-    VkPipelineLayout makeLayout(const std::vector<VkDescriptorSetLayout>& sets, uint32_t pushBytes);
+    VkPipelineLayout makeLayout(const std::vector<VkDescriptorSetLayout>& sets, uint32_t pushBytes,
+                                VkShaderStageFlags pushStages = VK_SHADER_STAGE_VERTEX_BIT |
+                                                                VK_SHADER_STAGE_FRAGMENT_BIT);
 
     void beginPass(VkCommandBuffer commands, const Pass& pass, VkSubpassContents contents = VK_SUBPASS_CONTENTS_INLINE);
     /// A submission of one pass that draws three vertices; nothing is bound but the pipeline.
