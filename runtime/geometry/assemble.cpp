@@ -131,7 +131,7 @@ void Assembler::number(const PreparedDraw& draw, const PrimitiveRange& range) {
         local.startsStrip = !isLineStrip || primitive == run->firstPrimitive;
         local.provoking = draw.state->provokingVertexLast ? numbers.provokingLast : numbers.provokingFirst;
         for (uint32_t v = 0; v < vertexCount; ++v) {
-            const uint32_t index = vertexIndex(draw.call, run->first + numbers.vertex[v]);
+            const uint32_t index = vertexIndex(draw.call, indexed, run->first + numbers.vertex[v]);
             if (!shared) {
                 local.vertex[v] = static_cast<uint32_t>(refs_.size());
                 refs_.push_back({index, instance});

@@ -50,9 +50,8 @@ class Assembler {
                1;
     }
     /// gl_VertexIndex of a vertex or index of the draw.
-    static uint32_t vertexIndex(const DrawCall& call, uint32_t number) {
-        return call.indices.data != nullptr ? fetchIndex(call, number) + static_cast<uint32_t>(call.vertexOffset)
-                                            : call.first + number;
+    static uint32_t vertexIndex(const DrawCall& call, bool indexed, uint32_t number) {
+        return indexed ? fetchIndex(call, number) + static_cast<uint32_t>(call.vertexOffset) : call.first + number;
     }
     void startReuse();
     uint32_t localVertex(const VertexRef& ref);

@@ -18,10 +18,12 @@ void Assembler::numberInputs(const PreparedDraw& draw, const PrimitiveRange& ran
     auto instance = static_cast<uint32_t>(range.first / draw.primitivesPerInstance);
     auto primitive = static_cast<uint32_t>(range.first % draw.primitivesPerInstance);
     auto run = runAt(draw, primitive);
+    const bool indexed = draw.call.indices.data != nullptr;
     for (uint32_t left = range.count; left != 0; --left) {
         inputVertices(draw.state->topology, primitive - run->firstPrimitive, run->primitives, numbers.data());
         for (uint32_t v = 0; v < each; ++v)
-            inputs_.numbers.push_back(localVertex({vertexIndex(draw.call, run->first + numbers[v]), instance}));
+            inputs_.numbers.push_back(
+                localVertex({vertexIndex(draw.call, indexed, run->first + numbers[v]), instance}));
         inputs_.ids.push_back(primitive);
         if (++primitive == draw.primitivesPerInstance) {
             primitive = 0;
