@@ -7,9 +7,9 @@
 namespace vernier {
 namespace {
 
-using Domain = ir::TessellationDomain;
-using Order = ir::TessellationOrder;
-using Spacing = ir::TessellationSpacing;
+using Domain = TessellationDomain;
+using Order = TessellationOrder;
+using Spacing = TessellationSpacing;
 
 /// The length of an edge. All floats that are multiples of 1 / kOne in [0, 1] exist, and so do their distances to 1.
 constexpr uint32_t kOne = 1u << 24;

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "spirv_interp/ir/tessellation.h"
+#include "spirv_interp/tessellation.h"
 
 namespace vernier {
 
@@ -40,9 +40,9 @@ struct SubdividedPatch {
 class Tessellator {
   public:
     /// Spacing and order that are not given are equal and counter-clockwise; a domain must be.
-    explicit Tessellator(const ir::TessellationModes& modes)
-        : modes_(joined(
-              modes, {.spacing = ir::TessellationSpacing::equal, .order = ir::TessellationOrder::counterClockwise})) {}
+    explicit Tessellator(const TessellationModes& modes)
+        : modes_(joined(modes, {.spacing = TessellationSpacing::equal, .order = TessellationOrder::counterClockwise})) {
+    }
 
     /// Stays as it is until the next call.
     const SubdividedPatch& subdivide(const TessellationLevels& levels);
@@ -69,7 +69,7 @@ class Tessellator {
     /// The area between two parallel sides.
     void fillBetween(const Side& outer, const Side& inner);
 
-    ir::TessellationModes modes_;
+    TessellationModes modes_;
     TessellationLevels last_;
     bool hasLast_ = false;
     SubdividedPatch patch_;

@@ -177,15 +177,17 @@ bool Lowering::lowerBarrier(const Instruction& inst) {
     }
     if (inst.op != spv::Op::OpControlBarrier) return false;
     const auto scope = static_cast<spv::Scope>(constantIndex(inst[1]));
+    // The invocations of a patch run in step, too.
+    const bool ofPatch = scope == spv::Scope::Workgroup && program_.stage == ir::Stage::control;
     if (scope == spv::Scope::Workgroup && program_.stage == ir::Stage::compute) {
         emitter_.emit(ir::Op::controlBarrier, ir::Type::none, {});
         return true;
     }
-    if (scope != spv::Scope::Subgroup && scope != spv::Scope::Invocation) {
+    if (!ofPatch && scope != spv::Scope::Subgroup && scope != spv::Scope::Invocation) {
         refuse(inst, "execution scope " + std::to_string(static_cast<uint32_t>(scope)) + " is not supported here");
     }
     // The invocations of a subgroup run in step: only the order of memory is left to ask for.
-    if (!isRelaxed(constantIndex(inst[3]))) emitter_.emit(ir::Op::memoryBarrier, ir::Type::none, {});
+    if (ofPatch || !isRelaxed(constantIndex(inst[3]))) emitter_.emit(ir::Op::memoryBarrier, ir::Type::none, {});
     return true;
 }
 

@@ -5,6 +5,7 @@
 #include "spirv_interp/front/spelling.h"
 #include "spirv_interp/ir/ops.h"
 #include "spirv_interp/ir/primitive_inputs.h"
+#include "spirv_interp/tessellation.h"
 
 namespace vernier {
 namespace {
@@ -18,6 +19,8 @@ struct BuiltinEntry {
 
 constexpr auto kVertex = ir::Stage::vertex;
 constexpr auto kFragment = ir::Stage::fragment;
+constexpr auto kControl = ir::Stage::control;
+constexpr auto kEvaluation = ir::Stage::evaluation;
 constexpr auto kGeometry = ir::Stage::geometry;
 
 constexpr BuiltinEntry kBuiltins[] = {
@@ -59,6 +62,36 @@ constexpr BuiltinEntry kBuiltins[] = {
     {spv::BuiltIn::PrimitiveId, ir::Builtin::primitiveId, kGeometry, false},
     {spv::BuiltIn::Layer, ir::Builtin::layer, kGeometry, false},
     {spv::BuiltIn::ViewportIndex, ir::Builtin::viewportIndex, kGeometry, false},
+    {spv::BuiltIn::Position, ir::Builtin::position, kControl, true},
+    {spv::BuiltIn::PointSize, ir::Builtin::pointSize, kControl, true},
+    {spv::BuiltIn::ClipDistance, ir::Builtin::clipDistance, kControl, true},
+    {spv::BuiltIn::CullDistance, ir::Builtin::cullDistance, kControl, true},
+    {spv::BuiltIn::PrimitiveId, ir::Builtin::primitiveId, kControl, true},
+    {spv::BuiltIn::InvocationId, ir::Builtin::invocationId, kControl, true},
+    {spv::BuiltIn::PatchVertices, ir::Builtin::patchVertices, kControl, true},
+    {spv::BuiltIn::ViewIndex, ir::Builtin::viewIndex, kControl, true},
+    {spv::BuiltIn::Position, ir::Builtin::position, kControl, false},
+    {spv::BuiltIn::PointSize, ir::Builtin::pointSize, kControl, false},
+    {spv::BuiltIn::ClipDistance, ir::Builtin::clipDistance, kControl, false},
+    {spv::BuiltIn::CullDistance, ir::Builtin::cullDistance, kControl, false},
+    {spv::BuiltIn::TessLevelOuter, ir::Builtin::tessLevelOuter, kControl, false},
+    {spv::BuiltIn::TessLevelInner, ir::Builtin::tessLevelInner, kControl, false},
+    {spv::BuiltIn::Position, ir::Builtin::position, kEvaluation, true},
+    {spv::BuiltIn::PointSize, ir::Builtin::pointSize, kEvaluation, true},
+    {spv::BuiltIn::ClipDistance, ir::Builtin::clipDistance, kEvaluation, true},
+    {spv::BuiltIn::CullDistance, ir::Builtin::cullDistance, kEvaluation, true},
+    {spv::BuiltIn::PrimitiveId, ir::Builtin::primitiveId, kEvaluation, true},
+    {spv::BuiltIn::PatchVertices, ir::Builtin::patchVertices, kEvaluation, true},
+    {spv::BuiltIn::TessCoord, ir::Builtin::tessCoord, kEvaluation, true},
+    {spv::BuiltIn::TessLevelOuter, ir::Builtin::tessLevelOuter, kEvaluation, true},
+    {spv::BuiltIn::TessLevelInner, ir::Builtin::tessLevelInner, kEvaluation, true},
+    {spv::BuiltIn::ViewIndex, ir::Builtin::viewIndex, kEvaluation, true},
+    {spv::BuiltIn::Position, ir::Builtin::position, kEvaluation, false},
+    {spv::BuiltIn::PointSize, ir::Builtin::pointSize, kEvaluation, false},
+    {spv::BuiltIn::ClipDistance, ir::Builtin::clipDistance, kEvaluation, false},
+    {spv::BuiltIn::CullDistance, ir::Builtin::cullDistance, kEvaluation, false},
+    {spv::BuiltIn::Layer, ir::Builtin::layer, kEvaluation, false},
+    {spv::BuiltIn::ViewportIndex, ir::Builtin::viewportIndex, kEvaluation, false},
     {spv::BuiltIn::FragDepth, ir::Builtin::fragDepth, kFragment, false},
     {spv::BuiltIn::SampleMask, ir::Builtin::sampleMask, kFragment, false},
     {spv::BuiltIn::FragStencilRefEXT, ir::Builtin::fragStencilRef, kFragment, false},
@@ -71,9 +104,6 @@ bool isDecorated(const Module& module, uint32_t variable, const SpirvType& type,
     return module.hasDecoration(variable, decoration) ||
            (type.kind == SpirvType::Kind::array && module.findDecoration(type.element, decoration, 0) != nullptr);
 }
-
-/// Vertices that primitives and patches have at most (maxTessellationPatchSize).
-constexpr uint32_t kMaxVertexNumbers = 32;
 
 }  // namespace
 
@@ -152,6 +182,7 @@ void Lowering::initialise(const Instruction& inst, const Pointer& pointer) {
 }
 
 void Lowering::lowerStageVariable(const Instruction& inst, bool input) {
+    if (!input && program_.stage == ir::Stage::control) return lowerPatchOutput(inst);
     const uint32_t id = inst[2];
     Pointer pointer;
     pointer.type = typeInfo(inst[1]).element;
@@ -192,18 +223,19 @@ void Lowering::lowerStageVariable(const Instruction& inst, bool input) {
     setPointer(id, pointer);
 }
 
-/// Whether the first index of an input is the number of a vertex, and takes no locations.
+/// Whether the first index of an input, or of an output of a control stage, is the number of a vertex, and takes no
+/// locations.
 bool Lowering::isNumberedByVertex(uint32_t variable, const SpirvType& type) const {
     const bool isArray = type.kind == SpirvType::Kind::array;
-    uint32_t most = kMaxVertexNumbers;
+    uint32_t most = kMaxPatchVertices;
     switch (program_.stage) {
         case kFragment:  // SPV_KHR_fragment_shader_barycentric
             if (!isDecorated(module_, variable, type, spv::Decoration::PerVertexKHR)) return false;
             most = isArray ? 3 : 0;
             break;
         case kGeometry:
-        case ir::Stage::control:
-        case ir::Stage::evaluation:
+        case kControl:
+        case kEvaluation:
             if (!isArray || isDecorated(module_, variable, type, spv::Decoration::Patch)) return false;
             break;
         default:

@@ -28,12 +28,16 @@ ir::ValueId Lowering::descriptorOf(const Pointer& pointer) {
     return pointer.descriptor == ir::kNoValue ? emitter_.constantI32(0) : pointer.descriptor;
 }
 
-/// One 32-bit word at `at` units from the pointer, which is local, input or buffer; in a buffer also 1 or 2 bytes.
+/// One 32-bit word at `at` units from the pointer, which is local, stage, input or buffer; in a buffer also 1 or 2
+/// bytes.
 ir::ValueId Lowering::loadWord(const Pointer& pointer, uint32_t at, ir::Type type, uint32_t bytes) {
     switch (pointer.base) {
         case Base::local:
             return emitter_.emit(ir::Op::loadLocal, type, {place(pointer, at)},
                                  ir::immPair(pointer.root, pointer.extent));
+        case Base::stage:
+            return emitter_.emit(ir::Op::loadBuffer, type, {emitter_.constantI32(0), patchPlace(pointer, at)},
+                                 patchResource_);
         case Base::buffer:
             return emitter_.emit(ir::Op::loadBuffer, type, {descriptorOf(pointer), place(pointer, at)},
                                  ir::immPair(resourceOrAny(pointer), bytes));
@@ -85,7 +89,7 @@ ir::ValueId Lowering::loadScalar(const Pointer& pointer, uint32_t at, const Leaf
     }
     const ir::ValueId value = loadWord(pointer, at, type);
     // Attributes come sign-extended, and interpolated with more digits than a half has.
-    return pointer.base == Base::input ? normalised(value, type) : value;
+    return pointer.base == Base::input || pointer.base == Base::stage ? normalised(value, type) : value;
 }
 
 void Lowering::storeScalar(const Pointer& pointer, uint32_t at, ir::ValueId value, const LeafType& type) {
@@ -100,6 +104,8 @@ void Lowering::storeScalar(const Pointer& pointer, uint32_t at, ir::ValueId valu
         storeWord(pointer, at, convert(ir::Op::zext, ir::Type::i32, value));
     } else if (type.bits < 32 && pointer.inBytes()) {
         storeWord(pointer, at, pieceOf(value, type), type.bytes());
+    } else if (pointer.base == Base::stage && type.isSigned) {
+        storeWord(pointer, at, signExtended(value, type));
     } else {
         storeWord(pointer, at, value);
     }
@@ -110,6 +116,9 @@ void Lowering::storeWord(const Pointer& pointer, uint32_t at, ir::ValueId value,
     if (pointer.base == Base::local) {
         emitter_.emit(ir::Op::storeLocal, ir::Type::none, {place(pointer, at), value},
                       ir::immPair(pointer.root, pointer.extent));
+    } else if (pointer.base == Base::stage) {
+        emitter_.emit(ir::Op::storeBuffer, ir::Type::none, {emitter_.constantI32(0), patchPlace(pointer, at), value},
+                      patchResource_);
     } else if (pointer.base == Base::address) {
         emitter_.emit(ir::Op::storeAddress, ir::Type::none, {place(pointer, at), value}, bytes == 0 ? 4 : bytes);
     } else {
@@ -209,6 +218,7 @@ Lowering::Leaves Lowering::load(const Pointer& pointer) {
                 break;
             }
             case Base::local:
+            case Base::stage:
             case Base::input:
                 leaves[i] = loadScalar(pointer, at, types[i]);
                 break;
@@ -228,7 +238,8 @@ void Lowering::store(const Pointer& pointer, Leaves leaves) {
             if (pointer.dynamic != ir::kNoValue) return storeChoice(pointer, leaves);
             for (uint32_t i = 0; i < leaves.size(); ++i) emitter_.write(pointer.root + pointer.offset + i, leaves[i]);
             break;
-        case Base::local: {
+        case Base::local:
+        case Base::stage: {
             uint32_t at = 0;
             for (size_t i = 0; i < leaves.size(); ++i) {
                 storeScalar(pointer, at, leaves[i], types[i]);

@@ -30,6 +30,8 @@ constexpr Capability kCapabilities[] = {
     Capability::Geometry,  // also declared by fragment shaders that read PrimitiveId or Layer
     Capability::GeometryPointSize,
     Capability::GeometryStreams,
+    Capability::Tessellation,
+    Capability::TessellationPointSize,
     Capability::ImageGatherExtended,
     Capability::StorageImageMultisample,
     Capability::UniformBufferArrayDynamicIndexing,
@@ -108,6 +110,8 @@ constexpr Capability kCapabilities[] = {
     Capability::ExpectAssumeKHR,
 };
 
+}  // namespace
+
 spv::ExecutionModel modelOf(ir::Stage stage) {
     switch (stage) {
         case ir::Stage::vertex:
@@ -125,8 +129,6 @@ spv::ExecutionModel modelOf(ir::Stage stage) {
     }
     return spv::ExecutionModel::GLCompute;
 }
-
-}  // namespace
 
 void Lowering::run() {
     const auto& entries = module_.entryPoints();
@@ -192,7 +194,7 @@ void Lowering::lowerGlobals() {
 void Lowering::lowerExecutionModes(const EntryPoint& entry) {
     for (uint32_t offset : module_.executionModes()) {
         const Instruction inst = module_.next(offset);
-        if (inst[1] != entry.function || lowerGeometryMode(inst)) continue;
+        if (inst[1] != entry.function || lowerGeometryMode(inst) || lowerTessellationMode(inst)) continue;
         switch (static_cast<spv::ExecutionMode>(inst[2])) {
             case spv::ExecutionMode::EarlyFragmentTests:
                 program_.earlyFragmentTests = true;
@@ -223,6 +225,7 @@ void Lowering::lowerExecutionModes(const EntryPoint& entry) {
     if (!captures_) capture_ = {};
     checkLocalSize(entry);
     checkGeometryModes();
+    endPatch();
 }
 
 // --- ids

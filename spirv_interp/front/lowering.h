@@ -29,6 +29,7 @@ struct Pointer {
     enum class Base : uint8_t {
         ssa,      // scalars that are SSA variables: `root` is the first
         local,    // invocation-local memory: `root` is its first word, `extent` its words
+        stage,    // outputs that the invocations of a patch share: `root` is the first word, `extent` their number
         input,    // input slots: `root` is the first, `extent` their number
         builtin,  // a built-in variable made of others (lower_builtins.cpp): `root` is the spv::BuiltIn
         buffer,   // `root` is the id of the variable, or of a pointer into any buffer
@@ -39,7 +40,7 @@ struct Pointer {
     Base base = Base::ssa;
     uint32_t type = 0;  // of what it points to
     uint32_t root = 0, extent = 0;
-    uint32_t offset = 0;  // constant part, in leaves (ssa), words (local, input, builtin) or bytes (buffer)
+    uint32_t offset = 0;  // constant part, in leaves (ssa), words (local, stage, input, builtin) or bytes (buffer)
     ir::ValueId dynamic = ir::kNoValue;      // the rest, in the same unit; ssa: which of `choices` equal parts
     uint32_t choices = 0, choiceStride = 0;  // ssa with `dynamic`: the parts and the leaves from one to the next
     ir::ValueId descriptor = ir::kNoValue;   // buffer, handle: index in the array of descriptors
@@ -79,6 +80,8 @@ struct IdValue {
     const Pointer* pointer = nullptr;
     const Handle* handle = nullptr;
 };
+
+spv::ExecutionModel modelOf(ir::Stage stage);
 
 class Lowering {
   public:
@@ -208,6 +211,12 @@ class Lowering {
     void endVertices();
     bool lowerEmission(const Instruction& inst);
     uint32_t streamOf(const Instruction& inst);
+
+    // lower_patch.cpp: tessellation stages
+    bool lowerTessellationMode(const Instruction& mode);
+    void lowerPatchOutput(const Instruction& inst);
+    void endPatch();
+    ir::ValueId patchPlace(const Pointer& pointer, uint32_t at);
 
     // lower_builtins.cpp: built-in inputs that are computed, the size of a work-group, barriers
     bool isComputedBuiltin(uint32_t variable) const;
@@ -378,8 +387,10 @@ class Lowering {
     uint32_t callCount_ = 0;
     uint32_t vertexCount_ = 0, startsStrip_ = 0;  // variables of a geometry stage
     uint32_t flagsSlot_ = 0;
-    std::vector<uint32_t> fileOfId_;      // by id of an OpString: index into Program::files; 0 = not used so far
-    std::vector<const Function*> calls_;  // functions being inlined, outermost first
+    uint32_t patchVertices_ = 0;             // that a control stage puts out
+    uint32_t patchResource_ = ir::kNoIndex;  // memory of its outputs
+    std::vector<uint32_t> fileOfId_;         // by id of an OpString: index into Program::files; 0 = not used so far
+    std::vector<const Function*> calls_;     // functions being inlined, outermost first
 };
 
 }  // namespace vernier

@@ -14,9 +14,9 @@
 namespace vernier {
 namespace {
 
-using Domain = ir::TessellationDomain;
-using Order = ir::TessellationOrder;
-using Spacing = ir::TessellationSpacing;
+using Domain = TessellationDomain;
+using Order = TessellationOrder;
+using Spacing = TessellationSpacing;
 
 constexpr Spacing kSpacings[] = {Spacing::equal, Spacing::fractionalEven, Spacing::fractionalOdd};
 constexpr int64_t kOne = 1 << 24;
@@ -257,8 +257,12 @@ TEST(Tessellator, FractionalSegmentsGrowSteadily) {
             const double ratio = first / second;
             EXPECT_GE(ratio, 0);
             EXPECT_LE(ratio, 1.00001);
-            if (n == segmentsBefore) EXPECT_GT(ratio, before);
-            if (n > segmentsBefore && segmentsBefore != 0) EXPECT_LT(ratio, 0.05);
+            if (n == segmentsBefore) {
+                EXPECT_GT(ratio, before);
+            }
+            if (n > segmentsBefore && segmentsBefore != 0) {
+                EXPECT_LT(ratio, 0.05);
+            }
             for (uint32_t k = 2; k < n; ++k)
                 EXPECT_NEAR(patch.points[k].u - patch.points[k - 1].u, second, 2.0 / kOne) << level;
             before = ratio;
@@ -316,8 +320,12 @@ TEST(Tessellator, Isolines) {
                     EXPECT_EQ(a.v, b.v);
                     EXPECT_NEAR(a.v, static_cast<double>(line) / lines, 1.0 / kOne);
                     EXPECT_LE(a.u, b.u);
-                    if (k == 0) EXPECT_EQ(a.u, 0.0f);
-                    if (k + 1 == parts) EXPECT_EQ(b.u, 1.0f);
+                    if (k == 0) {
+                        EXPECT_EQ(a.u, 0.0f);
+                    }
+                    if (k + 1 == parts) {
+                        EXPECT_EQ(b.u, 1.0f);
+                    }
                 }
             }
         }
