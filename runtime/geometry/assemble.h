@@ -8,6 +8,7 @@
 
 #include "runtime/geometry/clip.h"
 #include "runtime/geometry/primitive_setup.h"
+#include "runtime/geometry/tessellation_stage.h"
 #include "runtime/geometry/vertex_stage.h"
 
 namespace vernier {
@@ -22,6 +23,7 @@ struct PrimitiveRange {
 struct GeometryStatistics {
     uint64_t inputPrimitives = 0, vertexInvocations = 0, clippingInvocations = 0, clippingPrimitives = 0;
     uint64_t clippedPrimitives = 0, rasterPrimitives = 0;
+    uint64_t controlPatches = 0, evaluationInvocations = 0;
     uint64_t geometryInvocations = 0, geometryPrimitives = 0;
     std::array<uint64_t, ir::kVertexStreams> generatedPrimitives{};  // by vertex stream
 };
@@ -43,6 +45,7 @@ class Assembler {
     void numberList(const PreparedDraw& draw, uint32_t first, uint32_t count, uint32_t& least, uint32_t& greatest);
     static bool isPlainList(const PreparedDraw& draw, uint32_t first, uint32_t count, size_t bytes);
     void numberInputs(const PreparedDraw& draw, const PrimitiveRange& range);
+    void takeTessellated(const PreparedDraw& draw);
     bool runStages(const PreparedDraw& draw, uint64_t token, const PrimitiveRange& range, Chunk& chunk);
     static std::vector<VertexRun>::const_iterator runAt(const PreparedDraw& draw, uint32_t primitive) {
         return std::upper_bound(draw.runs.begin(), draw.runs.end(), primitive,
@@ -86,7 +89,7 @@ class Assembler {
     };
     static constexpr uint32_t kReuseSlots = 8192;
     static_assert(kReuseSlots >= 2 * 3 * kChunkPrimitives);
-    static constexpr uint32_t kMaxInputVertices = 32;  // of a primitive or patch
+    static constexpr uint32_t kMaxInputVertices = kMaxPatchVertices;  // of a primitive or patch
 
     ContextCache contexts_;
     PrimitiveSetup setup_;
@@ -94,7 +97,9 @@ class Assembler {
     std::vector<VertexRef> refs_;
     std::vector<LocalPrimitive> primitives_;
     StagePrimitives inputs_;  // of the first stage behind the vertices
-    StageVertices outputs_;   // of the last stage before the rasteriser
+    TessellationStage tessellation_;
+    StagePrimitives tessellated_;
+    StageVertices outputs_;  // of the last stage before the rasteriser
     VertexStreams otherStreams_;
     std::vector<ReuseSlot> reuse_ = std::vector<ReuseSlot>(kReuseSlots);
     uint32_t epoch_ = 0;

@@ -1,6 +1,7 @@
 // Primitives of draws with stages between the vertices and the rasteriser: their vertices, those stages, and what
 // comes out.
 #include <algorithm>
+#include <numeric>
 
 #include "runtime/geometry/assemble.h"
 #include "runtime/geometry/geometry_stage.h"
@@ -20,7 +21,11 @@ void Assembler::numberInputs(const PreparedDraw& draw, const PrimitiveRange& ran
     auto run = runAt(draw, primitive);
     const bool indexed = draw.call.indices.data != nullptr;
     for (uint32_t left = range.count; left != 0; --left) {
-        inputVertices(draw.state->topology, primitive - run->firstPrimitive, run->primitives, numbers.data());
+        if (draw.state->topology == VK_PRIMITIVE_TOPOLOGY_PATCH_LIST) {
+            std::iota(numbers.begin(), numbers.begin() + each, (primitive - run->firstPrimitive) * each);
+        } else {
+            inputVertices(draw.state->topology, primitive - run->firstPrimitive, run->primitives, numbers.data());
+        }
         for (uint32_t v = 0; v < each; ++v)
             inputs_.numbers.push_back(
                 localVertex({vertexIndex(draw.call, indexed, run->first + numbers[v]), instance}));
@@ -35,15 +40,40 @@ void Assembler::numberInputs(const PreparedDraw& draw, const PrimitiveRange& ran
     }
 }
 
+/// The primitives that patches have been subdivided into, for the rasteriser.
+void Assembler::takeTessellated(const PreparedDraw& draw) {
+    std::swap(outputs_, tessellated_.vertices);
+    primitives_.clear();
+    for (std::vector<uint32_t>& points : otherStreams_) points.clear();
+    const uint32_t each = tessellated_.verticesPerPrimitive;
+    for (size_t n = 0; n < tessellated_.ids.size(); ++n) {
+        LocalPrimitive& primitive = primitives_.emplace_back();
+        const uint32_t* numbers = tessellated_.numbers.data() + n * each;
+        for (uint32_t v = 0; v < 3; ++v) primitive.vertex[v] = numbers[v < each ? v : 0];
+        primitive.provoking = draw.state->provokingVertexLast ? each - 1 : 0;
+        primitive.primitiveId = tessellated_.ids[n];
+        primitive.startsStrip = true;
+    }
+}
+
 /// From the vertices to those that the rasteriser gets, with the primitives that they make up.
 bool Assembler::runStages(const PreparedDraw& draw, uint64_t token, const PrimitiveRange& range, Chunk& chunk) {
     numberInputs(draw, range);
     bool finished = shadeForStages(draw, token, refs_, contexts_, inputs_.vertices);
     statistics_.vertexInvocations += refs_.size();
-    if (draw.call.pipeline->geometryProgram() != nullptr) {
-        finished &= runGeometry(draw, token, inputs_, contexts_, outputs_, primitives_, otherStreams_);
+    const bool tessellates = draw.call.pipeline->controlProgram() != nullptr;
+    if (tessellates) {
+        finished &= tessellation_.run(draw, token, inputs_, contexts_, tessellated_);
+        statistics_.controlPatches += inputs_.ids.size();
+        statistics_.evaluationInvocations += tessellated_.vertices.count();
+    }
+    if (draw.call.pipeline->geometryProgram() == nullptr) {
+        takeTessellated(draw);
+    } else {
+        const StagePrimitives& in = tessellates ? tessellated_ : inputs_;
+        finished &= runGeometry(draw, token, in, contexts_, outputs_, primitives_, otherStreams_);
         statistics_.geometryInvocations +=
-            inputs_.ids.size() * draw.call.pipeline->geometryProgram()->source().geometry.invocations;
+            in.ids.size() * draw.call.pipeline->geometryProgram()->source().geometry.invocations;
         statistics_.geometryPrimitives += primitives_.size();
         for (const std::vector<uint32_t>& points : otherStreams_) statistics_.geometryPrimitives += points.size();
     }

@@ -87,7 +87,10 @@ uint32_t weightOf(const DrawCall& call, const Plan& plan) {
     if (!plan.stages) return 1;
     constexpr uint32_t kVertexNumbers = 4 * kChunkPrimitives, kOutputVertices = 16 * kChunkPrimitives;
     const auto weigh = [](uint32_t each, uint32_t most) { return (each * kChunkPrimitives + most - 1) / most; };
+    // What a patch may be subdivided into is known only with its levels: some hundred points, and 4225 at most.
+    constexpr uint32_t kPatchPoints = 1024;
     uint32_t weight = weigh(plan.inputVertices, kVertexNumbers);
+    if (call.pipeline->controlProgram() != nullptr) weight = std::max(weight, weigh(kPatchPoints, kOutputVertices));
     if (const auto& geometry = call.pipeline->geometryProgram()) {
         const ir::GeometryModes& modes = geometry->source().geometry;
         weight = std::max(weight, weigh(modes.invocations * modes.outputVertices, kOutputVertices));

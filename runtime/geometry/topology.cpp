@@ -42,8 +42,10 @@ uint32_t verticesPerPrimitive(VkPrimitiveTopology topology) {
     }
 }
 
-uint32_t primitiveCount(VkPrimitiveTopology topology, uint32_t vertices) {
+uint32_t primitiveCount(VkPrimitiveTopology topology, uint32_t vertices, uint32_t patchVertices) {
     switch (topology) {
+        case VK_PRIMITIVE_TOPOLOGY_PATCH_LIST:
+            return vertices / patchVertices;
         case VK_PRIMITIVE_TOPOLOGY_POINT_LIST:
             return vertices;
         case VK_PRIMITIVE_TOPOLOGY_LINE_LIST:
@@ -134,7 +136,7 @@ std::vector<VertexRun> vertexRuns(const DrawCall& call, VkPrimitiveTopology topo
     std::vector<VertexRun> runs;
     uint32_t primitives = 0;
     const auto add = [&](uint32_t first, uint32_t count) {
-        const uint32_t n = primitiveCount(topology, count);
+        const uint32_t n = primitiveCount(topology, count, call.pipeline->state().patchControlPoints);
         if (n == 0) return;
         runs.push_back({first, primitives, n, count});
         primitives += n;

@@ -21,7 +21,8 @@ struct PrimitiveVertices {
 uint32_t verticesPerPrimitive(VkPrimitiveTopology topology);
 
 /// Complete primitives that `vertices` consecutive vertices make.
-uint32_t primitiveCount(VkPrimitiveTopology topology, uint32_t vertices);
+/// Patches are of `patchVertices`.
+uint32_t primitiveCount(VkPrimitiveTopology topology, uint32_t vertices, uint32_t patchVertices = 1);
 
 PrimitiveVertices primitiveVertices(VkPrimitiveTopology topology, uint32_t primitive);
 

@@ -49,10 +49,10 @@ Status checkRasterization(const GraphicsState& state) {
         case VK_PRIMITIVE_TOPOLOGY_LINE_STRIP_WITH_ADJACENCY:
         case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST_WITH_ADJACENCY:
         case VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY:
+        case VK_PRIMITIVE_TOPOLOGY_PATCH_LIST:
             break;
         default:
-            return unsupported("topology: VkPrimitiveTopology " + number(state.topology) +
-                               " (patches) is not supported");
+            return unsupported("topology: VkPrimitiveTopology " + number(state.topology) + " is not supported");
     }
     if (state.lineMode > VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT)
         return unsupported("lineMode: VkLineRasterizationModeEXT " + number(state.lineMode) + " is not supported");
@@ -123,12 +123,27 @@ std::optional<ir::GeometryInput> primitiveOf(VkPrimitiveTopology topology) {
     }
 }
 
+/// Patches are for tessellation stages, and these for patches (VUID-VkGraphicsPipelineCreateInfo-pStages-08888 and
+/// -topology-08889).
+Status checkTessellation(const GraphicsState& state, const ShaderProgram& program) {
+    const bool patches = state.topology == VK_PRIMITIVE_TOPOLOGY_PATCH_LIST;
+    if ((program.stage(ir::Stage::control) != nullptr) != patches)
+        return invalidArgument(patches ? "topology: patches need tessellation shaders"
+                                       : "tessellation shaders: the topology is not of patches");
+    if (patches && (state.patchControlPoints == 0 || state.patchControlPoints > kMaxPatchVertices))
+        return invalidArgument("patchControlPoints is " + number(state.patchControlPoints) + "; 1 to " +
+                               number(kMaxPatchVertices) + " are supported");
+    return {};
+}
+
 /// A geometry stage gets the primitives that it declares (VUID-VkGraphicsPipelineCreateInfo-pStages-00738).
 Status checkGeometryStage(const GraphicsState& state, const ShaderProgram& program) {
     const std::shared_ptr<const BatchProgram> geometry = program.stage(ir::Stage::geometry);
     if (geometry == nullptr) return {};
     const ir::GeometryInput wanted = geometry->source().geometry.input;
-    const std::optional<ir::GeometryInput> drawn = primitiveOf(state.topology);
+    const bool tessellates = program.stage(ir::Stage::evaluation) != nullptr;
+    const std::optional<ir::GeometryInput> drawn =
+        primitiveOf(tessellates ? topologyOf(program.tessellation()) : state.topology);
     if (drawn == wanted) return {};
     return invalidArgument("geometry shader: it takes " + std::string(ir::nameOf(wanted)) + ", the topology is of " +
                            (drawn ? std::string(ir::nameOf(*drawn)) : std::string("something else")));
@@ -162,6 +177,12 @@ VkPrimitiveTopology topologyOf(ir::GeometryInput input) {
     }
 }
 
+VkPrimitiveTopology topologyOf(const TessellationModes& modes) {
+    if (modes.pointMode) return VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
+    return modes.domain == TessellationDomain::isolines ? VK_PRIMITIVE_TOPOLOGY_LINE_LIST
+                                                        : VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+}
+
 Status checkGraphicsState(const GraphicsState& state, const Accuracy& accuracy) {
     const uint32_t bits = accuracy.subPixelBits;
     if (bits != 4 && bits != 8 && bits != 12 && bits != 16)
@@ -173,6 +194,7 @@ Status checkGraphicsState(const GraphicsState& state, const Accuracy& accuracy) 
 
 Status checkInterfaces(const GraphicsState& state, const ShaderProgram& program) {
     if (Status status = checkDistances(program.lastIr()); !status) return status;
+    if (Status status = checkTessellation(state, program); !status) return status;
     if (Status status = checkGeometryStage(state, program); !status) return status;
     for (const ir::InterfaceSlot& slot : program.vertexIr().inputs) {
         if (slot.builtin != ir::Builtin::user) continue;

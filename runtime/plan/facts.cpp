@@ -28,6 +28,19 @@ std::string count(size_t n, const std::string& thing) {
     return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
 }
 
+const char* domainName(const TessellationModes& modes) {
+    if (modes.pointMode) return "points";
+    return modes.domain == TessellationDomain::triangles ? "triangles"
+           : modes.domain == TessellationDomain::quads   ? "quads"
+                                                         : "isolines";
+}
+
+const char* spacingName(TessellationSpacing spacing) {
+    return spacing == TessellationSpacing::fractionalEven  ? "fractional even spacing"
+           : spacing == TessellationSpacing::fractionalOdd ? "fractional odd spacing"
+                                                           : "equal spacing";
+}
+
 /// Whose vertices the rasteriser gets.
 std::string lastProgram(const ShaderProgram& program) {
     return std::string(ir::nameOf(program.lastIr().stage));
@@ -37,6 +50,12 @@ void geometryFacts(const GraphicsState& state, const ShaderProgram& program, con
     const Accuracy& accuracy = program.accuracy();
     facts.runs("vertex program, once per vertex and chunk",
                count(plan.attributes.size(), "attribute") + " fetched; " + tierName(accuracy.math) + " maths");
+    if (program.stage(ir::Stage::control) != nullptr) {
+        facts.runs("control program, " + std::to_string(plan.tessellation.outputVertices) + " times per patch",
+                   "patches of " + std::to_string(plan.inputVertices) + " vertices go in");
+        facts.runs("tessellator, once per patch, and evaluation program, once per point of it",
+                   std::string(domainName(plan.tessellation)) + ", " + spacingName(plan.tessellation.spacing));
+    }
     if (const auto geometry = program.stage(ir::Stage::geometry)) {
         const ir::GeometryModes& modes = geometry->source().geometry;
         facts.runs("geometry program, " +

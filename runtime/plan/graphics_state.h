@@ -18,6 +18,8 @@ struct GraphicsState {
     std::array<uint32_t, kMaxVertexBindings> instanceDivisors = allOnes();  // by binding
     std::vector<VkVertexInputAttributeDescription> vertexAttributes;
     VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    uint32_t patchControlPoints = 1;  // vertices of a patch: 1 to kMaxPatchVertices
+    bool domainLowerLeft = false;     // the origin of tessellated domains: winding is as seen with v upwards
     bool primitiveRestart = false;
 
     bool depthClampEnable = false;

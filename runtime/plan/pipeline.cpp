@@ -16,6 +16,8 @@ Result<std::shared_ptr<const GraphicsPipeline>> GraphicsPipeline::create(const G
     std::shared_ptr<GraphicsPipeline> pipeline(new GraphicsPipeline());
     pipeline->state_ = desc.state;
     pipeline->program_ = desc.program;
+    pipeline->control_ = program.stage(ir::Stage::control);
+    pipeline->evaluation_ = program.stage(ir::Stage::evaluation);
     pipeline->geometry_ = program.stage(ir::Stage::geometry);
     pipeline->plan_ = std::make_unique<const Plan>(makePlan(desc.state, program));
     if (pipeline->plan_->quadsForLevels)

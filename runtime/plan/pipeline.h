@@ -33,6 +33,9 @@ class GraphicsPipeline {
     const ir::Program& vertexIr() const { return program_->vertexIr(); }
     const ir::Program* fragmentIr() const { return program_->fragmentIr(); }
     const std::shared_ptr<const BatchProgram>& vertexProgram() const { return program_->vertex(); }
+    /// nullptr without tessellation stages.
+    const std::shared_ptr<const BatchProgram>& controlProgram() const { return control_; }
+    const std::shared_ptr<const BatchProgram>& evaluationProgram() const { return evaluation_; }
     /// nullptr without a geometry stage.
     const std::shared_ptr<const BatchProgram>& geometryProgram() const { return geometry_; }
     const std::shared_ptr<const BatchProgram>& fragmentProgram() const { return program_->fragment(); }
@@ -47,7 +50,7 @@ class GraphicsPipeline {
     GraphicsPipeline();
     GraphicsState state_;
     std::shared_ptr<const ShaderProgram> program_;
-    std::shared_ptr<const BatchProgram> geometry_;
+    std::shared_ptr<const BatchProgram> control_, evaluation_, geometry_;
     std::unique_ptr<const Plan> plan_, planWithoutQuads_;
 };
 

@@ -65,7 +65,8 @@ struct StageInput {
     uint32_t vertex = 0;      // of the primitive
 };
 
-/// What such a stage gets.
+/// What such a stage gets. Of an evaluation stage, StageInput::from is the word of a patch's row, and those of the
+/// patch as a whole are among the inputs.
 struct StagePlan {
     std::vector<StageInput> inputs;
     std::vector<BuiltinSlot> builtins;
@@ -123,7 +124,11 @@ struct Plan {
     std::vector<BuiltinSlot> vertexBuiltins;
     bool stages = false;         // there are some between vertices and the rasteriser
     uint32_t inputVertices = 3;  // of a primitive that goes into them, those of its neighbours included
-    StagePlan geometry;
+    StagePlan control, evaluation, geometry;
+    TessellationModes tessellation;  // as the state's domain origin has them
+    // Words of a patch's row, by level.
+    std::array<uint32_t, 4> outerLevelWords{kNoSlot, kNoSlot, kNoSlot, kNoSlot};
+    std::array<uint32_t, 2> innerLevelWords{kNoSlot, kNoSlot};
     // What reaches the rasteriser: the state's topology, or that of what stages make.
     VkPrimitiveTopology rasterTopology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
     // Outputs of the last stage before the rasteriser.

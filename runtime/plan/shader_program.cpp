@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "spirv_interp/ir/limit_vertices.h"
 #include "spirv_interp/ir/link.h"
 #include "spirv_interp/ir/names.h"
 #include "spirv_interp/ir/optimise.h"
@@ -33,6 +34,20 @@ void dropColors(ir::Program& fragment, uint32_t kept) {
     if (count != 0) ir::optimise(fragment);
 }
 
+Status addTessellation(const ShaderProgramDesc& desc, std::vector<ir::Program>& stages) {
+    if (desc.control == nullptr && desc.evaluation == nullptr) return {};
+    if (desc.control == nullptr || desc.evaluation == nullptr)
+        return invalidArgument(std::string("tessellation: there is no ") +
+                               (desc.control == nullptr ? "control" : "evaluation") + " shader");
+    if (desc.tessellation.domain == TessellationDomain::none)
+        return invalidArgument("tessellation: neither shader says whether patches are triangles, quads or isolines");
+    stages.push_back(*desc.control);
+    if (desc.patchControlPoints != 0) ir::limitVertices(stages.back(), desc.patchControlPoints);
+    stages.push_back(*desc.evaluation);
+    ir::limitVertices(stages.back(), desc.tessellation.outputVertices);
+    return {};
+}
+
 }  // namespace
 
 std::shared_ptr<const BatchProgram> ShaderProgram::stage(ir::Stage stage) const {
@@ -49,6 +64,8 @@ Result<std::shared_ptr<const ShaderProgram>> ShaderProgram::create(const ShaderP
     const bool dropUnread = desc.skips.has(Skip::unreadOutputs);
     const bool hasFragment = desc.fragment != nullptr;
     std::vector<ir::Program> stages{*desc.vertex};
+    if (Status status = addTessellation(desc, stages); !status) return status.error();
+    program->tessellation_ = desc.tessellation;
     if (desc.geometry != nullptr) stages.push_back(*desc.geometry);
     ir::Program fragmentIr = hasFragment ? *desc.fragment : emptyFragment();
     if (hasFragment && dropUnread) dropColors(fragmentIr, desc.keptColors);
@@ -66,9 +83,10 @@ Result<std::shared_ptr<const ShaderProgram>> ShaderProgram::create(const ShaderP
     if (Status status = ir::linkStages(stages.back(), fragmentIr, &facts, linking); !status) return status.error();
     program->removedVaryings_ = facts.removedOutputs;
     program->lifted_ = facts.lifted;
-    linking.dropUnread = dropUnread;
     linking.kept = {};
     for (size_t n = stages.size() - 1; n > 0; --n) {
+        // The rows of patches are as the control stage lays them out, whoever reads them.
+        linking.dropUnread = dropUnread && stages[n - 1].stage != ir::Stage::control;
         if (Status status = ir::linkStages(stages[n - 1], stages[n], &facts, linking); !status) return status.error();
         program->removedVaryings_ += facts.removedOutputs;
     }

@@ -12,11 +12,17 @@
 #include "runtime/skips.h"
 #include "spirv_interp/ir/lift.h"
 #include "spirv_interp/program.h"
+#include "spirv_interp/tessellation.h"
 
 namespace vernier {
 
 struct ShaderProgramDesc {
-    const ir::Program* vertex = nullptr;     // as loadShader gives it
+    const ir::Program* vertex = nullptr;  // as loadShader gives it
+    // nullptr, both of them: no tessellation stages.
+    const ir::Program* control = nullptr;
+    const ir::Program* evaluation = nullptr;
+    TessellationModes tessellation;          // of both, joined
+    uint32_t patchControlPoints = 0;         // 0: the program is used with patches of any number of vertices
     const ir::Program* geometry = nullptr;   // nullptr: no geometry stage
     const ir::Program* fragment = nullptr;   // nullptr: no fragment stage (depth only, or rasterizer discard)
     const CaptureLayout* capture = nullptr;  // of the last program before the rasteriser; nullptr: nothing is captured
@@ -51,6 +57,8 @@ class ShaderProgram {
     const std::vector<StageProgram>& stages() const { return stages_; }
     /// nullptr: the pipeline has no such stage.
     std::shared_ptr<const BatchProgram> stage(ir::Stage stage) const;
+    /// Of its control and evaluation stages.
+    const TessellationModes& tessellation() const { return tessellation_; }
     /// The program whose vertices the rasteriser gets.
     const ir::Program& lastIr() const { return stages_.back().program->source(); }
     const std::shared_ptr<const BatchProgram>& fragment() const { return fragment_; }
@@ -71,6 +79,7 @@ class ShaderProgram {
     Skips skips_;
     std::vector<StageProgram> stages_;
     std::shared_ptr<const BatchProgram> fragment_, pixelPart_, samplePart_;
+    TessellationModes tessellation_;
     CapturePlan capture_;
     uint32_t removedVaryings_ = 0;
     ir::LiftFacts lifted_;

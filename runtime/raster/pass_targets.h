@@ -54,6 +54,7 @@ struct PassStatistics {
     // By vertex stream: those before clipping; of them those while transform feedback was active; and that had room.
     std::array<uint64_t, ir::kVertexStreams> generatedPrimitives{}, capturablePrimitives{}, capturedPrimitives{};
     uint64_t vertexInvocations = 0;  // depends on the chunking, which does not depend on threads
+    uint64_t controlPatches = 0, evaluationInvocations = 0;    // of tessellation stages
     uint64_t geometryInvocations = 0, geometryPrimitives = 0;  // of geometry programs; what they put out
     uint64_t clippingInvocations = 0;
     uint64_t clippingPrimitives = 0;   // not all outside; those to be culled are in it

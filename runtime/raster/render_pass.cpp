@@ -59,6 +59,8 @@ struct ThreadCounts {
         sums.clippingPrimitives += geometry.clippingPrimitives;
         sums.clippedPrimitives += geometry.clippedPrimitives;
         sums.rasterPrimitives += geometry.rasterPrimitives;
+        sums.controlPatches += geometry.controlPatches;
+        sums.evaluationInvocations += geometry.evaluationInvocations;
         sums.geometryInvocations += geometry.geometryInvocations;
         sums.geometryPrimitives += geometry.geometryPrimitives;
         for (uint32_t stream = 0; stream < ir::kVertexStreams; ++stream)
