@@ -9,11 +9,13 @@ namespace {
 
 Result<ir::Stage> stageOf(VkShaderStageFlagBits stage) {
     if (stage == VK_SHADER_STAGE_VERTEX_BIT) return ir::Stage::vertex;
+    if (stage == VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT) return ir::Stage::control;
+    if (stage == VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT) return ir::Stage::evaluation;
     if (stage == VK_SHADER_STAGE_GEOMETRY_BIT) return ir::Stage::geometry;
     if (stage == VK_SHADER_STAGE_FRAGMENT_BIT) return ir::Stage::fragment;
     if (stage == VK_SHADER_STAGE_COMPUTE_BIT) return ir::Stage::compute;
     return unsupported("stage is " + std::to_string(stage) +
-                       "; only vertex, geometry, fragment and compute are supported");
+                       "; only vertex, tessellation, geometry, fragment and compute are supported");
 }
 
 /// Shader errors have a code of their own: a broken module is no misuse of the API.

@@ -101,6 +101,17 @@ VKAPI_ATTR void VKAPI_CALL CmdSetPrimitiveRestartEnable(VkCommandBuffer commandB
     setState(commandBuffer, [&](GraphicsState& state) { state.primitiveRestart = primitiveRestartEnable != VK_FALSE; });
 }
 
+VKAPI_ATTR void VKAPI_CALL CmdSetPatchControlPointsEXT(VkCommandBuffer commandBuffer, uint32_t patchControlPoints) {
+    setState(commandBuffer, [&](GraphicsState& state) { state.patchControlPoints = patchControlPoints; });
+}
+
+VKAPI_ATTR void VKAPI_CALL CmdSetTessellationDomainOriginEXT(VkCommandBuffer commandBuffer,
+                                                             VkTessellationDomainOrigin domainOrigin) {
+    setState(commandBuffer, [&](GraphicsState& state) {
+        state.domainLowerLeft = domainOrigin == VK_TESSELLATION_DOMAIN_ORIGIN_LOWER_LEFT;
+    });
+}
+
 VKAPI_ATTR void VKAPI_CALL CmdSetLogicOpEXT(VkCommandBuffer commandBuffer, VkLogicOp logicOp) {
     setState(commandBuffer, [&](GraphicsState& state) { state.logicOp = logicOp; });
 }
@@ -252,8 +263,6 @@ VKAPI_ATTR void VKAPI_CALL CmdBindVertexBuffers2(VkCommandBuffer commandBuffer, 
             buffer.fail("vk" #name, "this dynamic state is no feature of the device"); \
         });                                                                            \
     }
-VERNIER_REFUSED(CmdSetPatchControlPointsEXT, uint32_t)
-VERNIER_REFUSED(CmdSetTessellationDomainOriginEXT, VkTessellationDomainOrigin)
 VERNIER_REFUSED(CmdSetRasterizationStreamEXT, uint32_t)
 VERNIER_REFUSED(CmdSetConservativeRasterizationModeEXT, VkConservativeRasterizationModeEXT)
 VERNIER_REFUSED(CmdSetExtraPrimitiveOverestimationSizeEXT, float)

@@ -13,6 +13,7 @@
 #include "runtime/plan/plan.h"
 #include "spirv_interp/ir/names.h"
 #include "spirv_interp/program.h"
+#include "spirv_interp/tessellation.h"
 
 namespace vernier::vulkan {
 namespace {
@@ -25,6 +26,8 @@ struct StageKind {
 /// In the order in which they run.
 constexpr StageKind kStages[] = {
     {VK_SHADER_STAGE_VERTEX_BIT, ir::Stage::vertex, &ShaderProgramDesc::vertex},
+    {VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT, ir::Stage::control, &ShaderProgramDesc::control},
+    {VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT, ir::Stage::evaluation, &ShaderProgramDesc::evaluation},
     {VK_SHADER_STAGE_GEOMETRY_BIT, ir::Stage::geometry, &ShaderProgramDesc::geometry},
     {VK_SHADER_STAGE_FRAGMENT_BIT, ir::Stage::fragment, &ShaderProgramDesc::fragment},
 };
@@ -45,6 +48,11 @@ ShaderSource shaderSource(const VkPipelineShaderStageCreateInfo& stage, ir::Stag
         source.specialization = {entries, {static_cast<const std::byte*>(special->pData), special->dataSize}};
     }
     return source;
+}
+
+Result<TessellationModes> loadTessellationModes(const VkPipelineShaderStageCreateInfo& stage, ir::Stage kind) {
+    std::vector<Specialization::Entry> entries;
+    return tessellationModes(shaderSource(stage, kind, entries));
 }
 
 /// A bit per location that an attachment keeps something of; alpha to coverage needs location 0 all the same.
@@ -114,7 +122,12 @@ Result<std::shared_ptr<const ShaderProgram>> loadProgram(const Device& device, c
                          std::string(ir::nameOf(kind.stage)) + " shader: " + program.error().message};
         programs[n] = std::move(program).value();
         desc.*kind.program = &programs[n];
+        if (kind.stage != ir::Stage::control && kind.stage != ir::Stage::evaluation) continue;
+        Result<TessellationModes> modes = loadTessellationModes(*given[n], kind.stage);
+        if (!modes) return modes.error();
+        desc.tessellation = joined(desc.tessellation, *modes);
     }
+    if (!state.isDynamic(PlanState::PATCH_CONTROL_POINTS_EXT)) desc.patchControlPoints = state.state.patchControlPoints;
     desc.capture = &capture;
     desc.keptColors = keptColors(state);
     desc.accuracy = device.physicalDevice.accuracy;
@@ -130,10 +143,15 @@ VkResult createOne(const Device& device, const VkGraphicsPipelineCreateInfo& inf
     auto program = loadProgram(device, info, *state);
     if (!program) return device.report("vkCreateGraphicsPipelines", program.error());
     if (state->isDynamic(PlanState::VERTEX_INPUT_EXT)) inventVertexInput((*program)->vertexIr(), state->state);
-    // What draws set fits the geometry stage; what stands here meanwhile need not.
+    // What draws set fits the stages; what stands here meanwhile need not.
     const auto geometry = (*program)->stage(ir::Stage::geometry);
-    if (geometry != nullptr && state->isDynamic(PlanState::PRIMITIVE_TOPOLOGY))
-        state->state.topology = topologyOf(geometry->source().geometry.input);
+    if (state->isDynamic(PlanState::PRIMITIVE_TOPOLOGY)) {
+        if ((*program)->stage(ir::Stage::control) != nullptr)
+            state->state.topology = VK_PRIMITIVE_TOPOLOGY_PATCH_LIST;
+        else if (geometry != nullptr)
+            state->state.topology = topologyOf(geometry->source().geometry.input);
+    }
+    if (state->isDynamic(PlanState::PATCH_CONTROL_POINTS_EXT)) state->state.patchControlPoints = 1;
     auto graphics = GraphicsPipeline::create({state->state, *program});
     if (!graphics) return device.report("vkCreateGraphicsPipelines", graphics.error());
     device.physicalDevice.instance.explainLog.pipeline("graphics", (*graphics)->plan().facts);

@@ -24,6 +24,12 @@ struct Executable {
 Executable executableOf(const StageProgram& stage) {
     const BatchProgram* program = stage.program.get();
     switch (stage.stage) {
+        case ir::Stage::control:
+            return {"control", "The tessellation control program, once per vertex of a patch that comes out",
+                    VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT, program};
+        case ir::Stage::evaluation:
+            return {"evaluation", "The tessellation evaluation program, once per point of a patch",
+                    VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT, program};
         case ir::Stage::geometry:
             return {"geometry", "The geometry program, once per primitive and invocation", VK_SHADER_STAGE_GEOMETRY_BIT,
                     program};

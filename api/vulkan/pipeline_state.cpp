@@ -87,6 +87,27 @@ Status readAssembly(const VkPipelineInputAssemblyStateCreateInfo* assembly, Pipe
     return {};
 }
 
+/// Without tessellation stages it is ignored.
+Status readTessellation(const VkGraphicsPipelineCreateInfo& info, PipelineState& result) {
+    constexpr VkShaderStageFlags kStages =
+        VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT | VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT;
+    const bool tessellates = std::any_of(
+        info.pStages, info.pStages + info.stageCount,
+        [](const VkPipelineShaderStageCreateInfo& stage) { return (stage.stage & kStages) != 0; });
+    if (!tessellates) return {};
+    if (info.pTessellationState == nullptr) {
+        if (areDynamic(result, {PlanState::PATCH_CONTROL_POINTS_EXT, PlanState::TESSELLATION_DOMAIN_ORIGIN_EXT}))
+            return {};
+        return invalidArgument("pTessellationState must be given");
+    }
+    result.state.patchControlPoints = info.pTessellationState->patchControlPoints;
+    const auto* origin =
+        findInChain<VkPipelineTessellationDomainOriginStateCreateInfo>(info.pTessellationState->pNext);
+    result.state.domainLowerLeft =
+        origin != nullptr && origin->domainOrigin == VK_TESSELLATION_DOMAIN_ORIGIN_LOWER_LEFT;
+    return {};
+}
+
 void readRasterization(const VkPipelineRasterizationStateCreateInfo& info, PipelineState& result) {
     GraphicsState& state = result.state;
     state.depthClampEnable = info.depthClampEnable != VK_FALSE;
@@ -279,6 +300,7 @@ Result<PipelineState> pipelineState(const VkGraphicsPipelineCreateInfo& info) {
     if (Status s = readDynamicStates(info.pDynamicState, result); !s) return s.error();
     if (Status s = readVertexInput(info.pVertexInputState, result); !s) return s.error();
     if (Status s = readAssembly(info.pInputAssemblyState, result); !s) return s.error();
+    if (Status s = readTessellation(info, result); !s) return s.error();
     readRasterization(*info.pRasterizationState, result);
     if (result.isDynamic(PlanState::RASTERIZER_DISCARD_ENABLE)) result.state.rasterizerDiscard = false;
     if (result.state.rasterizerDiscard) {
