@@ -263,6 +263,17 @@ VnResult vnSetTopology(VnContext context, VkPrimitiveTopology topology, int prim
     });
 }
 
+VnResult vnSetPatchVertices(VnContext context, uint32_t vertices) {
+    return guardedContext(context, __func__, [&] {
+        if (vertices == 0 || vertices > kMaxPatchVertices)
+            return invalid(context->device, "vnSetPatchVertices",
+                           "vertices is " + std::to_string(vertices) + "; 1 to " + std::to_string(kMaxPatchVertices));
+        context->key.patchVertices = vertices;
+        context->pipelineChanged = true;
+        return VN_SUCCESS;
+    });
+}
+
 VnResult vnSetBlendConstants(VnContext context, const float rgba[4]) {
     return guardedContext(context, __func__, [&] {
         if (!rgba) return invalid(context->device, "vnSetBlendConstants", "rgba is NULL");

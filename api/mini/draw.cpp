@@ -49,6 +49,7 @@ GraphicsState graphicsStateOf(const VnContext_T& context) {
         state.vertexBindings = context.vertexLayout->bindings;
     }
     state.topology = context.key.topology;
+    state.patchControlPoints = context.key.patchVertices;
     state.primitiveRestart = context.key.primitiveRestart;
     const VnRasterStateDesc raster = context.raster ? context.raster->desc : VnRasterStateDesc{};
     state.polygonMode = raster.polygonMode;

@@ -27,6 +27,8 @@ VnResult vnGetStatistics(VnContext context, VnStatistics* statistics) {
                        .inputVertices = s.inputVertices,
                        .inputPrimitives = s.inputPrimitives,
                        .vertexInvocations = s.vertexInvocations,
+                       .controlPatches = s.controlPatches,
+                       .evaluationInvocations = s.evaluationInvocations,
                        .geometryInvocations = s.geometryInvocations,
                        .clippedPrimitives = s.clippedPrimitives,
                        .rasterPrimitives = s.rasterPrimitives,

@@ -17,6 +17,7 @@
 #include "runtime/plan/pipeline.h"
 #include "runtime/resource/buffer_view.h"
 #include "runtime/resource/descriptor.h"
+#include "spirv_interp/tessellation.h"
 
 namespace vernier::mini {
 
@@ -44,6 +45,7 @@ struct SamplerObject {
 
 struct ShaderObject {
     ir::Program program;
+    TessellationModes tessellation;  // of a control or evaluation stage
 };
 
 /// For draws or for dispatches: one of the two is set.
@@ -82,6 +84,7 @@ inline constexpr size_t kOutOfMemoryLength = 64;
 struct PipelineKey {
     uint64_t program = 0, vertexLayout = 0, raster = 0, depthStencil = 0, blend = 0;
     VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    uint32_t patchVertices = 3;
     bool primitiveRestart = false;
     uint32_t colorCount = 0;
     std::array<VkFormat, kMaxColorAttachments> colorFormats{};

@@ -26,7 +26,7 @@ VnResult failShader(VnDevice device, const char* function, const Error& error) {
 
 VnResult createComputeProgram(VnDevice device, const VnProgramDesc& desc, const Accuracy& accuracy,
                               VnProgram* program) {
-    if (desc.vertex.id || desc.geometry.id || desc.fragment.id)
+    if (desc.vertex.id || desc.control.id || desc.evaluation.id || desc.geometry.id || desc.fragment.id)
         return invalid(device, "vnCreateProgram", "compute stands beside other stages; it must stand alone");
     const auto compute = device->shaders.find(desc.compute.id);
     if (!compute || compute->program.stage != ir::Stage::compute)
@@ -62,7 +62,13 @@ VnResult vnCreateShader(VnDevice device, const VnShaderDesc* desc, VnShader* sha
         source.specialization = {entries, std::as_bytes(std::span(values))};
         Result<ir::Program> loaded = loadShader(source);
         if (!loaded) return failShader(device, "vnCreateShader", loaded.error());
-        auto object = std::make_shared<ShaderObject>(ShaderObject{std::move(loaded).value()});
+        TessellationModes modes;
+        if (*stage == ir::Stage::control || *stage == ir::Stage::evaluation) {
+            const Result<TessellationModes> read = tessellationModes(source);
+            if (!read) return failShader(device, "vnCreateShader", read.error());
+            modes = *read;
+        }
+        auto object = std::make_shared<ShaderObject>(ShaderObject{std::move(loaded).value(), modes});
         shader->id = device->shaders.insert(std::move(object));
         return VN_SUCCESS;
     });
@@ -83,16 +89,28 @@ VnResult vnCreateProgram(VnDevice device, const VnProgramDesc* desc, VnProgram* 
         const auto vertex = device->shaders.find(desc->vertex.id);
         if (!vertex || vertex->program.stage != ir::Stage::vertex)
             return badHandle(device, "vnCreateProgram", "vertex shader");
-        const auto fragment = device->shaders.find(desc->fragment.id);
-        if (desc->fragment.id && (!fragment || fragment->program.stage != ir::Stage::fragment))
-            return badHandle(device, "vnCreateProgram", "fragment shader");
-        const auto geometry = device->shaders.find(desc->geometry.id);
-        if (desc->geometry.id && (!geometry || geometry->program.stage != ir::Stage::geometry))
-            return badHandle(device, "vnCreateProgram", "geometry shader");
         ShaderProgramDesc linked;
         linked.vertex = &vertex->program;
-        linked.geometry = geometry ? &geometry->program : nullptr;
-        linked.fragment = fragment ? &fragment->program : nullptr;
+        const struct {
+            VnShader handle;
+            ir::Stage stage;
+            const char* name;
+            const ir::Program*& program;
+        } others[] = {
+            {desc->control, ir::Stage::control, "control shader", linked.control},
+            {desc->evaluation, ir::Stage::evaluation, "evaluation shader", linked.evaluation},
+            {desc->geometry, ir::Stage::geometry, "geometry shader", linked.geometry},
+            {desc->fragment, ir::Stage::fragment, "fragment shader", linked.fragment},
+        };
+        std::vector<std::shared_ptr<ShaderObject>> held;
+        for (const auto& other : others) {
+            if (!other.handle.id) continue;
+            const auto& shader = held.emplace_back(device->shaders.find(other.handle.id));
+            if (!shader || shader->program.stage != other.stage)
+                return badHandle(device, "vnCreateProgram", other.name);
+            other.program = &shader->program;
+            linked.tessellation = joined(linked.tessellation, shader->tessellation);
+        }
         linked.accuracy = *accuracy;
         linked.isa = device->runtime->isa();
         linked.skips = device->runtime->desc().skips;

@@ -17,8 +17,10 @@ constexpr VkQueryPipelineStatisticFlags kStatistics =
     VK_QUERY_PIPELINE_STATISTIC_GEOMETRY_SHADER_INVOCATIONS_BIT |
     VK_QUERY_PIPELINE_STATISTIC_GEOMETRY_SHADER_PRIMITIVES_BIT | VK_QUERY_PIPELINE_STATISTIC_CLIPPING_INVOCATIONS_BIT |
     VK_QUERY_PIPELINE_STATISTIC_CLIPPING_PRIMITIVES_BIT | VK_QUERY_PIPELINE_STATISTIC_FRAGMENT_SHADER_INVOCATIONS_BIT |
+    VK_QUERY_PIPELINE_STATISTIC_TESSELLATION_CONTROL_SHADER_PATCHES_BIT |
+    VK_QUERY_PIPELINE_STATISTIC_TESSELLATION_EVALUATION_SHADER_INVOCATIONS_BIT |
     VK_QUERY_PIPELINE_STATISTIC_COMPUTE_SHADER_INVOCATIONS_BIT;
-constexpr size_t kStatisticCount = 9;
+constexpr size_t kStatisticCount = 11;
 
 VkQueryType typeOf(VnQueryType type) {
     return type == VN_QUERY_OCCLUSION    ? VK_QUERY_TYPE_OCCLUSION
@@ -111,10 +113,12 @@ VnResult vnGetQueryResult(VnContext context, VnQuery query, VnQueryResult* resul
             result->value = values[0];
             return VN_SUCCESS;
         }
+        // In the order of their bits.
         uint64_t* const fields[kStatisticCount] = {
-            &result->inputVertices,       &result->inputPrimitives,     &result->vertexInvocations,
-            &result->geometryInvocations, &result->geometryPrimitives,  &result->clippingInvocations,
-            &result->clippingPrimitives,  &result->fragmentInvocations, &result->computeInvocations};
+            &result->inputVertices,         &result->inputPrimitives,     &result->vertexInvocations,
+            &result->geometryInvocations,   &result->geometryPrimitives,  &result->clippingInvocations,
+            &result->clippingPrimitives,    &result->fragmentInvocations, &result->controlPatches,
+            &result->evaluationInvocations, &result->computeInvocations};
         for (size_t n = 0; n < kStatisticCount; ++n) *fields[n] = values[n];
         return VN_SUCCESS;
     });

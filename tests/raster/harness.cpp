@@ -28,6 +28,13 @@ ir::Program loadForTest(const std::string& name, ir::Stage stage) {
     return std::move(*program);
 }
 
+TessellationModes modesForTest(const std::string& name, ir::Stage stage) {
+    ShaderSource source;
+    source.words = kShaders.at(name);
+    source.stage = stage;
+    return tessellationModes(source).value();
+}
+
 Surface::Surface(VkFormat format, uint32_t width, uint32_t height, uint32_t samples)
     : info_(findFormat(format)),
       width_(width),
@@ -106,15 +113,26 @@ void setAdditive(GraphicsState& state) {
 
 std::shared_ptr<const GraphicsPipeline> makePipeline(const PipelineOptions& options) {
     const ir::Program vertex = loadForTest(options.vertex, ir::Stage::vertex);
-    ir::Program geometry, fragment;
+    ir::Program control, evaluation, geometry, fragment;
+    ShaderProgramDesc desc;
+    if (!options.control.empty()) {
+        control = loadForTest(options.control, ir::Stage::control);
+        evaluation = loadForTest(options.evaluation, ir::Stage::evaluation);
+        desc.control = &control;
+        desc.evaluation = &evaluation;
+        desc.tessellation = joined(modesForTest(options.control, ir::Stage::control),
+                                   modesForTest(options.evaluation, ir::Stage::evaluation));
+        desc.patchControlPoints = options.state.patchControlPoints;
+    }
     if (!options.geometry.empty()) geometry = loadForTest(options.geometry, ir::Stage::geometry);
     if (!options.fragment.empty()) fragment = loadForTest(options.fragment, ir::Stage::fragment);
-    auto program = ShaderProgram::create({.vertex = &vertex,
-                                          .geometry = options.geometry.empty() ? nullptr : &geometry,
-                                          .fragment = options.fragment.empty() ? nullptr : &fragment,
-                                          .accuracy = options.accuracy,
-                                          .isa = options.isa,
-                                          .skips = options.skips});
+    desc.vertex = &vertex;
+    desc.geometry = options.geometry.empty() ? nullptr : &geometry;
+    desc.fragment = options.fragment.empty() ? nullptr : &fragment;
+    desc.accuracy = options.accuracy;
+    desc.isa = options.isa;
+    desc.skips = options.skips;
+    auto program = ShaderProgram::create(desc);
     if (!program) {
         ADD_FAILURE() << program.error().message;
         std::abort();

@@ -50,9 +50,10 @@ struct Vertex {
 Vertex at(double x, double y, uint32_t width, uint32_t height, std::array<float, 4> color = {1, 1, 1, 1},
           float z = 0.5f);
 
-/// A pipeline with one vertex buffer of Vertex (locations 0 and 1). Empty geometry or fragment name: no such stage.
+/// A pipeline with one vertex buffer of Vertex (locations 0 and 1). Empty names: no such stage.
 struct PipelineOptions {
     std::string vertex = "color_vert", geometry, fragment = "color_frag";
+    std::string control, evaluation;
     GraphicsState state;
     Accuracy accuracy;
     Isa isa = bestIsa();
@@ -65,6 +66,7 @@ void setAdditive(GraphicsState& state);
 
 /// A shader by its name.
 ir::Program loadForTest(const std::string& name, ir::Stage stage);
+TessellationModes modesForTest(const std::string& name, ir::Stage stage);
 
 std::shared_ptr<const GraphicsPipeline> makePipeline(const PipelineOptions& options);
 

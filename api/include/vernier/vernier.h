@@ -243,7 +243,8 @@ typedef struct VnSpecialization {
 
 typedef struct VnShaderDesc {
     uint32_t _start;
-    VkShaderStageFlagBits stage; /* VK_SHADER_STAGE_VERTEX_BIT, _GEOMETRY_BIT, _FRAGMENT_BIT or _COMPUTE_BIT */
+    VkShaderStageFlagBits stage; /* VK_SHADER_STAGE_VERTEX_BIT, _TESSELLATION_CONTROL_BIT,
+                                  * _TESSELLATION_EVALUATION_BIT, _GEOMETRY_BIT, _FRAGMENT_BIT or _COMPUTE_BIT */
     const uint32_t* words;       /* a SPIR-V module; copied */
     size_t wordCount;
     const char* entryPoint;                  /* NULL: "main" */
@@ -261,6 +262,9 @@ typedef struct VnProgramDesc {
     VnShader vertex;
     VnShader fragment; /* {0}: no fragment stage: only depth and stencil are written */
     VnShader compute;  /* stands alone: a program for dispatches */
+    /* Tessellation: both or, {0}, none. Draws have the topology VK_PRIMITIVE_TOPOLOGY_PATCH_LIST. */
+    VnShader control;
+    VnShader evaluation;
     VnShader geometry; /* {0}: none. Draws have a topology of the primitives that it takes */
     VnProfile profile; /* 0: the device's, with its axes */
     const char* axes;  /* NULL, or the axes to change in that: "axis=position ..." */
@@ -470,6 +474,8 @@ VN_API VnResult vnSetViewports(VnContext context, uint32_t first, uint32_t count
 VN_API VnResult vnSetScissors(VnContext context, uint32_t first, uint32_t count, const VkRect2D* scissors);
 /* `primitiveRestart` nonzero: the largest index starts a new strip or fan. */
 VN_API VnResult vnSetTopology(VnContext context, VkPrimitiveTopology topology, int primitiveRestart);
+/* Vertices of a patch of VK_PRIMITIVE_TOPOLOGY_PATCH_LIST: 1 to 32, at first 3. */
+VN_API VnResult vnSetPatchVertices(VnContext context, uint32_t vertices);
 VN_API VnResult vnSetBlendConstants(VnContext context, const float rgba[4]);
 /* Low 8 bits count. */
 VN_API VnResult vnSetStencilReference(VnContext context, uint32_t front, uint32_t back);
@@ -547,7 +553,7 @@ typedef struct VnStatistics {
     uint64_t draws;
     uint64_t inputVertices, inputPrimitives;
     uint64_t vertexInvocations;
-    uint64_t geometryInvocations;
+    uint64_t controlPatches, evaluationInvocations, geometryInvocations;
     uint64_t clippedPrimitives;   /* really cut, not merely tested */
     uint64_t rasterPrimitives;    /* reached the rasteriser */
     uint64_t fragmentInvocations; /* without helpers */
@@ -577,6 +583,7 @@ typedef enum VnQueryType {
 typedef struct VnQueryResult {
     uint64_t value;
     uint64_t inputVertices, inputPrimitives, vertexInvocations;
+    uint64_t controlPatches, evaluationInvocations;
     uint64_t geometryInvocations, geometryPrimitives; /* primitives that came out */
     uint64_t clippingInvocations, clippingPrimitives, fragmentInvocations, computeInvocations;
 } VnQueryResult;
