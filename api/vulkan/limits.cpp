@@ -8,7 +8,9 @@
 #include "runtime/resource/buffer_view.h"
 #include "runtime/resource/memory.h"
 #include "runtime/texture/texture.h"
+#include "runtime/geometry/tessellator.h"
 #include "spirv_interp/ir/geometry_modes.h"
+#include "spirv_interp/tessellation.h"
 
 namespace vernier::vulkan {
 namespace {
@@ -57,6 +59,17 @@ void setComputeLimits(VkPhysicalDeviceLimits& limits) {
     std::copy_n(kMaxWorkGroupSize, 3, limits.maxComputeWorkGroupSize);
 }
 
+void setTessellationLimits(VkPhysicalDeviceLimits& limits) {
+    limits.maxTessellationGenerationLevel = kMaxTessellationLevel;
+    limits.maxTessellationPatchSize = kMaxPatchVertices;
+    limits.maxTessellationControlPerVertexInputComponents = kMaxInterfaceComponents;
+    limits.maxTessellationControlPerVertexOutputComponents = kMaxInterfaceComponents;
+    limits.maxTessellationControlPerPatchOutputComponents = kMaxInterfaceComponents - 8;  // the levels
+    limits.maxTessellationControlTotalOutputComponents = kMaxPatchVertices * kMaxInterfaceComponents;
+    limits.maxTessellationEvaluationInputComponents = kMaxInterfaceComponents;
+    limits.maxTessellationEvaluationOutputComponents = kMaxInterfaceComponents;
+}
+
 void setGeometryLimits(VkPhysicalDeviceLimits& limits) {
     limits.maxGeometryShaderInvocations = ir::kMaxGeometryInvocations;
     limits.maxGeometryInputComponents = kMaxInterfaceComponents;
@@ -86,9 +99,7 @@ VkPhysicalDeviceLimits deviceLimits(const VkPhysicalDeviceFeatures& features, co
     limits.maxVertexInputAttributeOffset = kMaxVertexAttributeOffset;
     limits.maxVertexInputBindingStride = kMaxVertexBindingStride;
     limits.maxVertexOutputComponents = kMaxInterfaceComponents;
-
-    // There is no tessellation: its limits stay 0.
-
+    if (features.tessellationShader) setTessellationLimits(limits);
     if (features.geometryShader) setGeometryLimits(limits);
 
     limits.maxFragmentInputComponents = kMaxInterfaceComponents;

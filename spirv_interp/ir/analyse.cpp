@@ -20,9 +20,7 @@ std::vector<uint32_t> dropUnused(std::vector<InterfaceSlot>& slots, const std::v
 }
 
 void dropUnusedSlots(Program& program) {
-    // Those of a control stage are the words of a patch, which it reaches by their places in memory.
-    const bool keepsOutputs = program.stage == Stage::control;
-    std::vector<bool> inputs(program.inputs.size()), outputs(program.outputs.size(), keepsOutputs);
+    std::vector<bool> inputs(program.inputs.size()), outputs(program.outputs.size());
     for (const Block& block : program.blocks) {
         for (const Inst& inst : block.insts) {
             const ImmKind kind = immKind(inst.op);
