@@ -4,11 +4,11 @@
 #include "api/vulkan/physical_device.h"
 #include "api/vulkan/resource_limits.h"
 #include "runtime/geometry/primitive_setup.h"
+#include "runtime/geometry/tessellator.h"
 #include "runtime/limits.h"
 #include "runtime/resource/buffer_view.h"
 #include "runtime/resource/memory.h"
 #include "runtime/texture/texture.h"
-#include "runtime/geometry/tessellator.h"
 #include "spirv_interp/ir/geometry_modes.h"
 #include "spirv_interp/tessellation.h"
 

@@ -125,6 +125,8 @@ CorpusProgram loadCorpusProgram(const std::string& file) {
     }
     program.subject.name = file;
     program.subject.stage = file.ends_with(".vert")   ? ir::Stage::vertex
+                            : file.ends_with(".tesc") ? ir::Stage::control
+                            : file.ends_with(".tese") ? ir::Stage::evaluation
                             : file.ends_with(".geom") ? ir::Stage::geometry
                             : file.ends_with(".frag") ? ir::Stage::fragment
                                                       : ir::Stage::compute;

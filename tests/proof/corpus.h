@@ -1,6 +1,6 @@
 // The corpus: GLSL programs in tests/corpus, each with its surroundings in lines that begin with "//!":
 //
-//   //! invocations N                      all but compute; a multiple of 4 (64)
+//   //! invocations N                      all but compute; a multiple of 4 (64); .tesc: patches
 //   //! groups X Y Z                       compute (1 1 1)
 //   //! inputs KIND LOW HIGH               inputs at all other locations (ramp -1 1)
 //   //! input LOCATION KIND LOW HIGH
@@ -26,7 +26,7 @@ struct CorpusProgram {
     std::string source;
 };
 
-/// Names of the files, sorted; `extension` is ".vert", ".geom", ".frag" or ".comp".
+/// Names of the files, sorted; `extension` is ".vert", ".tesc", ".tese", ".geom", ".frag" or ".comp".
 std::vector<std::string> corpusFiles(const std::string& extension);
 
 /// Throws std::runtime_error with the compiler's messages or the line of a directive that is wrong.

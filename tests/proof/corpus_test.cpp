@@ -21,6 +21,8 @@ std::string testName(const testing::TestParamInfo<std::string>& info) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Vertex, Corpus, testing::ValuesIn(corpusFiles(".vert")), testName);
+INSTANTIATE_TEST_SUITE_P(Control, Corpus, testing::ValuesIn(corpusFiles(".tesc")), testName);
+INSTANTIATE_TEST_SUITE_P(Evaluation, Corpus, testing::ValuesIn(corpusFiles(".tese")), testName);
 INSTANTIATE_TEST_SUITE_P(Geometry, Corpus, testing::ValuesIn(corpusFiles(".geom")), testName);
 INSTANTIATE_TEST_SUITE_P(Fragment, Corpus, testing::ValuesIn(corpusFiles(".frag")), testName);
 INSTANTIATE_TEST_SUITE_P(Compute, Corpus, testing::ValuesIn(corpusFiles(".comp")), testName);

@@ -95,7 +95,8 @@ const ir::InterfaceSlot& outputAt(const ir::Program& program, size_t output) {
 }
 
 uint32_t invocationOfInput(const ir::Program& program, const ir::InterfaceSlot& slot, uint32_t invocation) {
-    return program.stage == ir::Stage::geometry ? invocation * 8 + slot.index : invocation;
+    if (program.stage == ir::Stage::geometry) return invocation * 8 + slot.index;
+    return slot.index != 0 ? invocation * 40 + slot.index : invocation;
 }
 
 Program lower(const Case& subject) {

@@ -37,7 +37,7 @@ struct Case {
     Words words;
     ir::Stage stage = ir::Stage::fragment;
     std::vector<SpecConstant> specialization;
-    uint32_t invocations = 64;                // all but compute: a multiple of 4
+    uint32_t invocations = 64;                // all but compute: a multiple of 4; control: of patches
     std::array<uint32_t, 3> groups{1, 1, 1};  // compute
     World world;
 };
@@ -54,7 +54,7 @@ std::vector<Shape> maskShapes(const Case& subject);
 /// What one run leaves behind.
 struct Ending {
     // By slot of the program, by invocation. Of a geometry program for every vertex that there may be, one vertex after
-    // the other, and the last is how many there are.
+    // the other, and the last is how many there are. Of a control program, the invocations are patches.
     std::vector<std::vector<uint32_t>> outputs;
     std::vector<std::vector<bool>> written;  // likewise; all true after a run by batches
     std::vector<bool> live;                  // has effects and was not discarded

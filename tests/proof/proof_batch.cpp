@@ -5,6 +5,7 @@
 
 #include "spirv_interp/ir/ops.h"
 #include "spirv_interp/ir/place_vertices.h"
+#include "spirv_interp/tessellation.h"
 #include "tests/proof/proof.h"
 
 namespace vernier::proof {
@@ -131,6 +132,43 @@ void takeVertices(const ir::Program& program, const BatchContext& context, uint3
     }
 }
 
+/// A control program: whole patches in a batch.
+void runPatches(const Case& subject, const Shape& shape, const BatchProgram& compiled, BatchContext& context,
+                Ending& ending) {
+    const ir::Program& program = compiled.source();
+    const uint32_t each = program.localSize[0], most = patchesPerBatch(compiled.lanes(), each);
+    const auto words = static_cast<uint32_t>(program.outputs.size());
+    if (most == 0) return;  // the test asks for fewer lanes than a patch has
+    for (uint32_t first = 0; first < subject.invocations; first += most) {
+        const uint32_t patches = std::min(most, subject.invocations - first), lanes = patches * each;
+        std::vector<uint32_t> exec(compiled.lanes()), store(compiled.lanes());
+        for (uint32_t lane = 0; lane < lanes; ++lane) {
+            exec[lane] = shape.exec[first + lane / each] ? ~0u : 0;
+            store[lane] = shape.store[first + lane / each] ? ~0u : 0;
+        }
+        for (uint32_t slot = 0; slot < program.inputs.size(); ++slot) {
+            auto* row = reinterpret_cast<uint32_t*>(context.input(slot));
+            const ir::InterfaceSlot& input = program.inputs[slot];
+            for (uint32_t lane = 0; row != nullptr && lane < lanes; ++lane) {
+                const uint32_t patch = lane / each;
+                row[lane] = input.builtin == ir::Builtin::stageOffset ? patch * words * 4
+                            : input.builtin == ir::Builtin::invocationId
+                                ? lane % each
+                                : subject.world.input(invocationOfInput(program, input, first + patch), input);
+            }
+        }
+        if (!context.run((lanes + 3) / 4 * 4, exec.data(), store.data())) {
+            ending.error = "batch: the back-edge budget is used up";
+            return;
+        }
+        for (uint32_t patch = 0; patch < patches; ++patch) {
+            ending.live[first + patch] = shape.store[first + patch];
+            for (uint32_t k = 0; k < words; ++k)
+                ending.outputs[k][first + patch] = context.stageMemory()[patch * words + k];
+        }
+    }
+}
+
 }  // namespace
 
 Ending runBatch(const Case& subject, const ir::Program& given, const Shape& shape, const BatchOptions& options) {
@@ -163,6 +201,10 @@ Ending runBatch(const Case& subject, const ir::Program& given, const Shape& shap
     ending.outputs.assign(outputCount(program), std::vector<uint32_t>(subject.invocations));
     ending.written.assign(outputCount(program), std::vector<bool>(subject.invocations, true));
     ending.live.assign(subject.invocations, false);
+    if (program.stage == ir::Stage::control) {
+        runPatches(subject, shape, **compiled, context, ending);
+        return ending;
+    }
     const uint32_t capacity = std::min((*compiled)->lanes(), vertices ? ir::kVertexLanes : ~0u);
     for (uint32_t first = 0; first < subject.invocations; first += capacity) {
         const uint32_t lanes = std::min(capacity, subject.invocations - first);

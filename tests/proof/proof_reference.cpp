@@ -100,6 +100,10 @@ constexpr std::pair<spv::BuiltIn, ir::Builtin> kBuiltins[] = {
     {spv::BuiltInSamplePosition, ir::Builtin::samplePosition},
     {spv::BuiltInPrimitiveId, ir::Builtin::primitiveId},
     {spv::BuiltInInvocationId, ir::Builtin::invocationId},
+    {spv::BuiltInPatchVertices, ir::Builtin::patchVertices},
+    {spv::BuiltInTessCoord, ir::Builtin::tessCoord},
+    {spv::BuiltInTessLevelOuter, ir::Builtin::tessLevelOuter},
+    {spv::BuiltInTessLevelInner, ir::Builtin::tessLevelInner},
     {spv::BuiltInFragDepth, ir::Builtin::fragDepth},
     {spv::BuiltInFragStencilRefEXT, ir::Builtin::fragStencilRef},
 };
@@ -160,6 +164,8 @@ class ReferenceRun final : public reference::Resources<Number> {
         for (uint32_t first = 0; first < subject_.invocations && ending_.error.empty(); first += 4) {
             if (subject_.stage == ir::Stage::fragment) {
                 runQuad(*interpreter, first);
+            } else if (subject_.stage == ir::Stage::control) {
+                for (first_ = first; first_ < first + 4; ++first_) runPatch(*interpreter);
             } else {
                 for (first_ = first; first_ < first + 4; ++first_) runOne(*interpreter);
             }
@@ -297,6 +303,18 @@ class ReferenceRun final : public reference::Resources<Number> {
         note(first_, *outcome);
     }
 
+    void runPatch(const reference::Interpreter<Number>& interpreter) {
+        if (!shape_.store[first_] || !ending_.error.empty()) return;
+        const auto outputs = interpreter.runPatch(inputsOf(first_), *this);
+        if (!outputs) {
+            ending_.error = "reference: " + outputs.error().message;
+            return;
+        }
+        ending_.live[first_] = true;
+        noteOutputs(first_, *outputs, 0, 0u);
+        for (uint32_t v = 0; v < outputs->vertices.size(); ++v) noteOutputs(first_, outputs->vertices[v], 0, v + 1);
+    }
+
     void runQuad(const reference::Interpreter<Number>& interpreter, uint32_t first) {
         first_ = first;
         std::array<reference::InterfaceValues<Number>, 4> inputs;
@@ -337,7 +355,8 @@ class ReferenceRun final : public reference::Resources<Number> {
         ending_.written[output][invocation] = true;
     }
 
-    /// The outputs of an invocation, or of one of its vertices, those of the stream: from `first` on.
+    /// The outputs of an invocation, or of one of its vertices, those of the stream, or of a patch, those of the
+    /// vertex: from `first` on.
     void noteOutputs(uint32_t invocation, const reference::InterfaceValues<Number>& outputs, size_t first,
                      std::optional<uint32_t> stream = {}) {
         for (size_t s = 0; s < interface_.outputs.size(); ++s) {
@@ -369,7 +388,9 @@ class ReferenceRun final : public reference::Resources<Number> {
     std::optional<reference::InterfaceVariable::Place> halfOfDouble(const ir::InterfaceSlot& slot) const {
         if (slot.builtin != ir::Builtin::user) return std::nullopt;
         for (const reference::InterfaceVariable& v : variables_) {
-            const uint32_t index = subject_.stage == ir::Stage::geometry ? 0 : slot.index;  // else a vertex stream
+            // Of these stages it is a vertex stream or a vertex.
+            const bool counts = subject_.stage != ir::Stage::geometry && subject_.stage != ir::Stage::control;
+            const uint32_t index = counts ? slot.index : 0;
             if (!v.output || v.isBuiltin || v.index != index || v.kind != reference::ScalarKind::float64) continue;
             for (uint32_t k = 0; k < v.scalars(); ++k) {
                 const auto at = v.placeOf(k);

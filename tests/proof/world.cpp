@@ -255,7 +255,12 @@ uint32_t World::input(uint32_t invocation, const ir::InterfaceSlot& slot) const 
         case ir::Builtin::samplePosition:
         case ir::Builtin::clipDistance:
         case ir::Builtin::cullDistance:
+        case ir::Builtin::tessCoord:
+        case ir::Builtin::tessLevelOuter:
+        case ir::Builtin::tessLevelInner:
             return number(fraction(invocation * 64 + slot.component + 7777));
+        case ir::Builtin::patchVertices:
+            return 4;
         case ir::Builtin::frontFacing:
             return invocation / 4 % 3 != 0 ? 1 : 0;
         case ir::Builtin::sampleMaskIn:
