@@ -66,6 +66,12 @@ FeedbackTest::Captured FeedbackTest::capture(const Feedback& feedback) {
     PipelineDesc desc;
     desc.extent = kExtent;
     desc.vertex = makeShader(VK_SHADER_STAGE_VERTEX_BIT, feedback.vertex);
+    if (!feedback.control.empty()) {
+        desc.control = makeShader(VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT, feedback.control);
+        desc.evaluation = makeShader(VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT, feedback.evaluation);
+        desc.patchControlPoints = feedback.patchControlPoints;
+        desc.domainLowerLeft = feedback.domainLowerLeft;
+    }
     if (!feedback.geometry.empty()) desc.geometry = makeShader(VK_SHADER_STAGE_GEOMETRY_BIT, feedback.geometry);
     if (!feedback.discard) desc.fragment = makeShader(VK_SHADER_STAGE_FRAGMENT_BIT, feedback.fragment);
     desc.change = [&](const PipelineStates& states) {

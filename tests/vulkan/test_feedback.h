@@ -23,6 +23,9 @@ class FeedbackTest : public DrawTest {
         bool lastProvokes = false, restart = false, discard = true;
         std::vector<uint16_t> indices;          // empty: not indexed
         std::string vertex;                     // GLSL
+        std::string control, evaluation;        // GLSL; empty: none
+        uint32_t patchControlPoints = 0;
+        bool domainLowerLeft = false;
         std::string geometry;                   // GLSL; empty: none
         uint32_t stream = 0;                    // that queries count
         std::string fragment;                   // GLSL; none where rasteriser discard is on

@@ -91,6 +91,8 @@ VkPipeline DrawTest::makePipeline(VkRenderPass pass, const PipelineDesc& desc, V
         info.pSpecializationInfo = special;
     };
     addStage(VK_SHADER_STAGE_VERTEX_BIT, desc.vertex, nullptr);
+    addStage(VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT, desc.control, nullptr);
+    addStage(VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT, desc.evaluation, nullptr);
     addStage(VK_SHADER_STAGE_GEOMETRY_BIT, desc.geometry, desc.specialization);
     addStage(VK_SHADER_STAGE_FRAGMENT_BIT, desc.fragment, desc.specialization);
 
@@ -130,6 +132,15 @@ VkPipeline DrawTest::makePipeline(VkRenderPass pass, const PipelineDesc& desc, V
     dynamic.pDynamicStates = desc.dynamic.data();
     if (desc.change) desc.change({input, assembly, viewports, raster, multisample, depth, colors, blends});
 
+    auto origin = make<VkPipelineTessellationDomainOriginStateCreateInfo>(
+        VK_STRUCTURE_TYPE_PIPELINE_TESSELLATION_DOMAIN_ORIGIN_STATE_CREATE_INFO);
+    origin.domainOrigin =
+        desc.domainLowerLeft ? VK_TESSELLATION_DOMAIN_ORIGIN_LOWER_LEFT : VK_TESSELLATION_DOMAIN_ORIGIN_UPPER_LEFT;
+    auto tessellation =
+        make<VkPipelineTessellationStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_TESSELLATION_STATE_CREATE_INFO);
+    tessellation.pNext = &origin;
+    tessellation.patchControlPoints = desc.patchControlPoints;
+
     auto info = make<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
     info.pNext = desc.next;
     info.flags = desc.flags;
@@ -137,6 +148,7 @@ VkPipeline DrawTest::makePipeline(VkRenderPass pass, const PipelineDesc& desc, V
     info.pStages = stages.data();
     info.pVertexInputState = &input;
     info.pInputAssemblyState = &assembly;
+    info.pTessellationState = desc.patchControlPoints != 0 ? &tessellation : nullptr;
     info.pViewportState = &viewports;
     info.pRasterizationState = &raster;
     info.pMultisampleState = &multisample;

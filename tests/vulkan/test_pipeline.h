@@ -34,6 +34,9 @@ class DrawTest : public VulkanTest {
     };
     struct PipelineDesc {
         VkShaderModule vertex = VK_NULL_HANDLE, geometry = VK_NULL_HANDLE, fragment = VK_NULL_HANDLE;
+        VkShaderModule control = VK_NULL_HANDLE, evaluation = VK_NULL_HANDLE;
+        uint32_t patchControlPoints = 0;  // 0: there is no tessellation state
+        bool domainLowerLeft = false;
         VkPipelineLayout layout = VK_NULL_HANDLE;  // VK_NULL_HANDLE: an empty one
         uint32_t subpass = 0;
         VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
