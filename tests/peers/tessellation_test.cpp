@@ -67,8 +67,8 @@ std::vector<Place> placesOf(const TessellationLab::Captured& captured) {
 }
 
 bool near(const Place& a, const Place& b) {
-    // lavapipe computes with 16 fractional bits.
-    constexpr float kTolerance = 4.0f / 65536;
+    // lavapipe multiplies the length of a segment, which has 16 fractional bits, by up to 63.
+    constexpr float kTolerance = 64.0f / 65536;
     return std::abs(a[0] - b[0]) < kTolerance && std::abs(a[1] - b[1]) < kTolerance;
 }
 
@@ -127,10 +127,10 @@ TEST_F(TessellationPeers, wholeLevels) {
     TessellationLab vernier(VERNIER_ICD_JSON), lavapipe(VERNIER_LAVAPIPE_JSON);
     if (HasFatalFailure()) return;
     std::mt19937 random(1);
-    for (uint32_t n = 0; n < 60; ++n) {
+    for (uint32_t n = 0; n < 45; ++n) {
         const uint32_t kind = random() % 3;  // spacing
         const auto level = [&] {
-            const uint32_t most = n < 50 ? 12 : 64;
+            const uint32_t most = n < 40 ? 12 : 64;
             const uint32_t value = 1 + random() % most;
             return static_cast<float>(kind == 0 ? value : kind == 1 ? (value + 1) / 2 * 2 : std::min(value | 1, 63u));
         };
@@ -155,7 +155,7 @@ TEST_F(TessellationPeers, countsOfFractionalLevels) {
     if (HasFatalFailure()) return;
     std::mt19937 random(2);
     std::uniform_real_distribution<float> level(0.2f, 20.0f);
-    for (uint32_t n = 0; n < 40; ++n) {
+    for (uint32_t n = 0; n < 30; ++n) {
         Modes modes;
         modes.domain = std::array{"triangles", "quads", "isolines"}[n % 3];
         modes.spacing = std::array{"equal_spacing", "fractional_even_spacing", "fractional_odd_spacing"}[random() % 3];
@@ -164,7 +164,7 @@ TEST_F(TessellationPeers, countsOfFractionalLevels) {
         Levels levels;
         for (float& one : levels.outer) one = level(random);
         for (float& one : levels.inner) one = level(random);
-        if (n % 10 == 9) levels.outer[random() % 2] = n % 20 == 9 ? 0.0f : -1.0f;
+        if (n % 5 == 4) levels.outer[random() % 2] = n % 10 == 4 ? 0.0f : -1.0f;
         compare(vernier, lavapipe, modes, levels, modes.spacing == "equal_spacing");
         if (HasFatalFailure()) return;
     }
