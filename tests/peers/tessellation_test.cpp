@@ -20,12 +20,75 @@ class TessellationLab : public FeedbackTest {
     using FeedbackTest::capture;
     using FeedbackTest::Captured;
     using FeedbackTest::Feedback;
+    std::vector<uint8_t> picture(const std::string& modes, float level);
 
   private:
     const char* driver() override { return manifest_; }
     void TestBody() override {}
     const char* manifest_;
 };
+
+constexpr VkExtent2D kPicture{256, 256};
+
+/// A bicubic patch, lit, as its levels leave it: its normals are those of its triangles.
+std::vector<uint8_t> TessellationLab::picture(const std::string& modes, float level) {
+    const TestImage color = makeImage(VK_FORMAT_R8G8B8A8_UNORM, kPicture,
+                                      VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
+    const TestImage depth = makeImage(VK_FORMAT_D32_SFLOAT, kPicture, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT);
+    const Pass pass = makePass(color, &depth);
+    PipelineDesc desc;
+    desc.extent = kPicture;
+    desc.depthTest = true;
+    desc.vertex = makeShader(VK_SHADER_STAGE_VERTEX_BIT, R"(#version 450
+void main() {
+    vec2 p = vec2(gl_VertexIndex & 3, gl_VertexIndex >> 2) / 1.5 - 1.0;
+    float bumps[16] = float[16](0.9, 0.1, 0.7, -0.4, -0.2, 1.8, -1.9, 0.3, 0.5, -2.1, 2.2, 0.0, -0.6, 0.4, -0.3, 0.8);
+    gl_Position = vec4(p.x, bumps[gl_VertexIndex], p.y, 1.0);
+})");
+    desc.control = makeShader(VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT, R"(#version 450
+layout(vertices = 16) out;
+void main() {
+    gl_out[gl_InvocationID].gl_Position = gl_in[gl_InvocationID].gl_Position;
+    gl_TessLevelOuter[gl_InvocationID & 3] = )" + std::to_string(level) +
+                                                                            R"(;
+    gl_TessLevelInner[gl_InvocationID & 1] = )" + std::to_string(level) + R"(;
+})");
+    desc.evaluation =
+        makeShader(VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT, "#version 450\nlayout(quads, " + modes + R"() in;
+layout(location = 0) out vec3 place;
+vec4 basis(float t) {
+    float s = 1.0 - t;
+    return vec4(s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t);
+}
+void main() {
+    vec4 u = basis(gl_TessCoord.x), v = basis(gl_TessCoord.y);
+    vec3 p = vec3(0);
+    for (int j = 0; j < 4; ++j)
+        for (int i = 0; i < 4; ++i) p += gl_in[4 * j + i].gl_Position.xyz * u[i] * v[j];
+    place = p;
+    vec3 turned = vec3(p.x * 0.8 - p.z * 0.6, p.y, p.x * 0.6 + p.z * 0.8);
+    gl_Position = vec4(turned.x * 0.9, -turned.y * 0.7 + turned.z * 0.5, turned.z * 0.4 + turned.y * 0.1 + 0.9, 1.8);
+})");
+    desc.fragment = makeShader(VK_SHADER_STAGE_FRAGMENT_BIT, R"(#version 450
+layout(location = 0) in vec3 place;
+layout(location = 0) out vec4 color;
+void main() {
+    vec3 n = normalize(cross(dFdx(place), dFdy(place)));
+    float light = 0.25 + 0.75 * abs(dot(n, normalize(vec3(0.4, 0.8, 0.3))));
+    vec2 lines = abs(fract(place.xz * 4.0) - 0.5);
+    color = vec4(vec3(0.9, 0.6, 0.3) * light * (min(lines.x, lines.y) < 0.06 ? 0.5 : 1.0), 1.0);
+})");
+    desc.patchControlPoints = 16;
+    desc.change = [](const PipelineStates& states) { states.assembly.topology = VK_PRIMITIVE_TOPOLOGY_PATCH_LIST; };
+    const VkPipeline pipeline = makePipeline(pass.pass, desc);
+    const VkCommandBuffer commands = begin();
+    beginPass(commands, pass);
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+    vkCmdDraw(commands, 16, 1, 0, 0);
+    vkCmdEndRenderPass(commands);
+    submit(commands);
+    return readImage(color, VK_IMAGE_ASPECT_COLOR_BIT, 4);
+}
 
 struct Levels {
     std::array<float, 4> outer{};
@@ -167,6 +230,30 @@ TEST_F(TessellationPeers, countsOfFractionalLevels) {
         if (n % 5 == 4) levels.outer[random() % 2] = n % 10 == 4 ? 0.0f : -1.0f;
         compare(vernier, lavapipe, modes, levels, modes.spacing == "equal_spacing");
         if (HasFatalFailure()) return;
+    }
+}
+
+/// Where two pictures differ by more than a little.
+size_t differences(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) {
+    size_t count = 0;
+    for (size_t n = 0; n + 3 < a.size(); n += 4) {
+        int most = 0;
+        for (size_t c = 0; c < 3; ++c) most = std::max(most, std::abs(int{a[n + c]} - int{b[n + c]}));
+        count += most > 24 ? 1 : 0;
+    }
+    return count;
+}
+
+TEST_F(TessellationPeers, pictures) {
+    TessellationLab vernier(VERNIER_ICD_JSON), lavapipe(VERNIER_LAVAPIPE_JSON);
+    if (HasFatalFailure()) return;
+    // Edges of triangles and of the patch differ, and where a diagonal was chosen the other way.
+    for (const char* modes : {"equal_spacing, ccw", "fractional_odd_spacing, cw"}) {
+        const auto ours = vernier.picture(modes, 33), theirs = lavapipe.picture(modes, 33);
+        ASSERT_EQ(ours.size(), theirs.size());
+        EXPECT_LT(differences(ours, theirs), ours.size() / 4 / 100) << modes;
+        // Another level gives another picture.
+        EXPECT_GT(differences(ours, vernier.picture(modes, 3)), ours.size() / 4 / 100);
     }
 }
 
