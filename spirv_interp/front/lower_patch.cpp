@@ -8,6 +8,9 @@ namespace vernier {
 
 namespace {
 
+/// Words of a patch: those of maxTessellationControlTotalOutputComponents, and room for built-in ones.
+constexpr uint32_t kMaxPatchWords = 8192;
+
 /// False: it is no mode of tessellation stages.
 bool readMode(const Instruction& mode, TessellationModes& modes) {
     switch (static_cast<spv::ExecutionMode>(mode[2])) {
@@ -110,6 +113,11 @@ void Lowering::endPatch() {
         throw LoweringError{unsupported("SPIR-V: entry point '" + program_.name +
                                         "': " + std::to_string(patchVertices_) + " output vertices; from 1 to " +
                                         std::to_string(kMaxPatchVertices) + " are supported")};
+    }
+    if (program_.outputs.size() > kMaxPatchWords) {
+        throw LoweringError{unsupported("SPIR-V: entry point '" + program_.name + "': outputs of " +
+                                        std::to_string(program_.outputs.size()) + " components in all; " +
+                                        std::to_string(kMaxPatchWords) + " are supported")};
     }
     program_.localSize = {patchVertices_, 1, 1};
     if (patchResource_ == ir::kNoIndex) return;

@@ -53,7 +53,7 @@ class Tessellation : public ApiTest {
         EXPECT_EQ(vnCreateProgram(device_, &desc, &program), VN_SUCCESS) << lastError();
         return program;
     }
-    std::vector<uint32_t> draw(VnProgram program, float level, float radius, uint32_t instances = 1) {
+    VnImage record(VnProgram program, float level, float radius, uint32_t instances = 1) {
         const VnImage target = image(VK_FORMAT_R8G8B8A8_UNORM, kSide, kSide);
         const float color[4] = {0, 1, 0, 1};
         const float push[2] = {level, radius};
@@ -66,7 +66,10 @@ class Tessellation : public ApiTest {
         EXPECT_EQ(vnSetPatchVertices(context_, 4), VN_SUCCESS);
         EXPECT_EQ(vnDraw(context_, 4, instances, 0, 0), VN_SUCCESS) << lastError();
         EXPECT_EQ(vnEndPass(context_), VN_SUCCESS) << lastError();
-        return read(target, kSide, kSide);
+        return target;
+    }
+    std::vector<uint32_t> draw(VnProgram program, float level, float radius) {
+        return read(record(program, level, radius), kSide, kSide);
     }
     static double areaOf(const std::vector<uint32_t>& pixels) {
         double count = 0;
@@ -85,18 +88,18 @@ TEST_F(Tessellation, ASquareBecomesADisc) {
     EXPECT_EQ(areaOf(draw(program, 0, 28.0f / 32)), 0);
 }
 
-TEST_F(Tessellation, CountsAndExplanations) {
+TEST_F(Tessellation, CountsOfPatchesAndPoints) {
     const VnProgram program = made(disc());
     VnStatistics statistics{};
     EXPECT_EQ(vnResetStatistics(context_), VN_SUCCESS);
-    draw(program, 5, 0.5f, 3);
+    record(program, 5, 0.5f, 3);
     EXPECT_EQ(vnGetStatistics(context_, &statistics), VN_SUCCESS);
     EXPECT_EQ(statistics.controlPatches, 3u);
     EXPECT_EQ(statistics.evaluationInvocations, 3u * 36);
     VnQuery query{};
     ASSERT_EQ(vnCreateQuery(device_, VN_QUERY_STATISTICS, &query), VN_SUCCESS);
     ASSERT_EQ(vnBeginQuery(context_, query), VN_SUCCESS);
-    draw(program, 4, 0.5f, 2);
+    record(program, 4, 0.5f, 2);
     ASSERT_EQ(vnEndQuery(context_, query), VN_SUCCESS);
     VnQueryResult result{};
     ASSERT_EQ(vnGetQueryResult(context_, query, &result), VN_SUCCESS);

@@ -10,7 +10,7 @@ void exercise(std::span<const uint32_t> words) {
     readModule(words);
     (void)reference::Module::parse(words);
     const bool valid = checkModule(words).ok();
-    for (const ir::Stage stage : {ir::Stage::vertex, ir::Stage::fragment, ir::Stage::compute}) {
+    for (const ir::Stage stage : kStages) {
         Case subject;
         subject.words.assign(words.begin(), words.end());
         subject.stage = stage;

@@ -9,6 +9,9 @@
 
 namespace vernier::proof {
 
+inline constexpr ir::Stage kStages[] = {ir::Stage::vertex,   ir::Stage::control,  ir::Stage::evaluation,
+                                        ir::Stage::geometry, ir::Stage::fragment, ir::Stage::compute};
+
 /// Parses, validates, lowers, compiles and runs whatever the words hold for every stage; what is not valid is lowered
 /// all the same. Returns normally whatever they hold; anything else is a finding. Thread-safe.
 void exercise(std::span<const uint32_t> words);

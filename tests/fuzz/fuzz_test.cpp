@@ -48,7 +48,7 @@ TEST(Fuzz, InvalidModulesAreRefusedOrLowered) {
         for (int round = 0; round < 40; ++round) {
             Words changed = words;
             for (int n = 0; n < 3; ++n) mutateModule(changed, random);
-            for (const ir::Stage stage : {ir::Stage::vertex, ir::Stage::fragment, ir::Stage::compute}) {
+            for (const ir::Stage stage : kStages) {
                 const Result<ir::Program> program = lowerUnvalidated(changed, stage);
                 (program.ok() ? lowered : refused) += 1;
                 EXPECT_TRUE(program.ok() || !program.error().message.empty());
