@@ -139,7 +139,7 @@ TEST_F(Tessellation, ValuesOfVerticesAndOfThePatchArrive) {
 TEST_F(Tessellation, PrimitiveIdsAreThoseOfPatches) {
     std::vector<Vertex> vertices;
     for (int n = 0; n < 8; ++n)
-        for (const auto& [dx, dy] : {std::pair{0, 0}, {8, 0}, {0, 90}})
+        for (const auto& [dx, dy] : {std::pair(0, 0), std::pair(8, 0), std::pair(0, 90)})
             vertices.push_back(corner(n * 8 + dx, dy, 3, 3));
     const auto surface = draw({vertices});
     for (uint32_t n = 0; n < 8; ++n) EXPECT_NEAR(surface->color(n * 8 + 1, 1).float32[1], n, 1e-4);
