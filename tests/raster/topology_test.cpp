@@ -227,7 +227,7 @@ TEST_F(Topology, RefusedStates) {
         EXPECT_EQ(result.error().code, code);
         EXPECT_NE(result.error().message.find(word), std::string::npos) << result.error().message;
     };
-    refused([](GraphicsState& s) { s.topology = VK_PRIMITIVE_TOPOLOGY_PATCH_LIST; }, ErrorCode::unsupported,
+    refused([](GraphicsState& s) { s.topology = VK_PRIMITIVE_TOPOLOGY_PATCH_LIST; }, ErrorCode::invalidArgument,
             "topology");
     refused([](GraphicsState& s) { s.samples = 32; }, ErrorCode::unsupported, "32 samples");
     refused([](GraphicsState& s) { s.colorFormats[0] = VK_FORMAT_D16_UNORM; }, ErrorCode::unsupported, "D16_UNORM");

@@ -147,9 +147,14 @@ uint32_t atomicResult(ir::AtomicOp op, uint32_t old, uint32_t value, uint32_t co
 
 Words compileGlsl(ir::Stage stage, std::string_view source, bool debug, VnGlslTarget target) {
     VnGlslDesc desc{};
-    desc.stage = stage == ir::Stage::vertex     ? VK_SHADER_STAGE_VERTEX_BIT
-                 : stage == ir::Stage::fragment ? VK_SHADER_STAGE_FRAGMENT_BIT
-                                                : VK_SHADER_STAGE_COMPUTE_BIT;
+    // In the order of ir::Stage.
+    constexpr VkShaderStageFlagBits kStages[] = {VK_SHADER_STAGE_VERTEX_BIT,
+                                                 VK_SHADER_STAGE_FRAGMENT_BIT,
+                                                 VK_SHADER_STAGE_COMPUTE_BIT,
+                                                 VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT,
+                                                 VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT,
+                                                 VK_SHADER_STAGE_GEOMETRY_BIT};
+    desc.stage = kStages[static_cast<size_t>(stage)];
     desc.source = source.data();
     desc.sourceLength = source.size();
     desc.debugInfo = debug ? 1 : 0;
