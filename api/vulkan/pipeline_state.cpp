@@ -91,9 +91,9 @@ Status readAssembly(const VkPipelineInputAssemblyStateCreateInfo* assembly, Pipe
 Status readTessellation(const VkGraphicsPipelineCreateInfo& info, PipelineState& result) {
     constexpr VkShaderStageFlags kStages =
         VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT | VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT;
-    const bool tessellates = std::any_of(
-        info.pStages, info.pStages + info.stageCount,
-        [](const VkPipelineShaderStageCreateInfo& stage) { return (stage.stage & kStages) != 0; });
+    const bool tessellates =
+        std::any_of(info.pStages, info.pStages + info.stageCount,
+                    [](const VkPipelineShaderStageCreateInfo& stage) { return (stage.stage & kStages) != 0; });
     if (!tessellates) return {};
     if (info.pTessellationState == nullptr) {
         if (areDynamic(result, {PlanState::PATCH_CONTROL_POINTS_EXT, PlanState::TESSELLATION_DOMAIN_ORIGIN_EXT}))
@@ -101,8 +101,7 @@ Status readTessellation(const VkGraphicsPipelineCreateInfo& info, PipelineState&
         return invalidArgument("pTessellationState must be given");
     }
     result.state.patchControlPoints = info.pTessellationState->patchControlPoints;
-    const auto* origin =
-        findInChain<VkPipelineTessellationDomainOriginStateCreateInfo>(info.pTessellationState->pNext);
+    const auto* origin = findInChain<VkPipelineTessellationDomainOriginStateCreateInfo>(info.pTessellationState->pNext);
     result.state.domainLowerLeft =
         origin != nullptr && origin->domainOrigin == VK_TESSELLATION_DOMAIN_ORIGIN_LOWER_LEFT;
     return {};

@@ -164,7 +164,7 @@ TEST(Tessellator, TrianglesCoverTheDomainOnce) {
     for (const Spacing spacing : kSpacings) {
         for (const Order order : {Order::clockwise, Order::counterClockwise}) {
             Tessellator tessellator({Domain::triangles, spacing, order, false});
-            for (uint32_t n = 0; n < 400; ++n) {
+            for (uint32_t n = 0; n < 150; ++n) {
                 const TessellationLevels levels = randomLevels(random);
                 expectTiling(tessellator.subdivide(levels), Domain::triangles, order, trianglePoints(levels, spacing));
                 if (HasFatalFailure()) return;
@@ -178,7 +178,7 @@ TEST(Tessellator, QuadsCoverTheDomainOnce) {
     for (const Spacing spacing : kSpacings) {
         for (const Order order : {Order::clockwise, Order::counterClockwise}) {
             Tessellator tessellator({Domain::quads, spacing, order, false});
-            for (uint32_t n = 0; n < 400; ++n) {
+            for (uint32_t n = 0; n < 150; ++n) {
                 const TessellationLevels levels = randomLevels(random);
                 expectTiling(tessellator.subdivide(levels), Domain::quads, order, quadPoints(levels, spacing));
                 if (HasFatalFailure()) return;
@@ -190,7 +190,7 @@ TEST(Tessellator, QuadsCoverTheDomainOnce) {
 TEST(Tessellator, EveryPairOfWholeLevels) {
     for (const Domain domain : {Domain::triangles, Domain::quads}) {
         Tessellator tessellator({domain, Spacing::equal, Order::counterClockwise, false});
-        for (uint32_t outer = 1; outer <= 64; outer += outer < 8 ? 1 : 7) {
+        for (uint32_t outer = 1; outer <= 64; outer += outer < 4 ? 1 : 12) {
             for (uint32_t inner = 1; inner <= 64; ++inner) {
                 const auto a = static_cast<float>(outer), b = static_cast<float>(inner);
                 const TessellationLevels levels{{a, a, a, a}, {b, b}};

@@ -21,9 +21,9 @@ class FeedbackTest : public DrawTest {
     struct Feedback {
         VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
         bool lastProvokes = false, restart = false, discard = true;
-        std::vector<uint16_t> indices;          // empty: not indexed
-        std::string vertex;                     // GLSL
-        std::string control, evaluation;        // GLSL; empty: none
+        std::vector<uint16_t> indices;    // empty: not indexed
+        std::string vertex;               // GLSL
+        std::string control, evaluation;  // GLSL; empty: none
         uint32_t patchControlPoints = 0;
         bool domainLowerLeft = false;
         std::string geometry;                   // GLSL; empty: none
