@@ -73,7 +73,9 @@ InterfaceValues<Number> Machine<Number>::outputs() const {
 /// The outputs keep their values, where the specification leaves them undefined.
 template <class Number>
 void Machine<Number>::emitVertex(uint32_t stream) {
-    if (vertices_.size() >= module_.entryPoints[program_.entryPoint].modes.outputVertices) return;
+    const EntryPoint& entry = module_.entryPoints[program_.entryPoint];
+    if (entry.model != spv::ExecutionModelGeometry) fail("OpEmitVertex outside a geometry shader");
+    if (vertices_.size() >= entry.modes.outputVertices) return;
     charge(1);
     vertices_.push_back({outputs(), stream, std::exchange(startsStrip_, false)});
 }
