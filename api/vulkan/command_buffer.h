@@ -94,4 +94,18 @@ std::span<const T> copyArray(CommandBuffer& buffer, uint32_t count, const T* ele
     return buffer.stream.copy(std::span<const T>(elements, count));
 }
 
+/// Ranges of buffers in the buffer's arena; none where there are no buffers. No offsets: from the begin; no sizes: to
+/// the end.
+inline std::span<const command::BufferRange> copyRanges(CommandBuffer& buffer, uint32_t count, const VkBuffer* buffers,
+                                                        const VkDeviceSize* offsets,
+                                                        const VkDeviceSize* sizes = nullptr) {
+    if (buffers == nullptr) return {};
+    const std::span ranges = buffer.stream.arena().array<command::BufferRange>(count);
+    for (uint32_t i = 0; i < count; ++i) {
+        ranges[i] = {object(buffers[i]), offsets != nullptr ? offsets[i] : 0,
+                     sizes != nullptr ? sizes[i] : VK_WHOLE_SIZE};
+    }
+    return ranges;
+}
+
 }  // namespace vernier::vulkan

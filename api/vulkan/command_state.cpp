@@ -130,9 +130,8 @@ VKAPI_ATTR void VKAPI_CALL CmdBindVertexBuffers(VkCommandBuffer commandBuffer, u
                                                 uint32_t bindingCount, const VkBuffer* pBuffers,
                                                 const VkDeviceSize* pOffsets) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
-        const std::span ranges = buffer.stream.arena().array<command::BufferRange>(bindingCount);
-        for (uint32_t i = 0; i < bindingCount; ++i) ranges[i] = {object(pBuffers[i]), pOffsets[i]};
-        buffer.stream.record(command::BindVertexBuffers{firstBinding, ranges});
+        buffer.stream.record(
+            command::BindVertexBuffers{firstBinding, copyRanges(buffer, bindingCount, pBuffers, pOffsets)});
     });
 }
 

@@ -11,14 +11,6 @@ bool inRange(uint32_t first, uint32_t count) {
     return first <= kCaptureBuffers && count <= kCaptureBuffers - first;
 }
 
-std::span<const command::BufferRange> copyRanges(CommandBuffer& buffer, uint32_t count, const VkBuffer* buffers,
-                                                 const VkDeviceSize* offsets) {
-    if (buffers == nullptr) return {};
-    const std::span ranges = buffer.stream.arena().array<command::BufferRange>(count);
-    for (uint32_t i = 0; i < count; ++i) ranges[i] = {object(buffers[i]), offsets != nullptr ? offsets[i] : 0};
-    return ranges;
-}
-
 /// Records a begin or an end with its counters.
 template <class Command>
 void recordCounters(VkCommandBuffer handle, const char* name, uint32_t first, uint32_t count, const VkBuffer* buffers,
@@ -39,10 +31,8 @@ VKAPI_ATTR void VKAPI_CALL CmdBindTransformFeedbackBuffersEXT(VkCommandBuffer co
         if (!inRange(firstBinding, bindingCount)) {
             return buffer.fail("vkCmdBindTransformFeedbackBuffersEXT", "there are no such bindings");
         }
-        const std::span sizes = buffer.stream.arena().array<VkDeviceSize>(bindingCount);
-        for (uint32_t i = 0; i < bindingCount; ++i) sizes[i] = pSizes != nullptr ? pSizes[i] : VK_WHOLE_SIZE;
         buffer.stream.record(command::BindTransformFeedbackBuffers{
-            firstBinding, copyRanges(buffer, bindingCount, pBuffers, pOffsets), sizes});
+            firstBinding, copyRanges(buffer, bindingCount, pBuffers, pOffsets, pSizes)});
     });
 }
 

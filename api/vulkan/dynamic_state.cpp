@@ -241,11 +241,8 @@ VKAPI_ATTR void VKAPI_CALL CmdBindVertexBuffers2(VkCommandBuffer commandBuffer, 
                                                  const VkDeviceSize* pOffsets, const VkDeviceSize* pSizes,
                                                  const VkDeviceSize* pStrides) {
     recording(commandBuffer, [&](CommandBuffer& buffer) {
-        const std::span ranges = buffer.stream.arena().array<command::BufferRange>(bindingCount);
-        for (uint32_t i = 0; i < bindingCount; ++i) {
-            ranges[i] = {object(pBuffers[i]), pOffsets[i], pSizes != nullptr ? pSizes[i] : VK_WHOLE_SIZE};
-        }
-        buffer.stream.record(command::BindVertexBuffers{firstBinding, ranges});
+        buffer.stream.record(
+            command::BindVertexBuffers{firstBinding, copyRanges(buffer, bindingCount, pBuffers, pOffsets, pSizes)});
         if (pStrides == nullptr) return;
         SetState& set = buffer.changePlanState();
         for (uint32_t i = 0; i < bindingCount && firstBinding + i < kMaxVertexBindings; ++i) {

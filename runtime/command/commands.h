@@ -83,7 +83,7 @@ struct PushConstants {
 struct BufferRange {
     const Buffer* buffer = nullptr;  // nullptr: unbound, reads give 0
     VkDeviceSize offset = 0;
-    VkDeviceSize size = VK_WHOLE_SIZE;  // of a vertex buffer: what lies behind reads as 0
+    VkDeviceSize size = VK_WHOLE_SIZE;  // what lies behind is neither read (vertices: it reads as 0) nor written
 };
 struct BindVertexBuffers {
     uint32_t first = 0;
@@ -152,7 +152,6 @@ struct DrawIndirect {
 struct BindTransformFeedbackBuffers {
     uint32_t first = 0;
     std::span<const BufferRange> ranges;
-    std::span<const VkDeviceSize> sizes;  // one per range; VK_WHOLE_SIZE: to the end of the buffer
 };
 /// Draws capture from here on, unless the pass is multiview. `counters` belong to the buffers from `first` on: each
 /// holds the bytes of the bound range after which its buffer goes on (32 bits); others begin with the range.

@@ -267,9 +267,9 @@ void Executor::addStreams() {
 }
 
 /// Waits for what is still to write memory that the walk reads.
-void Executor::awaitWrites(std::initializer_list<VertexStream> streams) {
+void Executor::awaitWrites(const VertexStream& stream) {
     AccessSet& reads = scheduler_.nextAccesses();
-    for (const VertexStream& stream : streams) reads.read(stream.data, stream.size);
+    reads.read(stream.data, stream.size);
     reads.finish();
     scheduler_.waitFor(scheduler_.conflicting(reads));
 }
@@ -281,7 +281,7 @@ void Executor::draw(const command::Draw& command) {
     addStreams();
     if (command.indexed && pipeline_->state().primitiveRestart && !indicesReady_) {
         // Where primitives are cut is found out now.
-        awaitWrites({VertexStream{indices_.data, indices_.size}});
+        awaitWrites({indices_.data, indices_.size});
         indicesReady_ = true;
     }
     if (!dynamicSnapshot_) dynamicSnapshot_ = pass_->arena.create(dynamic_);
@@ -315,8 +315,8 @@ void Executor::run(const command::Draw& command) {
 }
 
 void Executor::run(const command::BeginConditionalRendering& command) {
-    awaitWrites({streamOf(command.predicate)});
-    const bool passes = argumentsAt<uint32_t>(command.predicate, 0).value_or(0) != 0;
+    awaitWrites(argumentBytes<uint32_t>(command.predicate));
+    const bool passes = argumentsAt<uint32_t>(command.predicate).value_or(0) != 0;
     leavesOut_ = passes == command.inverted;
 }
 
@@ -326,12 +326,13 @@ void Executor::run(const command::EndConditionalRendering&) {
 
 void Executor::run(const command::DrawIndirect& command) {
     if (leavesOut_) return;
-    awaitWrites({streamOf(command.arguments), streamOf(command.countBuffer)});
     uint32_t count = command.drawCount;
     if (command.countBuffer.buffer) {
-        const auto available = argumentsAt<uint32_t>(command.countBuffer, 0);
-        count = available ? std::min(count, *available) : 0;
+        awaitWrites(argumentBytes<uint32_t>(command.countBuffer));
+        count = std::min(count, argumentsAt<uint32_t>(command.countBuffer).value_or(0));
     }
+    awaitWrites(command.indexed ? argumentBytes<VkDrawIndexedIndirectCommand>(command.arguments, count, command.stride)
+                                : argumentBytes<VkDrawIndirectCommand>(command.arguments, count, command.stride));
     for (uint32_t i = 0; i < count; ++i) {
         const VkDeviceSize offset = VkDeviceSize{i} * command.stride;
         if (command.indexed) {
@@ -367,7 +368,7 @@ void Executor::dispatch(const DispatchWork& work) {
     addAccesses(computePipeline_->ir(), bound, accesses);
     if (computeAddresses_) addAddressAccesses(computePipeline_->ir(), device_.addresses(), accesses);
     if (work.arguments.buffer != nullptr) {
-        const VertexStream stream = streamOf(work.arguments);
+        const VertexStream stream = argumentBytes<VkDispatchIndirectCommand>(work.arguments);
         accesses.read(stream.data, stream.size);
     }
     DispatchWork& kept = *dispatchArena_.create(work);
@@ -386,7 +387,7 @@ PassStatistics Executor::runDispatch(const DispatchWork& work) {
     PassStatistics counted;
     WorkGroupContext::Grid grid = work.grid;
     if (work.arguments.buffer != nullptr) {
-        const auto a = argumentsAt<VkDispatchIndirectCommand>(work.arguments, 0);
+        const auto a = argumentsAt<VkDispatchIndirectCommand>(work.arguments);
         if (!a) return counted;
         grid.count = {a->x, a->y, a->z};
         if (!checkGroupCounts(grid.count)) return counted;

@@ -7,7 +7,6 @@
 #include <array>
 #include <atomic>
 #include <bit>
-#include <initializer_list>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -73,7 +72,7 @@ class Executor {
     void addStreams();
 
     void draw(const command::Draw& command);
-    void awaitWrites(std::initializer_list<VertexStream> streams);
+    void awaitWrites(const VertexStream& stream);
     const CaptureTarget* placeCapture(const DrawCall& call);
     const CaptureTarget* placeRunning(const CapturePlan& plan);
     void checkBindings(const ir::Program& program, const BoundDescriptors& bound);

@@ -1,5 +1,4 @@
 // Transform feedback: what draws capture, counters, and draws of what was captured.
-#include <algorithm>
 #include <cstring>
 
 #include "runtime/command/buffer_range.h"
@@ -12,7 +11,7 @@ void Executor::run(const command::BindTransformFeedbackBuffers& command) {
         const command::BufferRange& range = command.ranges[i];
         const VertexStream stream = streamOf(range);
         std::byte* data = stream.data == nullptr ? nullptr : range.buffer->data() + range.offset;
-        feedback_.bind(command.first + static_cast<uint32_t>(i), data, std::min(stream.size, command.sizes[i]));
+        feedback_.bind(command.first + static_cast<uint32_t>(i), data, stream.size);
     }
 }
 
@@ -21,8 +20,8 @@ void Executor::run(const command::BeginTransformFeedback& command) {
     for (uint32_t i = 0; i < command.counters.size() && command.first + i < kCaptureBuffers; ++i) {
         const command::BufferRange& counter = command.counters[i];
         if (counter.buffer == nullptr) continue;
-        awaitWrites({streamOf(counter)});
-        feedback_.resume(command.first + i, argumentsAt<uint32_t>(counter, 0).value_or(0));
+        awaitWrites(argumentBytes<uint32_t>(counter));
+        feedback_.resume(command.first + i, argumentsAt<uint32_t>(counter).value_or(0));
     }
 }
 
@@ -32,7 +31,7 @@ void Executor::run(const command::EndTransformFeedback& command) {
     feedback_.end();
     for (uint32_t i = 0; i < command.counters.size() && command.first + i < kCaptureBuffers; ++i) {
         const command::BufferRange& counter = command.counters[i];
-        if (!argumentsAt<uint32_t>(counter, 0)) continue;
+        if (argumentBytes<uint32_t>(counter).size < sizeof(uint32_t)) continue;
         std::byte* to = counter.buffer->data() + counter.offset;
         const auto value = static_cast<uint32_t>(feedback_.offset(command.first + i));
         scheduler_.nextAccesses().write(to, sizeof value);
@@ -41,8 +40,8 @@ void Executor::run(const command::EndTransformFeedback& command) {
 }
 
 void Executor::run(const command::DrawIndirectByteCount& command) {
-    awaitWrites({streamOf(command.counter)});
-    const auto counter = argumentsAt<uint32_t>(command.counter, 0);
+    awaitWrites(argumentBytes<uint32_t>(command.counter));
+    const auto counter = argumentsAt<uint32_t>(command.counter);
     if (!counter || *counter < command.counterOffset || command.stride == 0) return;
     draw({false, (*counter - command.counterOffset) / command.stride, command.instances, 0, command.firstInstance, 0,
           0});
