@@ -56,7 +56,10 @@ void put(std::byte* target, uint64_t value, bool wide) {
 }  // namespace
 
 QueryPool::QueryPool(VkQueryType type, uint32_t count, VkQueryPipelineStatisticFlags statistics)
-    : type_(type), statistics_(statistics), valuesPerQuery_(valuesOf(type, statistics)), queries_(count) {}
+    : type_(type),
+      statistics_(statistics & ((1u << kStatistics) - 1)),
+      valuesPerQuery_(valuesOf(type, statistics_)),
+      queries_(count) {}
 
 void QueryPool::reset(uint32_t first, uint32_t count) {
     const std::lock_guard lock(mutex_);
@@ -84,7 +87,7 @@ void QueryPool::write(uint32_t query, const PassStatistics& difference, uint32_t
     }
     size_t next = 0;
     for (VkQueryPipelineStatisticFlags left = statistics_; left != 0; left &= left - 1)
-        if (next < target.values.size()) target.values[next++] = statisticOf(left & -left, difference);
+        target.values[next++] = statisticOf(left & -left, difference);
 }
 
 void QueryPool::writeTimestamp(uint32_t query, uint64_t nanoseconds) {

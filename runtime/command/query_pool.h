@@ -37,9 +37,11 @@ class QueryPool {
                      VkQueryResultFlags flags) const;
 
   private:
+    /// Of Vulkan 1.0; other bits of a pool's statistics do not count.
+    static constexpr uint32_t kStatistics = 11;
     struct Query {
         bool available = false;
-        std::array<uint64_t, 11> values{};
+        std::array<uint64_t, kStatistics> values{};
     };
     VkQueryType type_;
     VkQueryPipelineStatisticFlags statistics_;

@@ -157,5 +157,26 @@ TEST_F(SyncTest, timestampsRiseAndResultsCanBeCopied) {
     EXPECT_EQ(copied[3], 1u);
 }
 
+TEST_F(SyncTest, statisticsThatDoNotExistAreNotCounted) {
+    VERNIER_SKIP_WHEN_VALIDATED();
+    auto info = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
+    info.queryType = VK_QUERY_TYPE_PIPELINE_STATISTICS;
+    info.queryCount = 1;
+    info.pipelineStatistics = ~0u;
+    VkQueryPool queries = VK_NULL_HANDLE;
+    ASSERT_EQ(vkCreateQueryPool(device, &info, nullptr, &queries), VK_SUCCESS);
+    defer([this, queries] { vkDestroyQueryPool(device, queries, nullptr); });
+    const VkCommandBuffer commands = begin();
+    vkCmdResetQueryPool(commands, queries, 0, 1);
+    vkCmdBeginQuery(commands, queries, 0, 0);
+    vkCmdEndQuery(commands, queries, 0);
+    submit(commands);
+    constexpr uint64_t kUntouched = 0xEEEEEEEEEEEEEEEE;
+    std::vector<uint64_t> values(32, kUntouched);
+    EXPECT_EQ(vkGetQueryPoolResults(device, queries, 0, 1, values.size() * 8, values.data(), 0, VK_QUERY_RESULT_64_BIT),
+              VK_SUCCESS);
+    for (size_t n = 0; n < values.size(); ++n) EXPECT_EQ(values[n], n < 11 ? 0 : kUntouched) << n;
+}
+
 }  // namespace
 }  // namespace vernier::test
