@@ -76,12 +76,12 @@ VKAPI_ATTR VkResult VKAPI_CALL MapMemory(VkDevice device, VkDeviceMemory memory,
                                          VkMemoryMapFlags, void** ppData) {
     return guarded([&] {
         const Memory& mapped = *object(memory)->memory;
-        if (std::exchange(object(memory)->mapped, true) && object(device)->validates()) {
-            (void)object(device)->report("vkMapMemory", VK_SUCCESS, "the memory is mapped already");
-        }
         const bool whole = size == VK_WHOLE_SIZE;
         if (offset > mapped.size() || (!whole && size > mapped.size() - offset)) {
             return object(device)->report("vkMapMemory", VK_ERROR_MEMORY_MAP_FAILED, "the range is outside the memory");
+        }
+        if (std::exchange(object(memory)->mapped, true) && object(device)->validates()) {
+            (void)object(device)->report("vkMapMemory", VK_SUCCESS, "the memory is mapped already");
         }
         *ppData = mapped.data() + offset;
         return VK_SUCCESS;

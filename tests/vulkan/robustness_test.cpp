@@ -247,6 +247,11 @@ TEST_F(ValidateTest, harmlessMisuseIsTold) {
     EXPECT_EQ(vkMapMemory(device, buffer.memory, 0, VK_WHOLE_SIZE, 0, &again), VK_SUCCESS);
     EXPECT_TRUE(told("mapped already"));
     vkUnmapMemory(device, buffer.memory);
+    messages.clear();
+    EXPECT_EQ(vkMapMemory(device, buffer.memory, 4096, VK_WHOLE_SIZE, 0, &again), VK_ERROR_MEMORY_MAP_FAILED);
+    EXPECT_EQ(vkMapMemory(device, buffer.memory, 0, VK_WHOLE_SIZE, 0, &again), VK_SUCCESS);
+    EXPECT_FALSE(told("mapped already")) << "the first mapping failed";
+    vkUnmapMemory(device, buffer.memory);
     vkUnmapMemory(device, buffer.memory);
     EXPECT_TRUE(told("not mapped"));
     auto info = make<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
