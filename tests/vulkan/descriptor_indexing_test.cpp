@@ -385,5 +385,43 @@ void main() {
     for (uint32_t n = 0; n < 64; ++n) EXPECT_EQ(values[n], static_cast<float>(2 * (n % 4) + 1)) << n;
 }
 
+// As many descriptors in a set as may be updated after it is bound; all but two of them are never written.
+TEST_F(DescriptorIndexingTest, updatesAfterBindingByTheMillion) {
+    auto limits = make<VkPhysicalDeviceDescriptorIndexingProperties>(
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DESCRIPTOR_INDEXING_PROPERTIES);
+    auto all = make<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &limits);
+    vkGetPhysicalDeviceProperties2(physicalDevice, &all);
+    const uint32_t count = limits.maxPerStageUpdateAfterBindResources;
+    for (const uint32_t other :
+         {limits.maxPerStageDescriptorUpdateAfterBindSamplers,
+          limits.maxPerStageDescriptorUpdateAfterBindUniformBuffers,
+          limits.maxPerStageDescriptorUpdateAfterBindStorageBuffers,
+          limits.maxPerStageDescriptorUpdateAfterBindSampledImages,
+          limits.maxPerStageDescriptorUpdateAfterBindStorageImages, limits.maxDescriptorSetUpdateAfterBindSamplers,
+          limits.maxDescriptorSetUpdateAfterBindUniformBuffers, limits.maxDescriptorSetUpdateAfterBindStorageBuffers,
+          limits.maxDescriptorSetUpdateAfterBindSampledImages, limits.maxDescriptorSetUpdateAfterBindStorageImages}) {
+        ASSERT_EQ(other, count);
+    }
+    ASSERT_GE(limits.maxUpdateAfterBindDescriptorsInAllPools, count);
+    const VkDescriptorSetLayout layout =
+        makeSetLayout({{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, count,
+                        VK_DESCRIPTOR_BINDING_UPDATE_AFTER_BIND_BIT | VK_DESCRIPTOR_BINDING_PARTIALLY_BOUND_BIT}},
+                      VK_DESCRIPTOR_SET_LAYOUT_CREATE_UPDATE_AFTER_BIND_POOL_BIT);
+    const VkDescriptorSet set = allocate(makePool({{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, count}}), layout);
+    const Compute compute = makePipelineOf(R"(#version 450
+#extension GL_EXT_nonuniform_qualifier : require
+layout(set = 0, binding = 0) buffer Words { uint word; } words[];
+void main() { words[words[0].word].word = 7u; })",
+                                           layout, set);
+    const TestBuffer first = makeStorage(4), last = makeStorage(4);
+    words(first)[0] = count - 1;
+    const VkCommandBuffer commands = begin();
+    dispatch(commands, compute, 1);
+    writeBuffer(set, 0, 0, first);
+    writeBuffer(set, 0, count - 1, last);
+    submit(commands);
+    EXPECT_EQ(words(last)[0], 7u);
+}
+
 }  // namespace
 }  // namespace vernier::test

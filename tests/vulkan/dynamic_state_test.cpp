@@ -189,7 +189,8 @@ TEST_F(DynamicStateTest, rasterization) {
     expectSame(
         "front face", {VK_DYNAMIC_STATE_FRONT_FACE}, [](S s) { s.raster.frontFace = VK_FRONT_FACE_CLOCKWISE; },
         call<PFN_vkCmdSetFrontFaceEXT>("vkCmdSetFrontFaceEXT", VK_FRONT_FACE_CLOCKWISE));
-    for (const VkPrimitiveTopology topology : {VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP, VK_PRIMITIVE_TOPOLOGY_LINE_LIST}) {
+    for (const VkPrimitiveTopology topology :
+         {VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP, VK_PRIMITIVE_TOPOLOGY_LINE_LIST, VK_PRIMITIVE_TOPOLOGY_POINT_LIST}) {
         expectSame(
             "topology", {VK_DYNAMIC_STATE_PRIMITIVE_TOPOLOGY}, [=](S s) { s.assembly.topology = topology; },
             call<PFN_vkCmdSetPrimitiveTopologyEXT>("vkCmdSetPrimitiveTopologyEXT", topology));

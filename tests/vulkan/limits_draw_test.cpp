@@ -1,4 +1,6 @@
 // Draws as large, and with as much, as the limits of the device allow.
+#include <array>
+
 #include "tests/vulkan/test_compute.h"
 
 namespace vernier::test {
@@ -277,6 +279,33 @@ TEST_F(DrawLimitsTest, fragmentsWriteToBuffersByTheThousand) {
     makeVisible(commands);
     submit(commands);
     EXPECT_EQ(words(last)[0], 64u);
+}
+
+TEST_F(DrawLimitsTest, indicesOfAllBits) {
+    ASSERT_EQ(limits_.maxDrawIndexedIndexValue, UINT32_MAX);
+    const TestImage image = target({8, 8});
+    const Pass pass = makePass(image);
+    PipelineDesc desc;
+    desc.extent = image.extent;
+    desc.fragment = constantColor("1");
+    desc.vertex = makeShader(VK_SHADER_STAGE_VERTEX_BIT, R"(#version 450
+void main() {
+    uint n = uint(gl_VertexIndex);
+    gl_Position = vec4(n == 0xFFFFFFFEu ? 3 : -1, n == 0xFFFFFFFFu ? 3 : -1, n >= 0x80000000u ? 0 : 2, 1);
+})");
+    const VkPipeline pipeline = makePipeline(pass.pass, desc);
+    const TestBuffer indices = makeBuffer(12, VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+    const std::array<uint32_t, 3> values{0x80000000u, 0xFFFFFFFEu, 0xFFFFFFFFu};
+    std::memcpy(indices.data, values.data(), sizeof values);
+    const VkCommandBuffer commands = begin();
+    beginPass(commands, pass);
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+    vkCmdBindIndexBuffer(commands, indices.buffer, 0, VK_INDEX_TYPE_UINT32);
+    vkCmdDrawIndexed(commands, 3, 1, 0, 0, 0);
+    vkCmdEndRenderPass(commands);
+    submit(commands);
+    const std::vector<uint8_t> texels = readImage(image, VK_IMAGE_ASPECT_COLOR_BIT, 4);
+    for (uint32_t i = 0; i < 64; ++i) ASSERT_EQ(pixelAt(texels, image, i % 8, i / 8), ~0u) << i;
 }
 
 TEST_F(DrawLimitsTest, framebuffersAndViewportsOfTheLargestSizes) {
