@@ -1,4 +1,4 @@
-// One thread of the soak: a world of buffers and images with a model of what is in them. Every round records some
+// One thread of the soak: buffers and images with a model of what is in them. Every round records some
 // random commands, submits them, changes the model alike, and later, when they have run, compares. Resources are
 // replaced all the time; what a round uses lives until the round is done.
 #include <algorithm>
@@ -7,32 +7,13 @@
 #include <deque>
 #include <memory>
 
-#include "tests/vulkan/soak/context.h"
+#include "tests/vulkan/soak/workshop.h"
 
 namespace vernier::soak {
 namespace {
 
 constexpr uint32_t kBuffers = 6, kImages = 4, kMostRounds = 3;
 constexpr uint64_t kLong = 120'000'000'000;
-
-/// Bytes of the host's that the device writes, and what should be in them.
-struct SoakBuffer {
-    VkBuffer buffer = VK_NULL_HANDLE;
-    VkDeviceMemory memory = VK_NULL_HANDLE;
-    uint32_t* words = nullptr;
-    std::vector<uint32_t> model;
-};
-
-/// An RGBA8 image whose pixels are all known.
-struct SoakImage {
-    VkImage image = VK_NULL_HANDLE;
-    VkDeviceMemory memory = VK_NULL_HANDLE;
-    VkImageView view = VK_NULL_HANDLE;
-    VkFramebuffer framebuffer = VK_NULL_HANDLE;
-    VkExtent2D extent{};
-    std::vector<uint32_t> model;
-    bool fresh = true;  // still in VK_IMAGE_LAYOUT_UNDEFINED
-};
 
 /// What was submitted and is not known to be done.
 struct Round {
@@ -53,12 +34,6 @@ class Worker {
     uint64_t run();
 
   private:
-    std::shared_ptr<SoakBuffer> makeBuffer(uint32_t words);
-    std::shared_ptr<SoakImage> makeImage();
-    void makePass();
-    VkPipeline makeDrawing();
-    VkPipeline makeCompute();
-
     void recordSomething(Round& round);
     void fill(Round& round);
     void copyBuffers(Round& round);
@@ -83,11 +58,8 @@ class Worker {
     Verdict& verdict_;
     VkDevice device_;
     Random random_;
+    Workshop workshop_;
     VkCommandPool pool_ = VK_NULL_HANDLE;
-    VkRenderPass pass_ = VK_NULL_HANDLE;
-    VkPipelineLayout drawLayout_ = VK_NULL_HANDLE, computeLayout_ = VK_NULL_HANDLE;
-    VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
-    VkShaderModule vertex_ = VK_NULL_HANDLE, fragment_ = VK_NULL_HANDLE, multiply_ = VK_NULL_HANDLE;
     VkSemaphore timeline_ = VK_NULL_HANDLE;
     uint64_t point_ = 0, submissions_ = 0;
     std::array<std::shared_ptr<SoakBuffer>, kBuffers> buffers_;
@@ -95,55 +67,23 @@ class Worker {
     std::deque<Round> rounds_;
 };
 
-constexpr const char* kVertex = R"(#version 450
-void main() { gl_Position = vec4(gl_VertexIndex == 1 ? 3 : -1, gl_VertexIndex == 2 ? 3 : -1, 0, 1); })";
-constexpr const char* kFragment = R"(#version 450
-layout(push_constant) uniform Color { uint color; };
-layout(location = 0) out vec4 pixel;
-void main() { pixel = unpackUnorm4x8(color + uint(gl_FragCoord.x) + (uint(gl_FragCoord.y) << 8)); })";
-constexpr const char* kMultiply = R"(#version 450
-layout(local_size_x = 64) in;
-layout(set = 0, binding = 0) buffer Words { uint words[]; };
-layout(push_constant) uniform Factors { uint factor, added; };
-void main() {
-    uint i = gl_GlobalInvocationID.x;
-    if (i < words.length()) words[i] = words[i] * factor + added + i;
-})";
-
 Worker::Worker(Context& context, uint32_t seed)
-    : context_(context), verdict_(context.verdict), device_(context.device), random_(seed) {
+    : context_(context),
+      verdict_(context.verdict),
+      device_(context.device),
+      random_(seed),
+      workshop_(context, random_) {
     auto poolInfo = make<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
     poolInfo.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
     SOAK_CHECK(verdict_, vkCreateCommandPool, device_, &poolInfo, nullptr, &pool_);
-    vertex_ = context.compile(VK_SHADER_STAGE_VERTEX_BIT, kVertex);
-    fragment_ = context.compile(VK_SHADER_STAGE_FRAGMENT_BIT, kFragment);
-    multiply_ = context.compile(VK_SHADER_STAGE_COMPUTE_BIT, kMultiply);
     auto type = make<VkSemaphoreTypeCreateInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO);
     type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
     auto semaphore = make<VkSemaphoreCreateInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO);
     semaphore.pNext = &type;
     SOAK_CHECK(verdict_, vkCreateSemaphore, device_, &semaphore, nullptr, &timeline_);
-    const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT,
-                                               nullptr};
-    auto setInfo = make<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
-    setInfo.bindingCount = 1;
-    setInfo.pBindings = &binding;
-    SOAK_CHECK(verdict_, vkCreateDescriptorSetLayout, device_, &setInfo, nullptr, &setLayout_);
-    for (const bool compute : {false, true}) {
-        const VkPushConstantRange range{compute ? VkShaderStageFlags{VK_SHADER_STAGE_COMPUTE_BIT}
-                                                : VkShaderStageFlags{VK_SHADER_STAGE_FRAGMENT_BIT},
-                                        0, compute ? 8u : 4u};
-        auto info = make<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
-        info.setLayoutCount = compute ? 1 : 0;
-        info.pSetLayouts = &setLayout_;
-        info.pushConstantRangeCount = 1;
-        info.pPushConstantRanges = &range;
-        SOAK_CHECK(verdict_, vkCreatePipelineLayout, device_, &info, nullptr, compute ? &computeLayout_ : &drawLayout_);
-    }
-    makePass();
     if (verdict_.failed()) return;
-    for (auto& buffer : buffers_) buffer = makeBuffer(1 + below(random_, 5000));
-    for (auto& image : images_) image = makeImage();
+    for (auto& buffer : buffers_) buffer = workshop_.makeBuffer(1 + below(random_, 5000));
+    for (auto& image : images_) image = workshop_.makeImage();
 }
 
 Worker::~Worker() {
@@ -151,159 +91,7 @@ Worker::~Worker() {
     buffers_ = {};
     images_ = {};
     vkDestroySemaphore(device_, timeline_, nullptr);
-    for (const VkShaderModule module : {vertex_, fragment_, multiply_}) vkDestroyShaderModule(device_, module, nullptr);
-    vkDestroyPipelineLayout(device_, drawLayout_, nullptr);
-    vkDestroyPipelineLayout(device_, computeLayout_, nullptr);
-    vkDestroyDescriptorSetLayout(device_, setLayout_, nullptr);
-    vkDestroyRenderPass(device_, pass_, nullptr);
     vkDestroyCommandPool(device_, pool_, nullptr);
-}
-
-std::shared_ptr<SoakBuffer> Worker::makeBuffer(uint32_t words) {
-    std::shared_ptr<SoakBuffer> made(new SoakBuffer, [device = device_](SoakBuffer* buffer) {
-        vkDestroyBuffer(device, buffer->buffer, nullptr);
-        vkFreeMemory(device, buffer->memory, nullptr);
-        delete buffer;
-    });
-    auto info = make<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
-    info.size = VkDeviceSize{words} * 4;
-    info.usage =
-        VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-    SOAK_CHECK(verdict_, vkCreateBuffer, device_, &info, nullptr, &made->buffer);
-    VkMemoryRequirements needs{};
-    vkGetBufferMemoryRequirements(device_, made->buffer, &needs);
-    auto allocation = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-    allocation.allocationSize = needs.size;
-    SOAK_CHECK(verdict_, vkAllocateMemory, device_, &allocation, nullptr, &made->memory);
-    SOAK_CHECK(verdict_, vkBindBufferMemory, device_, made->buffer, made->memory, 0);
-    void* data = nullptr;
-    SOAK_CHECK(verdict_, vkMapMemory, device_, made->memory, 0, VK_WHOLE_SIZE, 0, &data);
-    made->words = static_cast<uint32_t*>(data);
-    made->model.resize(words);
-    for (uint32_t i = 0; i < words && made->words != nullptr; ++i) made->words[i] = made->model[i] = random_();
-    return made;
-}
-
-std::shared_ptr<SoakImage> Worker::makeImage() {
-    std::shared_ptr<SoakImage> made(new SoakImage, [device = device_](SoakImage* image) {
-        vkDestroyFramebuffer(device, image->framebuffer, nullptr);
-        vkDestroyImageView(device, image->view, nullptr);
-        vkDestroyImage(device, image->image, nullptr);
-        vkFreeMemory(device, image->memory, nullptr);
-        delete image;
-    });
-    made->extent = {1 + below(random_, 200), 1 + below(random_, 200)};
-    made->model.resize(size_t{made->extent.width} * made->extent.height);
-    auto info = make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
-    info.imageType = VK_IMAGE_TYPE_2D;
-    info.format = VK_FORMAT_R8G8B8A8_UNORM;
-    info.extent = {made->extent.width, made->extent.height, 1};
-    info.mipLevels = info.arrayLayers = 1;
-    info.samples = VK_SAMPLE_COUNT_1_BIT;
-    info.usage =
-        VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
-    SOAK_CHECK(verdict_, vkCreateImage, device_, &info, nullptr, &made->image);
-    VkMemoryRequirements needs{};
-    vkGetImageMemoryRequirements(device_, made->image, &needs);
-    auto allocation = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-    allocation.allocationSize = needs.size;
-    SOAK_CHECK(verdict_, vkAllocateMemory, device_, &allocation, nullptr, &made->memory);
-    SOAK_CHECK(verdict_, vkBindImageMemory, device_, made->image, made->memory, 0);
-    auto view = make<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
-    view.image = made->image;
-    view.viewType = VK_IMAGE_VIEW_TYPE_2D;
-    view.format = info.format;
-    view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-    SOAK_CHECK(verdict_, vkCreateImageView, device_, &view, nullptr, &made->view);
-    auto framebuffer = make<VkFramebufferCreateInfo>(VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO);
-    framebuffer.renderPass = pass_;
-    framebuffer.attachmentCount = 1;
-    framebuffer.pAttachments = &made->view;
-    framebuffer.width = made->extent.width;
-    framebuffer.height = made->extent.height;
-    framebuffer.layers = 1;
-    SOAK_CHECK(verdict_, vkCreateFramebuffer, device_, &framebuffer, nullptr, &made->framebuffer);
-    return made;
-}
-
-void Worker::makePass() {
-    const VkAttachmentDescription attachment{0,
-                                             VK_FORMAT_R8G8B8A8_UNORM,
-                                             VK_SAMPLE_COUNT_1_BIT,
-                                             VK_ATTACHMENT_LOAD_OP_LOAD,
-                                             VK_ATTACHMENT_STORE_OP_STORE,
-                                             VK_ATTACHMENT_LOAD_OP_DONT_CARE,
-                                             VK_ATTACHMENT_STORE_OP_DONT_CARE,
-                                             VK_IMAGE_LAYOUT_GENERAL,
-                                             VK_IMAGE_LAYOUT_GENERAL};
-    const VkAttachmentReference reference{0, VK_IMAGE_LAYOUT_GENERAL};
-    VkSubpassDescription subpass{};
-    subpass.colorAttachmentCount = 1;
-    subpass.pColorAttachments = &reference;
-    auto info = make<VkRenderPassCreateInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO);
-    info.attachmentCount = info.subpassCount = 1;
-    info.pAttachments = &attachment;
-    info.pSubpasses = &subpass;
-    SOAK_CHECK(verdict_, vkCreateRenderPass, device_, &info, nullptr, &pass_);
-}
-
-VkPipeline Worker::makeDrawing() {
-    VkPipelineShaderStageCreateInfo stages[2];
-    for (const bool fragment : {false, true}) {
-        auto& stage = stages[fragment ? 1 : 0];
-        stage = make<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
-        stage.stage = fragment ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_VERTEX_BIT;
-        stage.module = fragment ? fragment_ : vertex_;
-        stage.pName = "main";
-    }
-    const auto input =
-        make<VkPipelineVertexInputStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
-    auto assembly =
-        make<VkPipelineInputAssemblyStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
-    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-    auto viewport = make<VkPipelineViewportStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
-    viewport.viewportCount = viewport.scissorCount = 1;
-    auto raster =
-        make<VkPipelineRasterizationStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
-    raster.lineWidth = 1;
-    auto samples = make<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
-    samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-    VkPipelineColorBlendAttachmentState blend{};
-    blend.colorWriteMask = 0xF;
-    auto colors = make<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
-    colors.attachmentCount = 1;
-    colors.pAttachments = &blend;
-    const VkDynamicState states[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-    auto dynamic = make<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
-    dynamic.dynamicStateCount = 2;
-    dynamic.pDynamicStates = states;
-    auto info = make<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
-    info.stageCount = 2;
-    info.pStages = stages;
-    info.pVertexInputState = &input;
-    info.pInputAssemblyState = &assembly;
-    info.pViewportState = &viewport;
-    info.pRasterizationState = &raster;
-    info.pMultisampleState = &samples;
-    info.pColorBlendState = &colors;
-    info.pDynamicState = &dynamic;
-    info.layout = drawLayout_;
-    info.renderPass = pass_;
-    VkPipeline pipeline = VK_NULL_HANDLE;
-    SOAK_CHECK(verdict_, vkCreateGraphicsPipelines, device_, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline);
-    return pipeline;
-}
-
-VkPipeline Worker::makeCompute() {
-    auto info = make<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
-    info.stage = make<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
-    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-    info.stage.module = multiply_;
-    info.stage.pName = "main";
-    info.layout = computeLayout_;
-    VkPipeline pipeline = VK_NULL_HANDLE;
-    SOAK_CHECK(verdict_, vkCreateComputePipelines, device_, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline);
-    return pipeline;
 }
 
 SoakImage& Worker::use(Round& round, const std::shared_ptr<SoakImage>& image) {
@@ -365,10 +153,10 @@ void Worker::compute(Round& round) {
     auto allocation = make<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
     allocation.descriptorPool = round.descriptors;
     allocation.descriptorSetCount = 1;
-    allocation.pSetLayouts = &setLayout_;
+    allocation.pSetLayouts = &workshop_.setLayout();
     VkDescriptorSet set = VK_NULL_HANDLE;
     SOAK_CHECK(verdict_, vkAllocateDescriptorSets, device_, &allocation, &set);
-    round.pipeline = makeCompute();
+    round.pipeline = workshop_.makeCompute();
     if (verdict_.failed()) return;
     const VkDescriptorBufferInfo info{buffer.buffer, 0, VK_WHOLE_SIZE};
     auto write = make<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
@@ -379,8 +167,9 @@ void Worker::compute(Round& round) {
     vkUpdateDescriptorSets(device_, 1, &write, 0, nullptr);
     const std::array<uint32_t, 2> factors = {static_cast<uint32_t>(random_()), static_cast<uint32_t>(random_())};
     vkCmdBindPipeline(round.commands, VK_PIPELINE_BIND_POINT_COMPUTE, round.pipeline);
-    vkCmdBindDescriptorSets(round.commands, VK_PIPELINE_BIND_POINT_COMPUTE, computeLayout_, 0, 1, &set, 0, nullptr);
-    vkCmdPushConstants(round.commands, computeLayout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, 8, factors.data());
+    vkCmdBindDescriptorSets(round.commands, VK_PIPELINE_BIND_POINT_COMPUTE, workshop_.computeLayout(), 0, 1, &set, 0,
+                            nullptr);
+    vkCmdPushConstants(round.commands, workshop_.computeLayout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, 8, factors.data());
     const auto words = static_cast<uint32_t>(buffer.model.size());
     vkCmdDispatch(round.commands, (words + 63) / 64, 1, 1);
     for (uint32_t i = 0; i < words; ++i) buffer.model[i] = buffer.model[i] * factors[0] + factors[1] + i;
@@ -397,7 +186,7 @@ void Worker::clear(Round& round) {
 void Worker::draw(Round& round) {
     if (round.pipeline != VK_NULL_HANDLE) return;
     SoakImage& image = use(round, anyImage());
-    round.pipeline = makeDrawing();
+    round.pipeline = workshop_.makeDrawing();
     if (verdict_.failed()) return;
     const VkExtent2D extent = image.extent;
     VkRect2D scissor{};
@@ -406,7 +195,7 @@ void Worker::draw(Round& round) {
     const auto left = static_cast<uint32_t>(scissor.offset.x), top = static_cast<uint32_t>(scissor.offset.y);
     scissor.extent = {1 + below(random_, extent.width - left), 1 + below(random_, extent.height - top)};
     auto info = make<VkRenderPassBeginInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO);
-    info.renderPass = pass_;
+    info.renderPass = workshop_.pass();
     info.framebuffer = image.framebuffer;
     info.renderArea.extent = extent;
     const VkViewport viewport{0, 0, static_cast<float>(extent.width), static_cast<float>(extent.height), 0, 1};
@@ -415,7 +204,7 @@ void Worker::draw(Round& round) {
     vkCmdBindPipeline(round.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, round.pipeline);
     vkCmdSetViewport(round.commands, 0, 1, &viewport);
     vkCmdSetScissor(round.commands, 0, 1, &scissor);
-    vkCmdPushConstants(round.commands, drawLayout_, VK_SHADER_STAGE_FRAGMENT_BIT, 0, 4, &color);
+    vkCmdPushConstants(round.commands, workshop_.drawLayout(), VK_SHADER_STAGE_FRAGMENT_BIT, 0, 4, &color);
     vkCmdDraw(round.commands, 3, 1, 0, 0);
     vkCmdEndRenderPass(round.commands);
     for (uint32_t y = top; y < top + scissor.extent.height; ++y)
@@ -440,7 +229,7 @@ void Worker::copyImages(Round& round) {
 void Worker::readBack(Round& round) {
     if (round.readBack) return;
     SoakImage& image = use(round, anyImage());
-    round.readBack = makeBuffer(static_cast<uint32_t>(image.model.size()));
+    round.readBack = workshop_.makeBuffer(static_cast<uint32_t>(image.model.size()));
     VkBufferImageCopy region{};
     region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     region.imageExtent = {image.extent.width, image.extent.height, 1};
@@ -514,8 +303,8 @@ uint64_t Worker::run() {
             if (rounds_.empty() && std::memcmp(buffer->words, buffer->model.data(), buffer->model.size() * 4) != 0)
                 verdict_.fail("a buffer is not what it should be");
         }
-        if (below(random_, 3) == 0) buffers_[below(random_, kBuffers)] = makeBuffer(1 + below(random_, 5000));
-        if (below(random_, 3) == 0) images_[below(random_, kImages)] = makeImage();
+        if (below(random_, 3) == 0) buffers_[below(random_, kBuffers)] = workshop_.makeBuffer(1 + below(random_, 5000));
+        if (below(random_, 3) == 0) images_[below(random_, kImages)] = workshop_.makeImage();
     }
     return submissions_;
 }
