@@ -1,9 +1,7 @@
 // Memory by its address (VK_KHR_buffer_device_address), the Vulkan memory model, and SPIR-V 1.4 and later.
-#include <spirv-tools/libspirv.h>
-
 #include <array>
 
-#include "tests/vulkan/test_compute.h"
+#include "tests/vulkan/test_assembly.h"
 
 namespace vernier::test {
 namespace {
@@ -14,7 +12,7 @@ constexpr const char* kReference =
     "#extension GL_EXT_buffer_reference : require\n#extension GL_EXT_shader_explicit_arithmetic_types_int64 : "
     "require\n";
 
-class AddressTest : public ComputeTest {
+class AddressTest : public AssemblyTest {
   protected:
     uint32_t apiVersion() override { return VK_API_VERSION_1_2; }
     std::vector<const char*> moreExtensions() override {
@@ -32,36 +30,6 @@ class AddressTest : public ComputeTest {
         const VkDeviceAddress address = vkGetBufferDeviceAddress(device, &info);
         EXPECT_NE(address, 0u);
         return address;
-    }
-    Compute makeModule(const char* text, spv_target_env environment, const std::vector<TestDescriptor>& descriptors) {
-        const spv_context context = spvContextCreate(environment);
-        spv_binary binary = nullptr;
-        EXPECT_EQ(spvTextToBinary(context, text, std::strlen(text), &binary, nullptr), SPV_SUCCESS);
-        auto moduleInfo = make<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
-        moduleInfo.codeSize = binary->wordCount * 4;
-        moduleInfo.pCode = binary->code;
-        VkShaderModule module = VK_NULL_HANDLE;
-        EXPECT_EQ(vkCreateShaderModule(device, &moduleInfo, nullptr, &module), VK_SUCCESS)
-            << (messages.empty() ? "" : messages.back());
-        spvBinaryDestroy(binary);
-        spvContextDestroy(context);
-        Compute compute;
-        VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
-        compute.set = makeSet(descriptors, &setLayout);
-        compute.layout = makeLayout({setLayout}, 0);
-        auto info = make<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
-        info.stage = make<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
-        info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-        info.stage.module = module;
-        info.stage.pName = "main";
-        info.layout = compute.layout;
-        EXPECT_EQ(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &compute.pipeline), VK_SUCCESS)
-            << (messages.empty() ? "" : messages.back());
-        defer([this, compute, module] {
-            vkDestroyPipeline(device, compute.pipeline, nullptr);
-            vkDestroyShaderModule(device, module, nullptr);
-        });
-        return compute;
     }
 
   private:
@@ -243,49 +211,27 @@ void main() {
 // Modules of SPIR-V 1.4 and 1.5, which name all their variables in the entry point and select whole vectors; with
 // decorations for tools (SPV_GOOGLE_*).
 TEST_F(AddressTest, newerModules) {
-    constexpr const char* kText = R"(
-OpCapability Shader
+    TwoBufferModule module;
+    module.head = R"(
 OpExtension "SPV_GOOGLE_decorate_string"
 OpExtension "SPV_GOOGLE_hlsl_functionality1"
 OpExtension "SPV_GOOGLE_user_type"
-OpMemoryModel Logical GLSL450
-OpEntryPoint GLCompute %main "main" %a %b %id
-OpExecutionMode %main LocalSize 4 1 1
-OpDecorate %id BuiltIn GlobalInvocationId
-OpDecorate %array ArrayStride 4
-OpDecorate %block Block
-OpMemberDecorate %block 0 Offset 0
-OpDecorate %a DescriptorSet 0
-OpDecorate %a Binding 0
-OpDecorate %b DescriptorSet 0
-OpDecorate %b Binding 1
+)";
+    module.localSize = 4;
+    module.declarations = R"(
 OpDecorateString %a UserSemantic "IN"
 OpDecorateString %b UserTypeGOOGLE "rwstructuredbuffer:<uint>"
 OpMemberDecorateString %block 0 UserSemantic "VALUES"
-%void = OpTypeVoid
-%fn = OpTypeFunction %void
-%bool = OpTypeBool
-%uint = OpTypeInt 32 0
-%v3 = OpTypeVector %uint 3
-%pid = OpTypePointer Input %v3
-%id = OpVariable %pid Input
-%array = OpTypeRuntimeArray %uint
-%block = OpTypeStruct %array
-%pblock = OpTypePointer StorageBuffer %block
-%pu = OpTypePointer StorageBuffer %uint
-%a = OpVariable %pblock StorageBuffer
-%b = OpVariable %pblock StorageBuffer
+)";
+    module.constants = R"(
 %v2 = OpTypeVector %uint 2
-%c0 = OpConstant %uint 0
 %c2 = OpConstant %uint 2
 %c100 = OpConstant %uint 100
 %c200 = OpConstant %uint 200
 %low = OpConstantComposite %v2 %c100 %c0
 %high = OpConstantComposite %v2 %c200 %c2
-%main = OpFunction %void None %fn
-%entry = OpLabel
-%gid = OpLoad %v3 %id
-%i = OpCompositeExtract %uint %gid 0
+)";
+    module.body = R"(
 %pa = OpAccessChain %pu %a %c0 %i
 %pb = OpAccessChain %pu %b %c0 %i
 %less = OpULessThan %bool %i %c2
@@ -294,64 +240,37 @@ OpMemberDecorateString %block 0 UserSemantic "VALUES"
 %va = OpLoad %uint %pa
 %sum = OpIAdd %uint %va %x
 OpStore %pb %sum
-OpReturn
-OpFunctionEnd
 )";
     for (const spv_target_env environment : {SPV_ENV_UNIVERSAL_1_4, SPV_ENV_UNIVERSAL_1_5}) {
         const TestBuffer a = makeStorage(4), b = makeStorage(4);
         for (uint32_t i = 0; i < 4; ++i) words(a)[i] = i;
-        run(makeModule(kText, environment, {storageBuffer(a), storageBuffer(b)}), 1);
+        run(makeAssembled(module.text(), environment, {storageBuffer(a), storageBuffer(b)}), 1);
         EXPECT_EQ(std::vector<uint32_t>(words(b), words(b) + 4), (std::vector<uint32_t>{100, 101, 202, 203}));
     }
 }
 
 // From SPIR-V 1.5 on the invocation that broadcasts may be computed (subgroupBroadcastDynamicId).
 TEST_F(AddressTest, broadcastsFromAnyInvocation) {
-    constexpr const char* kText = R"(
-OpCapability Shader
+    TwoBufferModule module;
+    module.head = R"(
 OpCapability GroupNonUniform
 OpCapability GroupNonUniformBallot
-OpMemoryModel Logical GLSL450
-OpEntryPoint GLCompute %main "main" %a %b %id
-OpExecutionMode %main LocalSize 32 1 1
-OpDecorate %id BuiltIn GlobalInvocationId
-OpDecorate %array ArrayStride 4
-OpDecorate %block Block
-OpMemberDecorate %block 0 Offset 0
-OpDecorate %a DescriptorSet 0
-OpDecorate %a Binding 0
-OpDecorate %b DescriptorSet 0
-OpDecorate %b Binding 1
-%void = OpTypeVoid
-%fn = OpTypeFunction %void
-%uint = OpTypeInt 32 0
-%v3 = OpTypeVector %uint 3
-%pid = OpTypePointer Input %v3
-%id = OpVariable %pid Input
-%array = OpTypeRuntimeArray %uint
-%block = OpTypeStruct %array
-%pblock = OpTypePointer StorageBuffer %block
-%pu = OpTypePointer StorageBuffer %uint
-%a = OpVariable %pblock StorageBuffer
-%b = OpVariable %pblock StorageBuffer
-%c0 = OpConstant %uint 0
+)";
+    module.localSize = 32;
+    module.constants = R"(
 %c3 = OpConstant %uint 3
 %c7 = OpConstant %uint 7
-%main = OpFunction %void None %fn
-%entry = OpLabel
-%gid = OpLoad %v3 %id
-%i = OpCompositeExtract %uint %gid 0
+)";
+    module.body = R"(
 %pa = OpAccessChain %pu %a %c0 %c0
 %pb = OpAccessChain %pu %b %c0 %i
 %who = OpLoad %uint %pa
 %mine = OpIMul %uint %i %c7
 %got = OpGroupNonUniformBroadcast %uint %c3 %mine %who
 OpStore %pb %got
-OpReturn
-OpFunctionEnd
 )";
     const TestBuffer a = makeStorage(1), b = makeStorage(32);
-    const Compute compute = makeModule(kText, SPV_ENV_UNIVERSAL_1_5, {storageBuffer(a), storageBuffer(b)});
+    const Compute compute = makeAssembled(module.text(), SPV_ENV_UNIVERSAL_1_5, {storageBuffer(a), storageBuffer(b)});
     for (const uint32_t who : {0u, 11u, 31u}) {
         *words(a) = who;
         run(compute, 1);

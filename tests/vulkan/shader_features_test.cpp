@@ -1,11 +1,9 @@
 // Features of shaders beyond the core of Vulkan 1.0: scalars of other widths and their storage, atomics, pointers,
 // layouts, ways to end an invocation. Each is reported, and each is used through the whole driver.
-#include <spirv-tools/libspirv.h>
-
 #include <bit>
 #include <cmath>
 
-#include "tests/vulkan/test_compute.h"
+#include "tests/vulkan/test_assembly.h"
 
 namespace vernier::test {
 namespace {
@@ -55,7 +53,7 @@ struct FeatureChain {
     FeatureChain& operator=(const FeatureChain&) = delete;
 };
 
-class ShaderFeaturesTest : public ComputeTest {
+class ShaderFeaturesTest : public AssemblyTest {
   protected:
     std::vector<const char*> moreExtensions() override {
         return {VK_KHR_STORAGE_BUFFER_STORAGE_CLASS_EXTENSION_NAME,
@@ -266,8 +264,8 @@ void main() { uint i = gl_LocalInvocationIndex; if (i < 3) { o[i] = b[i] * 100 +
 
 // A pointer chosen between two buffers, a dot product of packed bytes, and an instruction that means nothing.
 TEST_F(ShaderFeaturesTest, assemblyOnlyInstructions) {
-    const char* text = R"(
-OpCapability Shader
+    TwoBufferModule module;
+    module.head = R"(
 OpCapability VariablePointers
 OpCapability DotProduct
 OpCapability DotProductInput4x8BitPacked
@@ -276,38 +274,15 @@ OpExtension "SPV_KHR_variable_pointers"
 OpExtension "SPV_KHR_integer_dot_product"
 OpExtension "SPV_KHR_non_semantic_info"
 %set = OpExtInstImport "NonSemantic.Vernier.Test"
-OpMemoryModel Logical GLSL450
-OpEntryPoint GLCompute %main "main" %id
-OpExecutionMode %main LocalSize 32 1 1
-OpDecorate %id BuiltIn GlobalInvocationId
-OpDecorate %array ArrayStride 4
-OpDecorate %block Block
-OpMemberDecorate %block 0 Offset 0
-OpDecorate %a DescriptorSet 0
-OpDecorate %a Binding 0
-OpDecorate %b DescriptorSet 0
-OpDecorate %b Binding 1
-%void = OpTypeVoid
-%fn = OpTypeFunction %void
-%bool = OpTypeBool
-%uint = OpTypeInt 32 0
-%v3 = OpTypeVector %uint 3
-%pid = OpTypePointer Input %v3
-%id = OpVariable %pid Input
-%array = OpTypeRuntimeArray %uint
-%block = OpTypeStruct %array
-%pblock = OpTypePointer StorageBuffer %block
-%pu = OpTypePointer StorageBuffer %uint
-%a = OpVariable %pblock StorageBuffer
-%b = OpVariable %pblock StorageBuffer
-%c0 = OpConstant %uint 0
+)";
+    module.interface = "%id";
+    module.localSize = 32;
+    module.constants = R"(
 %c1 = OpConstant %uint 1
 %bytes = OpConstant %uint 0x04030201
-%main = OpFunction %void None %fn
-%entry = OpLabel
-%gid = OpLoad %v3 %id
+)";
+    module.body = R"(
 %nothing = OpExtInst %void %set 7 %gid
-%i = OpCompositeExtract %uint %gid 0
 %bit = OpBitwiseAnd %uint %i %c1
 %odd = OpINotEqual %bool %bit %c0
 %pa = OpAccessChain %pu %a %c0 %i
@@ -316,36 +291,10 @@ OpDecorate %b Binding 1
 %v = OpLoad %uint %p
 %d = OpUDot %uint %v %bytes PackedVectorFormat4x8Bit
 OpStore %p %d
-OpReturn
-OpFunctionEnd
 )";
-    const spv_context context = spvContextCreate(SPV_ENV_VULKAN_1_0);
-    spv_binary binary = nullptr;
-    ASSERT_EQ(spvTextToBinary(context, text, std::strlen(text), &binary, nullptr), SPV_SUCCESS);
-    auto moduleInfo = make<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
-    moduleInfo.codeSize = binary->wordCount * 4;
-    moduleInfo.pCode = binary->code;
-    VkShaderModule module = VK_NULL_HANDLE;
-    EXPECT_EQ(vkCreateShaderModule(device, &moduleInfo, nullptr, &module), VK_SUCCESS);
-    defer([this, module] { vkDestroyShaderModule(device, module, nullptr); });
-    spvBinaryDestroy(binary);
-    spvContextDestroy(context);
-
     const TestBuffer a = makeStorage(32), b = makeStorage(32);
     for (uint32_t i = 0; i < 32; ++i) words(a)[i] = 0x01010101u * i, words(b)[i] = 0x01000000u * (i + 100);
-    Compute compute = makeCompute(
-        "#version 450\nlayout(set = 0, binding = 0) buffer A { uint a[]; };"
-        "layout(set = 0, binding = 1) buffer B { uint b[]; }; void main() { a[0] += b[0]; }",
-        {storageBuffer(a), storageBuffer(b)});
-    auto info = make<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
-    info.stage = make<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
-    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-    info.stage.module = module;
-    info.stage.pName = "main";
-    info.layout = compute.layout;
-    ASSERT_EQ(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &compute.pipeline), VK_SUCCESS);
-    defer([this, pipeline = compute.pipeline] { vkDestroyPipeline(device, pipeline, nullptr); });
-    run(compute, 1);
+    run(makeAssembled(module.text(), SPV_ENV_VULKAN_1_0, {storageBuffer(a), storageBuffer(b)}), 1);
     for (uint32_t i = 0; i < 32; ++i) {
         EXPECT_EQ(words(a)[i], i % 2 != 0 ? 10 * i : 0x01010101u * i);
         EXPECT_EQ(words(b)[i], i % 2 != 0 ? 0x01000000u * (i + 100) : 4 * (i + 100));

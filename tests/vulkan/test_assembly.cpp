@@ -1,0 +1,79 @@
+#include "tests/vulkan/test_assembly.h"
+
+namespace vernier::test {
+
+std::string TwoBufferModule::text() const {
+    return "OpCapability Shader\n" + head + R"(
+OpMemoryModel Logical GLSL450
+OpEntryPoint GLCompute %main "main" )" +
+           interface + "\nOpExecutionMode %main LocalSize " + std::to_string(localSize) + R"( 1 1
+OpDecorate %id BuiltIn GlobalInvocationId
+OpDecorate %array ArrayStride 4
+OpDecorate %block Block
+OpMemberDecorate %block 0 Offset 0
+OpDecorate %a DescriptorSet 0
+OpDecorate %a Binding 0
+OpDecorate %b DescriptorSet 0
+OpDecorate %b Binding 1
+)" + declarations +
+           R"(
+%void = OpTypeVoid
+%fn = OpTypeFunction %void
+%bool = OpTypeBool
+%uint = OpTypeInt 32 0
+%v3 = OpTypeVector %uint 3
+%pid = OpTypePointer Input %v3
+%id = OpVariable %pid Input
+%array = OpTypeRuntimeArray %uint
+%block = OpTypeStruct %array
+%pblock = OpTypePointer StorageBuffer %block
+%pu = OpTypePointer StorageBuffer %uint
+%a = OpVariable %pblock StorageBuffer
+%b = OpVariable %pblock StorageBuffer
+%c0 = OpConstant %uint 0
+)" + constants +
+           R"(
+%main = OpFunction %void None %fn
+%entry = OpLabel
+%gid = OpLoad %v3 %id
+%i = OpCompositeExtract %uint %gid 0
+)" + body +
+           R"(
+OpReturn
+OpFunctionEnd
+)";
+}
+
+AssemblyTest::Compute AssemblyTest::makeAssembled(const std::string& text, spv_target_env environment,
+                                                  const std::vector<TestDescriptor>& descriptors) {
+    const spv_context context = spvContextCreate(environment);
+    spv_binary binary = nullptr;
+    EXPECT_EQ(spvTextToBinary(context, text.data(), text.size(), &binary, nullptr), SPV_SUCCESS) << text;
+    auto moduleInfo = make<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
+    moduleInfo.codeSize = binary->wordCount * 4;
+    moduleInfo.pCode = binary->code;
+    VkShaderModule module = VK_NULL_HANDLE;
+    EXPECT_EQ(vkCreateShaderModule(device, &moduleInfo, nullptr, &module), VK_SUCCESS)
+        << (messages.empty() ? "" : messages.back());
+    spvBinaryDestroy(binary);
+    spvContextDestroy(context);
+    Compute compute;
+    VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
+    compute.set = makeSet(descriptors, &setLayout);
+    compute.layout = makeLayout({setLayout}, 0);
+    auto info = make<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
+    info.stage = make<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
+    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+    info.stage.module = module;
+    info.stage.pName = "main";
+    info.layout = compute.layout;
+    EXPECT_EQ(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &compute.pipeline), VK_SUCCESS)
+        << (messages.empty() ? "" : messages.back());
+    defer([this, compute, module] {
+        vkDestroyPipeline(device, compute.pipeline, nullptr);
+        vkDestroyShaderModule(device, module, nullptr);
+    });
+    return compute;
+}
+
+}  // namespace vernier::test
