@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/spirv_interp/batch_harness.h"
+#include "tests/spirv_interp/ir_evaluator.h"
 
 namespace vernier {
 namespace {
@@ -189,41 +190,6 @@ b0:
     }
 }
 
-uint32_t atomicResult(ir::AtomicOp op, uint32_t old, uint32_t value, uint32_t comparator) {
-    const auto a = static_cast<int32_t>(old), b = static_cast<int32_t>(value);
-    switch (op) {
-        case ir::AtomicOp::add:
-            return old + value;
-        case ir::AtomicOp::sub:
-            return old - value;
-        case ir::AtomicOp::smin:
-            return static_cast<uint32_t>(std::min(a, b));
-        case ir::AtomicOp::smax:
-            return static_cast<uint32_t>(std::max(a, b));
-        case ir::AtomicOp::umin:
-            return std::min(old, value);
-        case ir::AtomicOp::umax:
-            return std::max(old, value);
-        case ir::AtomicOp::iand:
-            return old & value;
-        case ir::AtomicOp::ior:
-            return old | value;
-        case ir::AtomicOp::ixor:
-            return old ^ value;
-        case ir::AtomicOp::exchange:
-        case ir::AtomicOp::store:
-            return value;
-        case ir::AtomicOp::compareExchange:
-            return old == comparator ? value : old;
-        case ir::AtomicOp::load:
-        case ir::AtomicOp::fadd:  // floats are not tested here
-        case ir::AtomicOp::fmin:
-        case ir::AtomicOp::fmax:
-            return old;
-    }
-    return 0;
-}
-
 TEST(BatchMemory, AtomicsWorkInLaneOrder) {
     std::mt19937 random(3);
     for (uint32_t op = 0; op <= static_cast<uint32_t>(ir::AtomicOp::store); ++op) {
@@ -247,7 +213,7 @@ TEST(BatchMemory, AtomicsWorkInLaneOrder) {
                 comparators[lane] = word < 4 && random() % 2 == 0 ? memory[word] : 12345;
                 if (word >= 4) continue;
                 expected[lane] = atomicOp == ir::AtomicOp::store ? 0 : memory[word];
-                memory[word] = atomicResult(atomicOp, memory[word], values[lane], comparators[lane]);
+                memory[word] = test::atomicResult(atomicOp, memory[word], values[lane], comparators[lane]);
             }
             test::RunSetup setup;
             setup.isa = isa;
