@@ -1,4 +1,5 @@
 // Draws and what they depend on, clears inside a render pass, and secondary command buffers.
+#include <string>
 #include <vector>
 
 #include "api/vulkan/command_buffer.h"
@@ -17,6 +18,18 @@ void recordDraw(VkCommandBuffer handle, const char* name, const Command& command
         }
         buffer.stream.record(command);
     });
+}
+
+/// Draws whose arguments overlap could be any number, wherever the buffer ends.
+void recordIndirect(VkCommandBuffer handle, const char* name, const command::DrawIndirect& command) {
+    const size_t size = command.indexed ? sizeof(VkDrawIndexedIndirectCommand) : sizeof(VkDrawIndirectCommand);
+    if (command.drawCount > 1 && command.stride < size) {
+        return recording(handle, [&](CommandBuffer& buffer) {
+            buffer.fail(name, "stride " + std::to_string(command.stride) + " is less than the " + std::to_string(size) +
+                                  " bytes of a draw's arguments");
+        });
+    }
+    recordDraw(handle, name, command);
 }
 
 /// Element `index` of an array whose elements are `stride` bytes apart.
@@ -65,31 +78,32 @@ VKAPI_ATTR void VKAPI_CALL CmdDrawIndexed(VkCommandBuffer commandBuffer, uint32_
 
 VKAPI_ATTR void VKAPI_CALL CmdDrawIndirect(VkCommandBuffer commandBuffer, VkBuffer buffer, VkDeviceSize offset,
                                            uint32_t drawCount, uint32_t stride) {
-    recordDraw(commandBuffer, "vkCmdDrawIndirect",
-               command::DrawIndirect{false, {object(buffer), offset}, drawCount, stride, {}});
+    recordIndirect(commandBuffer, "vkCmdDrawIndirect",
+                   command::DrawIndirect{false, {object(buffer), offset}, drawCount, stride, {}});
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdDrawIndexedIndirect(VkCommandBuffer commandBuffer, VkBuffer buffer, VkDeviceSize offset,
                                                   uint32_t drawCount, uint32_t stride) {
-    recordDraw(commandBuffer, "vkCmdDrawIndexedIndirect",
-               command::DrawIndirect{true, {object(buffer), offset}, drawCount, stride, {}});
+    recordIndirect(commandBuffer, "vkCmdDrawIndexedIndirect",
+                   command::DrawIndirect{true, {object(buffer), offset}, drawCount, stride, {}});
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdDrawIndirectCount(VkCommandBuffer commandBuffer, VkBuffer buffer, VkDeviceSize offset,
                                                 VkBuffer countBuffer, VkDeviceSize countBufferOffset,
                                                 uint32_t maxDrawCount, uint32_t stride) {
-    recordDraw(commandBuffer, "vkCmdDrawIndirectCount",
-               command::DrawIndirect{
-                   false, {object(buffer), offset}, maxDrawCount, stride, {object(countBuffer), countBufferOffset}});
+    recordIndirect(
+        commandBuffer, "vkCmdDrawIndirectCount",
+        command::DrawIndirect{
+            false, {object(buffer), offset}, maxDrawCount, stride, {object(countBuffer), countBufferOffset}});
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdDrawIndexedIndirectCount(VkCommandBuffer commandBuffer, VkBuffer buffer,
                                                        VkDeviceSize offset, VkBuffer countBuffer,
                                                        VkDeviceSize countBufferOffset, uint32_t maxDrawCount,
                                                        uint32_t stride) {
-    recordDraw(commandBuffer, "vkCmdDrawIndexedIndirectCount",
-               command::DrawIndirect{
-                   true, {object(buffer), offset}, maxDrawCount, stride, {object(countBuffer), countBufferOffset}});
+    recordIndirect(commandBuffer, "vkCmdDrawIndexedIndirectCount",
+                   command::DrawIndirect{
+                       true, {object(buffer), offset}, maxDrawCount, stride, {object(countBuffer), countBufferOffset}});
 }
 
 VKAPI_ATTR void VKAPI_CALL CmdDrawIndirectByteCountEXT(VkCommandBuffer commandBuffer, uint32_t instanceCount,

@@ -443,15 +443,22 @@ void main() { gl_Position = position + vec4(gl_VertexIndex & 1, gl_VertexIndex &
                 vkCmdDraw(commands, 7, 2, 0xFFFFFFFE, 0xFFFFFFFF);
                 vkCmdDrawIndexed(commands, 30, 1, 0xFFFFFFF0, kLow, 5);
                 if (offset == 3) continue;  // the counts would be large
-                vkCmdDrawIndirect(commands, small.buffer, offset, 2, 8);
+                vkCmdDrawIndirect(commands, small.buffer, offset, 2, 16);
                 vkCmdDrawIndexedIndirect(commands, small.buffer, offset, 1000, 0xFFFFFFFF);
-                vkCmdDrawIndexedIndirect(commands, small.buffer, offset, 3, 0);
+                vkCmdDrawIndexedIndirect(commands, small.buffer, offset, 1, 0);
             }
         }
     }
     vkCmdEndRenderPass(commands);
     submit(commands);
     EXPECT_TRUE(target.intact());
+    // As many draws as there are numbers, all of the same arguments.
+    const VkCommandBuffer endless = begin();
+    beginPass(endless, pass);
+    vkCmdBindPipeline(endless, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+    vkCmdDrawIndexedIndirect(endless, small.buffer, 0, 0xFFFFFFFF, 0);
+    vkCmdEndRenderPass(endless);
+    expectFailure(endless, "stride 0");
 }
 
 TEST_F(HostileTest, specializationsWithWrongSizesAndOffsets) {
