@@ -88,9 +88,12 @@ VkResult create(Device& device, const VkSwapchainCreateInfoKHR& info, const VkAl
         info.presentMode == VK_PRESENT_MODE_MAILBOX_KHR ? kMinSwapchainImages + 1 : kMinSwapchainImages;
     std::deque<SwapchainImage> images;
     std::vector<const Image*> shown;
-    for (uint32_t i = 0; i < std::max(info.minImageCount, least); ++i) {
+    const uint32_t count = std::max(info.minImageCount, least);
+    const VkDeviceSize heap = device.physicalDevice.memory.memoryHeaps[0].size;
+    for (uint32_t i = 0; i < count; ++i) {
         Result<SwapchainImage> image = makeImage(info, *screen);
         if (!image) return device.report(kCommand, image.error());
+        if (count > heap / image->memory->size()) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
         shown.push_back(&images.emplace_back(std::move(image).value()).image);
     }
     std::shared_ptr<Presenter> presenter;

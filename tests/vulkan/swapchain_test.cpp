@@ -311,6 +311,8 @@ TEST_F(SwapchainTest, wrongUseIsRefused) {
     auto layers = swapchainInfo(VK_PRESENT_MODE_FIFO_KHR);
     layers.imageArrayLayers = 2;
     EXPECT_NE(vkCreateSwapchainKHR(device, &layers, nullptr, &refused), VK_SUCCESS);
+    auto many = swapchainInfo(VK_PRESENT_MODE_FIFO_KHR, 0xFFFFFFFF);
+    EXPECT_EQ(vkCreateSwapchainKHR(device, &many, nullptr, &refused), VK_ERROR_OUT_OF_DEVICE_MEMORY);
 }
 
 TEST_F(SwapchainTest, oneSwapchainASurfaceAndOnlyAcquiredImages) {
