@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "runtime/command/device.h"
+
 namespace vernier::vulkan {
 namespace {
 
@@ -65,15 +67,16 @@ constexpr DeviceTypeName kDeviceTypes[] = {
     {"virtual", VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU},
     {"other", VK_PHYSICAL_DEVICE_TYPE_OTHER},
 };
-constexpr uint32_t kMaxThreads = 1024, kMaxRefreshRate = 1000;
+constexpr uint32_t kMaxRefreshRate = 1000;
 
 /// Leaves `number` alone when the variable is unset.
-Status readNumber(const char* name, uint32_t largest, const char* allowed, uint32_t& number) {
+Status readNumber(const char* name, uint32_t largest, const char* zero, uint32_t& number) {
     const auto text = variable(name);
     if (text.empty()) return {};
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     const bool whole = error == std::errc() && end == text.data() + text.size();
-    if (!whole || number > largest) return badValue(name, text, allowed);
+    if (!whole || number > largest)
+        return badValue(name, text, std::string("0 (") + zero + ") to " + std::to_string(largest));
     return {};
 }
 
@@ -92,10 +95,10 @@ Result<Configuration> readConfiguration() {
         }
         if (!known) return badValue("VERNIER_DEVICE_TYPE", text, "cpu, integrated, discrete, virtual, other");
     }
-    if (Status s = readNumber("VERNIER_THREADS", kMaxThreads, "0 (as many as CPUs) to 1024", result.threads); !s) {
+    if (Status s = readNumber("VERNIER_THREADS", kMaxThreads, "as many as CPUs", result.threads); !s) {
         return s.error();
     }
-    if (Status s = readNumber("VERNIER_REFRESH", kMaxRefreshRate, "0 (at once) to 1000", result.refreshRate); !s) {
+    if (Status s = readNumber("VERNIER_REFRESH", kMaxRefreshRate, "at once", result.refreshRate); !s) {
         return s.error();
     }
     if (const auto text = variable("VERNIER_ISA"); !text.empty()) {

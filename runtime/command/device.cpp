@@ -111,7 +111,6 @@ Device::Device(const DeviceDesc& desc)
 Device::~Device() = default;
 
 Result<std::unique_ptr<Device>> Device::create(const DeviceDesc& desc) {
-    constexpr uint32_t kMaxThreads = 256;
     if (desc.threads > kMaxThreads)
         return invalidArgument("device: threads is " + std::to_string(desc.threads) + ", but must be at most " +
                                std::to_string(kMaxThreads));

@@ -32,8 +32,10 @@ struct SubmissionReport {
     }
 };
 
+inline constexpr uint32_t kMaxThreads = 256;
+
 struct DeviceDesc {
-    uint32_t threads = 0;  // 0: as many as there are usable CPUs
+    uint32_t threads = 0;  // 0: as many as there are usable CPUs; at most kMaxThreads
     Isa maxIsa = kHighestIsa;
     Accuracy accuracy;
     Skips skips;

@@ -50,6 +50,9 @@ TEST_F(DriverTest, environmentChoosesTypeAndProfile) {
     setenv("VERNIER_PROFILE", "standard,", 1);
     EXPECT_NE(create(&other), VK_SUCCESS) << "an empty name must be refused";
     unsetenv("VERNIER_PROFILE");
+    setenv("VERNIER_THREADS", "257", 1);
+    EXPECT_NE(create(&other), VK_SUCCESS) << "more threads than a device takes must be refused";
+    unsetenv("VERNIER_THREADS");
     setenv("VERNIER_SKIP", "everything=off", 1);
     EXPECT_NE(create(&other), VK_SUCCESS) << "an unknown rule must be refused";
     unsetenv("VERNIER_SKIP");
