@@ -128,6 +128,11 @@ void DescriptorSet::keep(uint32_t slot) {
     };
     Descriptor& descriptor = slots_[slot];
     take(descriptor.texture.view, kept.view);
+    if (descriptor.texture.view != nullptr && kept.view.planar != nullptr) {
+        if (kept.planes == nullptr) kept.planes = std::make_unique<PlanarView>();
+        *kept.planes = *kept.view.planar;
+        kept.view.planar = kept.planes.get();
+    }
     take(descriptor.texture.sampler, kept.sampler);
     take(descriptor.sampler, kept.sampler);
 }

@@ -84,6 +84,7 @@ class DescriptorSet {
     /// What a descriptor names, where the objects may go before it does.
     struct Kept {
         TextureView view;
+        std::unique_ptr<PlanarView> planes;  // of a view that has several
         SamplerState sampler;
     };
     bool keeps(uint32_t slot) const;

@@ -100,6 +100,34 @@ class DescriptorIndexingTest : public ComputeTest {
         });
         return compute;
     }
+    /// An image of two planes; its view is the caller's. None where the validation layer stands between.
+    void makePlanar(TestImage& made) {
+        if (validated()) return;
+        auto info = make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
+        info.imageType = VK_IMAGE_TYPE_2D;
+        info.format = VK_FORMAT_G8_B8R8_2PLANE_420_UNORM;
+        info.extent = {4, 4, 1};
+        info.mipLevels = info.arrayLayers = 1;
+        info.samples = VK_SAMPLE_COUNT_1_BIT;
+        info.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+        ASSERT_EQ(vkCreateImage(device, &info, nullptr, &made.image), VK_SUCCESS);
+        VkMemoryRequirements needs{};
+        vkGetImageMemoryRequirements(device, made.image, &needs);
+        auto allocation = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
+        allocation.allocationSize = needs.size;
+        ASSERT_EQ(vkAllocateMemory(device, &allocation, nullptr, &made.memory), VK_SUCCESS);
+        ASSERT_EQ(vkBindImageMemory(device, made.image, made.memory, 0), VK_SUCCESS);
+        defer([this, made] {
+            vkDestroyImage(device, made.image, nullptr);
+            vkFreeMemory(device, made.memory, nullptr);
+        });
+        auto view = make<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
+        view.image = made.image;
+        view.viewType = VK_IMAGE_VIEW_TYPE_2D;
+        view.format = info.format;
+        view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+        ASSERT_EQ(vkCreateImageView(device, &view, nullptr, &made.view), VK_SUCCESS);
+    }
     static VkWriteDescriptorSet writeOf(VkDescriptorSet set, uint32_t binding, uint32_t element,
                                         const VkDescriptorBufferInfo& buffer) {
         auto write = make<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
@@ -351,13 +379,17 @@ void main() {
     viewInfo.image = images[0].image;
     VkImageView stale = VK_NULL_HANDLE;
     ASSERT_EQ(vkCreateImageView(device, &viewInfo, nullptr, &stale), VK_SUCCESS);
+    TestImage planar;
+    makePlanar(planar);
     for (uint32_t n = 0; n < 8; n += 2) writeImage(sets[0], n, stale, gone);
+    if (!validated()) writeImage(sets[0], 4, planar.view, gone);  // the layer wants a conversion with it
     const VkCommandBuffer commands = begin();
     dispatch(commands, compute, 1);
     ASSERT_EQ(vkEndCommandBuffer(commands), VK_SUCCESS);
     writeBuffer(sets[0], 0, 0, out);
     for (uint32_t n = 1; n < 8; n += 2) writeImage(sets[0], n, images[n].view, sampler);
     vkDestroyImageView(device, stale, nullptr);
+    vkDestroyImageView(device, planar.view, nullptr);
     vkDestroySampler(device, gone, nullptr);
     auto submission = make<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
     submission.commandBufferCount = 1;
