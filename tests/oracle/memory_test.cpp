@@ -53,11 +53,6 @@ void main() {
     return *scene;
 }
 
-std::vector<Vertex> leftOf(float x, std::array<float, 4> color = kRed) {
-    return {vertex(-8, -8, color), vertex(x, -8, color), vertex(x, 40, color),
-            vertex(-8, -8, color), vertex(x, 40, color), vertex(-8, 40, color)};
-}
-
 TEST(Stores, ByCoveredFragmentsAlone) {
     const OracleImage image = answer(storing(leftOf(8.501f)))[1];
     EXPECT_EQ(at(image, 7, 5).value[0], 1);

@@ -46,6 +46,12 @@ inline Vertex vertex(float x, float y, std::array<float, 4> color, float z = 0.5
 inline constexpr std::array<float, 4> kRed{1, 0, 0, 1}, kGreen{0, 1, 0, 1}, kBlue{0, 0, 1, 1};
 inline constexpr VkExtent2D kExtent{16, 16};
 
+/// Two triangles that cover all that is left of x.
+inline std::vector<Vertex> leftOf(float x, std::array<float, 4> color = kRed) {
+    return {vertex(-8, -8, color), vertex(x, -8, color), vertex(x, 40, color),
+            vertex(-8, -8, color), vertex(x, 40, color), vertex(-8, 40, color)};
+}
+
 using Configure = std::function<void(Scene&)>;
 
 inline Scene drawScene(const std::vector<Vertex>& vertices, const char* fragment, const Configure& configure = {}) {

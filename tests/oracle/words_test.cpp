@@ -74,11 +74,6 @@ void main() {
     return *scene;
 }
 
-std::vector<Vertex> leftOf(float x, std::array<float, 4> color = kRed) {
-    return {vertex(-8, -8, color), vertex(x, -8, color), vertex(x, 40, color),
-            vertex(-8, -8, color), vertex(x, 40, color), vertex(-8, 40, color)};
-}
-
 /// One triangle that covers all pixels.
 std::vector<Vertex> everything() {
     return {vertex(-8, -8, kRed), vertex(56, -8, kRed), vertex(-8, 56, kRed)};
