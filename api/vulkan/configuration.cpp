@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "runtime/command/device.h"
+#include "runtime/command/thread_limit.h"
 
 namespace vernier::vulkan {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "base/cpu_budget.h"
 #include "runtime/command/executor.h"
+#include "runtime/command/thread_limit.h"
 #include "spirv_interp/prepare.h"
 
 namespace vernier {

@@ -32,10 +32,8 @@ struct SubmissionReport {
     }
 };
 
-inline constexpr uint32_t kMaxThreads = 256;
-
 struct DeviceDesc {
-    uint32_t threads = 0;  // 0: as many as there are usable CPUs; at most kMaxThreads
+    uint32_t threads = 0;  // 0: as many as there are usable CPUs
     Isa maxIsa = kHighestIsa;
     Accuracy accuracy;
     Skips skips;
