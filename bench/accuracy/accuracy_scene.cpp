@@ -20,7 +20,7 @@ const ivec2 kCorners[6] = ivec2[](ivec2(0, 0), ivec2(1, 0), ivec2(0, 1), ivec2(0
 int cornerHash(ivec2 c) { return ((c.x * 7919 + c.y * 104729) ^ (c.x * c.y * 31)) & 1023; }
 ivec2 cornerCell() { int cell = gl_VertexIndex / 6; return ivec2(cell % cells.x, cell / cells.x) + kCorners[gl_VertexIndex % 6]; }
 bool isInner(ivec2 c) { return c.x > 0 && c.y > 0 && c.x < cells.x && c.y < cells.y; }
-// cells.x and cells.y are powers of two up to 1024; moves by up to 3/8 of a cell.
+// cells.x and cells.y are powers of two up to 1024; moves by up to 1/4 of a cell: by more, triangles turn over.
 vec2 cornerPlace(ivec2 c) {
     vec2 place = vec2(c);
     if (isInner(c)) place += (vec2(cornerHash(c) & 31, cornerHash(c) >> 5) - 15.5) / 64.0;
@@ -81,6 +81,8 @@ Result<Scene> accuracySceneNamed(std::string_view name) {
 Result<Scene> buildAccuracyScene(const AccuracyScene& scene, SceneUse use) {
     const bool counted = use == SceneUse::counted;
     const VkExtent2D extent = use == SceneUse::timed ? scene.timed : scene.judged;
+    const uint32_t more = use == SceneUse::timed ? scene.timedCells : 1;
+    const uint32_t cellsX = scene.cellsX * more, cellsY = scene.cellsY * more;
     SceneRecorder record(variantName(scene, use), scene.description);
     const uint32_t target = record.colorTarget("color", counted ? kCountFormat : scene.format, extent);
     const bool depth = scene.depth && !counted, textured = scene.texture != SceneTexture::none && !counted;
@@ -99,8 +101,8 @@ Result<Scene> buildAccuracyScene(const AccuracyScene& scene, SceneUse use) {
     pass.color(target, {0, 0, 0, counted ? 0.0f : 1.0f});
     if (depth) pass.depthStencil(depthTarget, 0);
     const Push push{{static_cast<float>(extent.width), static_cast<float>(extent.height)},
-                    {static_cast<int32_t>(scene.cellsX), static_cast<int32_t>(scene.cellsY)}};
-    DrawRecorder draw = record.draw(pipeline, scene.cellsX * scene.cellsY * 6);
+                    {static_cast<int32_t>(cellsX), static_cast<int32_t>(cellsY)}};
+    DrawRecorder draw = record.draw(pipeline, cellsX * cellsY * 6);
     draw.instances(scene.instances).push(push);
     if (textured) {
         SceneSampler sampler;

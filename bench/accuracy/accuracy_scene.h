@@ -32,7 +32,8 @@ struct AccuracyScene {
     uint32_t cover = 1;  // how often the mesh covers each pixel
     SceneTexture texture = SceneTexture::none;
     bool blend = false, depth = false;
-    float anisotropy = 0;  // of the sampler; 0: off
+    float anisotropy = 0;     // of the sampler; 0: off
+    uint32_t timedCells = 1;  // times as many cells each way in the timed variant, so that they are as large there
 };
 
 std::span<const AccuracyScene> accuracySceneTable();

@@ -72,6 +72,11 @@ void judgeImage(const RenderedImage& image, const OracleImage& oracle, const Ora
     figures.mean = values ? sum / static_cast<double>(values) : 0;
 }
 
+void addRound(double milliseconds, AccuracyFigures& figures) {
+    figures.rounds.push_back(milliseconds);
+    figures.frame = *std::min_element(figures.rounds.begin(), figures.rounds.end());
+}
+
 void countCover(const RenderedImage& image, uint32_t cover, AccuracyFigures& figures) {
     const SceneFormat& format = *sceneFormat(image.format);
     const size_t pixels = size_t{image.extent.width} * image.extent.height;
@@ -98,12 +103,19 @@ std::vector<double> signedErrors(const RenderedImage& image, const OracleImage& 
 
 nlohmann::json figuresJson(const AccuracyFigures& figures) {
     if (!figures.failure.empty()) return {{"failure", figures.failure}};
-    return {{"frame_ms", figures.frame},      {"worst_255", figures.worst},
-            {"mean_255", figures.mean},       {"worst_at", {figures.worstX, figures.worstY}},
-            {"worst_got", figures.worstGot},  {"worst_exact", figures.worstExact},
-            {"outside", figures.outside},     {"judged", figures.judged},
-            {"undecided", figures.undecided}, {"misplaced", figures.misplaced},
-            {"holes", figures.holes},         {"doubles", figures.doubles}};
+    return {{"frame_ms", figures.frame},
+            {"rounds_ms", figures.rounds},
+            {"worst_255", figures.worst},
+            {"mean_255", figures.mean},
+            {"worst_at", {figures.worstX, figures.worstY}},
+            {"worst_got", figures.worstGot},
+            {"worst_exact", figures.worstExact},
+            {"outside", figures.outside},
+            {"judged", figures.judged},
+            {"undecided", figures.undecided},
+            {"misplaced", figures.misplaced},
+            {"holes", figures.holes},
+            {"doubles", figures.doubles}};
 }
 
 Result<AccuracyFigures> figuresFromJson(const nlohmann::json& json) {
@@ -117,7 +129,7 @@ Result<AccuracyFigures> figuresFromJson(const nlohmann::json& json) {
         const auto number = [](const nlohmann::json& value) {
             return value.is_null() ? std::numeric_limits<double>::infinity() : value.get<double>();
         };
-        figures.frame = json.at("frame_ms").get<double>();
+        for (const nlohmann::json& round : json.at("rounds_ms")) addRound(round.get<double>(), figures);
         figures.worst = number(json.at("worst_255"));
         figures.mean = number(json.at("mean_255"));
         figures.worstX = json.at("worst_at").at(0).get<uint32_t>();

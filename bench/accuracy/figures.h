@@ -15,8 +15,9 @@ namespace vernier::bench {
 
 /// Absolute errors in units of 1/255 of the full range, so that figures of 8-bit and float targets compare.
 struct AccuracyFigures {
-    std::string failure;  // empty: everything below was measured
-    double frame = 0;     // milliseconds of a steady frame of the timed variant
+    std::string failure;         // empty: everything below was measured
+    double frame = 0;            // milliseconds of a steady frame of the timed variant: of the fastest round
+    std::vector<double> rounds;  // all of them, each in a process of its own
     double worst = 0, mean = 0;
     uint32_t worstX = 0, worstY = 0;
     std::array<double, 4> worstGot{}, worstExact{};
@@ -30,6 +31,9 @@ struct AccuracyFigures {
 /// snapped, for `misplaced`; its undecided pixels are left out.
 void judgeImage(const conformance::RenderedImage& image, const conformance::OracleImage& oracle,
                 const conformance::OracleImage& exact, AccuracyFigures& figures);
+
+/// Adds the time of one more round.
+void addRound(double milliseconds, AccuracyFigures& figures);
 
 /// Holes and doubles of a counted variant that covers every pixel `cover` times.
 void countCover(const conformance::RenderedImage& image, uint32_t cover, AccuracyFigures& figures);

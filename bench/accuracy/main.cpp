@@ -25,6 +25,8 @@ struct Options {
     std::string driver, scene;  // of render
     std::vector<std::string> scenes;
     std::filesystem::path out = "out/accuracy";
+    std::vector<std::string> positions;
+    uint32_t rounds = 3;
     bool all = false, fresh = false;
     double milliseconds = 0, error = 0;  // of the budget; 0: not asked for
 };
@@ -112,10 +114,11 @@ bool isSound(const AccuracyRun& run) {
 int run(const Options& options) {
     const Result<std::vector<const AccuracyScene*>> scenes = chosenScenes(options);
     if (!scenes) return fail(scenes.error());
-    const Result<AccuracyRun> measured =
-        measureAccuracy({options.paths, *scenes, options.out, options.fresh, showProgress});
+    const Result<AccuracyRun> measured = measureAccuracy(
+        {options.paths, *scenes, options.out, options.positions, options.rounds, options.fresh, showProgress});
     if (!measured) return fail(measured.error());
     for (const MeasuredScene& scene : measured->scenes) printScene(*measured, scene);
+    std::printf("\n%s", standingsText(*measured).c_str());
     printBudget(*measured, options);
     if (Status status = save(*measured, options.out); !status) return fail(status.error());
     std::printf("\n%s\n", (options.out / "accuracy.html").c_str());
@@ -145,6 +148,11 @@ int main(int argc, char** argv) {
     addDriverOptions(app, options.paths);
     app.add_flag("--all", options.all, "All scenes, which is what happens without --scene, too");
     app.add_option("--scene", options.scenes, "Scenes to measure");
+    app.add_option("--position", options.positions,
+                   "Positions to measure beside standard: a profile, AXIS=POSITION, or a driver; all without this");
+    app.add_option("--rounds", options.rounds, "How often each position is timed; the fastest round counts")
+        ->check(CLI::Range(1, 100))
+        ->capture_default_str();
     app.add_option("--out", options.out, "Folder for the page, figures and what children write")->capture_default_str();
     app.add_flag("--fresh", options.fresh, "Measure again what an earlier run of this build has measured");
     app.add_option("--within-ms", options.milliseconds, "Name the most exact setting that takes at most so long");

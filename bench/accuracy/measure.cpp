@@ -3,10 +3,12 @@
 #include <dlfcn.h>
 #include <vernier/vernier.h>
 
-#include <cmath>
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "bench/accuracy/choose.h"
 #include "bench/accuracy/removed.h"
 #include "bench/speed/machine.h"
 #include "conformance/drivers/try.h"
@@ -67,20 +69,28 @@ Result<Oracles> judge(const AccuracyScene& scene) {
     return Oracles{std::move((*declared)[0]), std::move((*exact)[0])};
 }
 
-Result<AccuracyFigures> measure(const MeasureOptions& options, const AccuracyScene& scene,
-                                const AccuracyPosition& position, const Oracles& oracles) {
+/// Everything but time.
+AccuracyFigures drawForErrors(const MeasureOptions& options, const AccuracyScene& scene,
+                              const AccuracyPosition& position, const Oracles& oracles) {
     AccuracyFigures figures;
     const Result<Rendering> judged = render(options, scene, position, SceneUse::judged);
     const Result<Rendering> counted = judged ? render(options, scene, position, SceneUse::counted) : judged.error();
-    const Result<Rendering> timed = counted ? render(options, scene, position, SceneUse::timed) : counted.error();
-    if (!timed) {
-        figures.failure = timed.error().message;
+    if (!counted) {
+        figures.failure = counted.error().message;
         return figures;
     }
     judgeImage(judged->images[0], oracles.declared, oracles.exact, figures);
     countCover(counted->images[0], scene.cover, figures);
-    figures.frame = timed->timing.frame;
     return figures;
+}
+
+void drawForTime(const MeasureOptions& options, const AccuracyScene& scene, const AccuracyPosition& position,
+                 AccuracyFigures& figures) {
+    const Result<Rendering> timed = render(options, scene, position, SceneUse::timed);
+    if (timed)
+        addRound(timed->timing.frame, figures);
+    else
+        figures.failure = timed.error().message;
 }
 
 Json loadKept(const MeasureOptions& options, const std::filesystem::path& file) {
@@ -91,6 +101,106 @@ Json loadKept(const MeasureOptions& options, const std::filesystem::path& file) 
     return kept;
 }
 
+/// The figures that are there so far, in memory and in a file that is whole whenever the program is stopped.
+class Keeper {
+  public:
+    explicit Keeper(const MeasureOptions& options) : file_(options.out / "kept.json"), kept_(loadKept(options, file_)) {
+        kept_["program"] = programStamp();
+    }
+
+    /// Nothing when there are none of that position yet.
+    Result<std::optional<AccuracyFigures>> find(const AccuracyScene& scene, const AccuracyPosition& position) const {
+        const Json::json_pointer place("/scenes/" + std::string(scene.name) + "/" + position.label);
+        if (!kept_.contains(place)) return std::optional<AccuracyFigures>();
+        Result<AccuracyFigures> figures = figuresFromJson(kept_.at(place));
+        if (!figures) return figures.error();
+        return std::optional(std::move(figures).value());
+    }
+
+    Status keep(const AccuracyScene& scene, const AccuracyPosition& position, const AccuracyFigures& figures) {
+        kept_["scenes"][scene.name][position.label] = figuresJson(figures);
+        const std::string text = kept_.dump(1) + "\n";
+        std::filesystem::path fresh = file_;
+        fresh += ".new";
+        VERNIER_TRY(writeFile(fresh, text.data(), text.size()));
+        std::error_code failed;
+        std::filesystem::rename(fresh, file_, failed);
+        return failed ? invalidArgument("cannot write " + file_.string() + ": " + failed.message()) : Status();
+    }
+
+  private:
+    std::filesystem::path file_;
+    Json kept_;
+};
+
+/// Calls step(position, figures) for all positions of a scene, and shows and keeps what comes of it.
+class Steps {
+  public:
+    Steps(const MeasureOptions& options, Keeper& keeper, size_t all) : options_(options), keeper_(keeper), all_(all) {}
+
+    void show(const std::string& next) const {
+        if (options_.progress) options_.progress(done_, all_, next);
+    }
+
+    /// `isDone`: an earlier run has taken this step; it is not taken again.
+    template <class Step>
+    Status take(const AccuracyScene& scene, const AccuracyPosition& position, bool isDone, AccuracyFigures& figures,
+                Step step) {
+        show(std::string(scene.name) + ": " + position.label);
+        if (!isDone) {
+            step(figures);
+            VERNIER_TRY(keeper_.keep(scene, position, figures));
+        }
+        ++done_;
+        return {};
+    }
+
+  private:
+    const MeasureOptions& options_;
+    Keeper& keeper_;
+    size_t done_ = 0;
+    const size_t all_;
+};
+
+Status measureScene(const MeasureOptions& options, const std::vector<AccuracyPosition>& positions,
+                    const Oracles& oracles, const Keeper& keeper, Steps& steps, MeasuredScene& measured) {
+    const AccuracyScene& scene = *measured.scene;
+    for (const AccuracyPosition& position : positions) {
+        const Result<std::optional<AccuracyFigures>> kept = keeper.find(scene, position);
+        if (!kept) return kept.error();
+        AccuracyFigures& figures = measured.figures[position.label];
+        if (*kept) figures = **kept;
+        VERNIER_TRY(steps.take(scene, position, kept->has_value(), figures,
+                               [&](AccuracyFigures& f) { f = drawForErrors(options, scene, position, oracles); }));
+        if (!figures.failure.empty()) continue;
+        Result<Rendering> rendering = loadRendering(folderOf(options, position), scene.name);
+        if (!rendering) return rendering.error();
+        measured.images[position.label] = std::move(rendering->images[0]);
+    }
+    for (uint32_t round = 0; round < options.rounds; ++round)
+        for (const AccuracyPosition& position : positions) {
+            AccuracyFigures& figures = measured.figures[position.label];
+            const bool isDone = !figures.failure.empty() || figures.rounds.size() > round;
+            VERNIER_TRY(steps.take(scene, position, isDone, figures,
+                                   [&](AccuracyFigures& f) { drawForTime(options, scene, position, f); }));
+        }
+    return {};
+}
+
+Result<std::vector<AccuracyPosition>> chosenPositions(const MeasureOptions& options) {
+    const std::vector<AccuracyPosition> all = accuracyPositions(driverChoices(options.paths));
+    if (options.positions.empty()) return all;
+    for (const std::string& label : options.positions)
+        if (std::none_of(all.begin(), all.end(), [&](const AccuracyPosition& one) { return one.label == label; }))
+            return invalidArgument("there is no position '" + label + "' here");
+    std::vector<AccuracyPosition> chosen;
+    for (const AccuracyPosition& position : all)
+        if (position.label == kBaseProfile ||
+            std::find(options.positions.begin(), options.positions.end(), position.label) != options.positions.end())
+            chosen.push_back(position);
+    return chosen;
+}
+
 }  // namespace
 
 Result<AccuracyRun> measureAccuracy(const MeasureOptions& options) {
@@ -98,38 +208,22 @@ Result<AccuracyRun> measureAccuracy(const MeasureOptions& options) {
     std::filesystem::create_directories(options.out, failed);
     if (failed) return invalidArgument("cannot create " + options.out.string() + ": " + failed.message());
     AccuracyRun run;
-    run.positions = accuracyPositions(driverChoices(options.paths));
+    Result<std::vector<AccuracyPosition>> positions = chosenPositions(options);
+    if (!positions) return positions.error();
+    run.positions = std::move(positions).value();
     run.machine = machineText();
-    const std::filesystem::path file = options.out / "kept.json";
-    Json kept = loadKept(options, file);
-    kept["program"] = programStamp();
-    size_t done = 0;
-    const size_t all = options.scenes.size() * run.positions.size();
+    Keeper keeper(options);
+    Steps steps(options, keeper, options.scenes.size() * run.positions.size() * (1 + options.rounds));
     for (const AccuracyScene* scene : options.scenes) {
-        if (options.progress) options.progress(done, all, std::string(scene->name) + ": exact values");
+        steps.show(std::string(scene->name) + ": exact values");
         Result<Oracles> oracles = judge(*scene);
         if (!oracles) return oracles.error();
         MeasuredScene& measured = run.scenes.emplace_back();
         measured.scene = scene;
-        for (const AccuracyPosition& position : run.positions) {
-            if (options.progress) options.progress(done, all, std::string(scene->name) + ": " + position.label);
-            Json& entry = kept["scenes"][scene->name][position.label];
-            Result<AccuracyFigures> figures =
-                entry.is_null() ? measure(options, *scene, position, *oracles) : figuresFromJson(entry);
-            if (!figures) return figures.error();
-            entry = figuresJson(*figures);
-            std::ofstream(file) << kept.dump(1) << '\n';
-            if (figures->failure.empty()) {
-                Result<Rendering> rendering = loadRendering(folderOf(options, position), scene->name);
-                if (!rendering) return rendering.error();
-                measured.images[position.label] = std::move(rendering->images[0]);
-            }
-            measured.figures[position.label] = std::move(figures).value();
-            ++done;
-        }
+        VERNIER_TRY(measureScene(options, run.positions, *oracles, keeper, steps, measured));
         measured.oracle = std::move(oracles->declared);
     }
-    if (options.progress) options.progress(done, all, "done");
+    steps.show("done");
     return run;
 }
 
@@ -150,7 +244,14 @@ std::string runJson(const AccuracyRun& run) {
                                    {"position", position.position},
                                    {"saved", position.saved},
                                    {"error", position.error},
-                                   {"verdict", position.verdict}});
+                                   {"verdict", position.verdict},
+                                   {"known_from", position.known}});
+    for (const Standing& standing : standings(run))
+        json["standings"].push_back({{"axis", standing.axis},
+                                     {"position", standing.position},
+                                     {"standard", standing.isStandard},
+                                     {"alone", standing.alone},
+                                     {"shared", standing.shared}});
     return json.dump(2) + "\n";
 }
 

@@ -31,14 +31,19 @@ struct AccuracyRun {
 struct MeasureOptions {
     conformance::DriverPaths paths;
     std::vector<const AccuracyScene*> scenes;
-    std::filesystem::path out;  // figures, images and logs
-    bool fresh = false;         // measures again what an earlier run has measured
-    /// Called before each position of each scene: how many are done, of how many, and what comes.
+    std::filesystem::path out;           // figures, images and logs
+    std::vector<std::string> positions;  // labels of those to measure beside `standard`; empty: all
+    uint32_t rounds = 3;                 // of timing, at least 1: all positions once, then all of them again
+    bool fresh = false;                  // measures again what an earlier run has measured
+    /// Called before each step: how many are done, of how many, and what comes. A step is a position of a scene, drawn
+    /// for its errors or in one round for its time.
     std::function<void(size_t done, size_t all, const std::string& next)> progress;
 };
 
-/// A position that fails is kept with its failure; the error is one of the scene, of the oracle or of the folder.
-/// Figures of an earlier run count only when they were made by this very program file.
+/// A position that fails is kept with its failure; the error is one of the scene, of the oracle or of the folder, or
+/// an unknown position.
+/// Figures of an earlier run count only when they were made by this very program file; what it has done of a position
+/// is not done again.
 Result<AccuracyRun> measureAccuracy(const MeasureOptions& options);
 
 /// The figures of all scenes and positions.

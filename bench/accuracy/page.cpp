@@ -108,22 +108,34 @@ std::string overview(const AccuracyRun& run) {
     return html + "</table>\n";
 }
 
-std::string verdicts(const AccuracyRun& run) {
+/// Which positions are worth having, and where.
+std::string standingsTable(const AccuracyRun& run) {
     std::string html =
-        "<p>Positions that no scene has a use for, as another one of their axis is as fast and as exact: ";
-    const std::vector<std::string> never = neverOnFront(run);
-    if (never.empty()) html += "none";
-    for (size_t i = 0; i < never.size(); ++i) html += (i ? ", " : "") + escapeHtml(never[i]);
-    return html + ".</p>\n";
+        "<h2>Where each position is needed</h2><p>Each axis by itself, the others as in standard; and the profiles. "
+        "Alone "
+        "on the front: every other position is slower or less exact there. With others: none beats it, but another one "
+        "is "
+        "as fast and as exact. Times are equal when they differ by less than two rounds of one position do in that "
+        "scene.</p><table class=values><tr><th>axis<th>position<th>alone on the front<th>scenes<th>with others</tr>";
+    for (const Standing& standing : standings(run)) {
+        std::string scenes;
+        for (const std::string& name : standing.alone) scenes += (scenes.empty() ? "" : ", ") + escapeHtml(name);
+        html += "<tr><td>" + escapeHtml(standing.axis) + "<td>" + escapeHtml(standing.position) +
+                (standing.isStandard ? " (standard)" : "") + "<td>" + std::to_string(standing.alone.size()) + "<td>" +
+                scenes + "<td>" + std::to_string(standing.shared.size()) + "</tr>";
+    }
+    return html + "</table>\n";
 }
 
 /// What the dial does not have, with the figures that decided it.
 std::string removed() {
     std::string html =
-        "<h2>Removed positions</h2><table class=values><tr><th>axis<th>position<th>would save<th>error<th>verdict</tr>";
+        "<h2>What the dial does not have</h2><table class=values><tr><th>axis<th>position<th>would "
+        "save<th>error<th>verdict<th>known from</tr>";
     for (const RemovedPosition& position : removedPositions()) {
         html += "<tr>";
-        for (const char* text : {position.axis, position.position, position.saved, position.error, position.verdict})
+        for (const char* text :
+             {position.axis, position.position, position.saved, position.error, position.verdict, position.known})
             html += "<td>" + escapeHtml(text);
         html += "</tr>";
     }
@@ -143,13 +155,14 @@ Result<std::string> accuracyPage(const AccuracyRun& run) {
         escapeHtml(run.machine) +
         "</p>\n<h2>Scenes by positions</h2><p>time against standard / worst "
         "error / holes / doubles</p>" +
-        overview(run) + verdicts(run);
+        overview(run) + standingsTable(run);
     for (const MeasuredScene& scene : run.scenes) {
         const AccuracyScene& about = *scene.scene;
         body += "<h2 id='" + std::string(about.name) + "'>" + about.name + "</h2><p>" + escapeHtml(about.description) +
                 " Separates: " + escapeHtml(about.separates) +
-                format(". Judged at %u x %u, timed at %u x %u.</p>", about.judged.width, about.judged.height,
-                       about.timed.width, about.timed.height);
+                format(". Judged at %u x %u, timed at %u x %u; times that differ by less than %.1f %% are equal.</p>",
+                       about.judged.width, about.judged.height, about.timed.width, about.timed.height,
+                       100 * timeNoise(run, scene));
         body += paretoSvg(run, scene) + axesSvg(run, scene) + errorBarSvg(run, scene) + figuresTable(run, scene) +
                 maps(run, scene);
     }

@@ -7,12 +7,6 @@ namespace {
 
 using conformance::DriverChoice;
 
-constexpr std::pair<const char*, VnProfile> kProfiles[] = {{"draft", VN_PROFILE_DRAFT},
-                                                           {"fast", VN_PROFILE_FAST},
-                                                           {kBaseProfile, VN_PROFILE_STANDARD},
-                                                           {"fine", VN_PROFILE_FINE},
-                                                           {"reference", VN_PROFILE_REFERENCE}};
-
 uint32_t positionIn(uint32_t axis, VnProfile profile) {
     uint32_t position = 0;
     vnGetAxisPosition(axis, profile, &position);
@@ -20,13 +14,13 @@ uint32_t positionIn(uint32_t axis, VnProfile profile) {
 }
 
 void addProfiles(std::vector<AccuracyPosition>& positions) {
-    for (const auto& [name, profile] : kProfiles) {
+    for (int profile = VN_PROFILE_DRAFT; profile <= VN_PROFILE_REFERENCE; ++profile) {
         AccuracyPosition& position = positions.emplace_back();
-        position.label = position.profile = name;
+        position.label = position.profile = kProfileNames[profile - VN_PROFILE_DRAFT];
         position.driver = "api";
         VnAxisInfo axis{};
         for (uint32_t index = 0; vnGetAxis(index, &axis) == VN_SUCCESS; ++index)
-            if (positionIn(index, profile) < axis.lowestForVulkan) position.belowVulkan = true;
+            if (positionIn(index, static_cast<VnProfile>(profile)) < axis.lowestForVulkan) position.belowVulkan = true;
     }
 }
 

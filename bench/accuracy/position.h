@@ -22,6 +22,8 @@ struct AccuracyPosition {
 
 /// The profile whose axes are moved one at a time.
 inline constexpr const char* kBaseProfile = "standard";
+/// In the order of the dial.
+inline constexpr const char* kProfileNames[] = {"draft", "fast", kBaseProfile, "fine", "reference"};
 
 /// Profiles in the order of the dial; then, for each axis, its positions that `standard` does not have, from cheap to
 /// exact; then the other drivers that are present.

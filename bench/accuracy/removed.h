@@ -1,5 +1,4 @@
-// Positions that were built and measured, and that the dial does not have: what each would have saved, and what it
-// would have cost.
+// Positions that the dial does not have: what each would save, what it would cost, and how that is known.
 #pragma once
 
 #include <span>
@@ -12,6 +11,7 @@ struct RemovedPosition {
     const char* saved;    // of time, and of what
     const char* error;    // beside what is computed
     const char* verdict;  // why it is not offered
+    const char* known;    // from what: built into the renderer, its arithmetic alone, or not built
 };
 
 std::span<const RemovedPosition> removedPositions();

@@ -19,7 +19,21 @@ void main() {
     value = vec3(triangle * 37 & 255, triangle * 91 & 255, triangle * 151 & 255) / 255.0;
     gl_Position = vec4(cornerPlace(cornerCell()), 0.5, 1.0);
 })";
-// A fan: every cell becomes a triangle from a point off the middle to a piece of the border, and one without area.
+// Corners as a scan has them: anywhere between pixels, inner ones moved by up to 1/4 of a cell (else triangles turn
+// over), in 8192 steps.
+constexpr const char* kScanned = R"(
+layout(location = 0) flat out vec3 value;
+uint mixed(uint x) { x = (x ^ (x >> 16)) * 0x7FEB352Du; x = (x ^ (x >> 15)) * 0x846CA68Bu; return x ^ (x >> 16); }
+void main() {
+    ivec2 c = cornerCell();
+    uint bits = mixed(uint(c.y) * 4096u + uint(c.x));
+    vec2 moved = isInner(c) ? (vec2(bits & 8191u, (bits >> 13) & 8191u) - 4095.5) * 0.484375 / 8192.0 : vec2(0.0);
+    int triangle = gl_VertexIndex / 3;
+    value = vec3(triangle * 37 & 255, triangle * 91 & 255, triangle * 151 & 255) / 255.0;
+    gl_Position = vec4((vec2(c) + moved) / vec2(cells) * 2.0 - 1.0, 0.5, 1.0);
+})";
+// A fan: every cell becomes a triangle from a point between pixels, off the middle, to a piece of the border, and one
+// without area.
 constexpr const char* kFan = R"(
 layout(location = 0) flat out vec3 value;
 vec2 border(int step) {  // cells.x steps a side, counter-clockwise; exact
@@ -30,7 +44,7 @@ vec2 border(int step) {  // cells.x steps a side, counter-clockwise; exact
 void main() {
     int cell = gl_VertexIndex / 6, corner = gl_VertexIndex % 6;
     value = vec3(cell * 37 & 255, cell * 91 & 255, cell * 151 & 255) / 255.0;
-    vec2 place = corner == 1 ? border(cell) : corner == 2 ? border(cell + 1) : vec2(0.1376953125, -0.0966796875);
+    vec2 place = corner == 1 ? border(cell) : corner == 2 ? border(cell + 1) : vec2(0.13771234, -0.09665432);
     gl_Position = vec4(place, 0.5, 1.0);
 })";
 // One instance a band of the target, each moved by another 1/64 of a pixel, as frames of a slow pan.
@@ -169,6 +183,50 @@ constexpr AccuracyScene kScenes[] = {
      1},
     {"jittered_mesh", "A mesh of flat triangles whose corners lie between pixels.", "sub-pixel bits", kSmall, kLarge,
      kFloat, kFlatTriangles, kShowFlat, 16, 16},
+    {"scanned_mesh",
+     "A scan: triangles of a few pixels whose corners lie anywhere between pixels.",
+     "sub-pixel bits",
+     {256, 128},
+     {1024, 512},
+     kFloat,
+     kScanned,
+     kShowFlat,
+     64,
+     32,
+     1,
+     1,
+     kNoTexture,
+     false,
+     false,
+     0,
+     4},
+    {"facets",
+     "A model of flat facets some twenty pixels wide, as parts of machines are drawn.",
+     "sub-pixel bits",
+     {128, 128},
+     {1024, 1024},
+     kFloat,
+     kScanned,
+     kShowFlat,
+     8,
+     8,
+     1,
+     1,
+     kNoTexture,
+     false,
+     false,
+     0,
+     8},
+    {"walls",
+     "A room of triangles hundreds of pixels long.",
+     "sub-pixel bits",
+     {256, 256},
+     {1024, 1024},
+     kFloat,
+     kScanned,
+     kShowFlat,
+     2,
+     2},
     {"sliver_fan", "A fan of 256 slivers around one point.", "sub-pixel bits", kSmall, kLarge, kFloat, kFan, kShowFlat,
      64, 4},
     {"slow_pan",
