@@ -10,15 +10,27 @@ bool isWrong(const PixelDiff& pixel) {
     return pixel.pixelClass == PixelClass::oursWrong || pixel.pixelClass == PixelClass::unexplained;
 }
 
+OracleImage decided(OracleImage image) {
+    constexpr OracleFlags kStaysOpen = kOracleUnknown | kOracleUndefined | kOraclePattern | kOracleSequence;
+    for (OraclePixel& pixel : image.pixels) {
+        if ((pixel.flags & kOracleEdge) == 0 || (pixel.flags & kStaysOpen) != 0) continue;
+        pixel.low = pixel.high = pixel.value;
+        pixel.flags = 0;
+    }
+    return image;
+}
+
 /// The classes of all pixels of all outputs, one after the other.
-Result<std::vector<bool>> wrongMap(const std::vector<RenderedImage>& images, const std::vector<OracleImage>& oracle) {
+Result<std::vector<bool>> wrongMap(const std::vector<RenderedImage>& images, const std::vector<OracleImage>& oracle,
+                                   HeldTo heldTo) {
     if (images.size() != oracle.size()) {
         return invalidArgument(std::to_string(images.size()) + " images against " + std::to_string(oracle.size()) +
                                " of the oracle");
     }
     std::vector<bool> wrong;
     for (size_t i = 0; i < images.size(); ++i) {
-        const Result<ImageDiff> diff = compareWithOracle(images[i], oracle[i]);
+        const Result<ImageDiff> diff =
+            compareWithOracle(images[i], heldTo == HeldTo::declaredRules ? decided(oracle[i]) : oracle[i]);
         if (!diff) return diff.error();
         for (const PixelDiff& pixel : diff->pixels) wrong.push_back(isWrong(pixel));
     }
@@ -37,7 +49,7 @@ bool nearlyConvinces(const Explanation& e) {
     return e.explained * 20 >= e.wrong * 19 && e.broken * 20 <= e.wrong;
 }
 
-/// "snap4" and "snap3" are answers to one question.
+/// "weights7" and "weights6" are answers to one question.
 std::string_view questionOf(const Hypothesis& hypothesis) {
     std::string_view name = hypothesis.name;
     while (!name.empty() && std::isdigit(static_cast<unsigned char>(name.back())) != 0) name.remove_suffix(1);
@@ -52,8 +64,9 @@ bool answers(const Hypotheses& hypotheses, const Hypothesis& question) {
 /// Of the pixels that are wrong (`before`), those that hypotheses explain.
 class Search {
   public:
-    Search(const Scene& scene, const std::vector<RenderedImage>& images, std::vector<bool> before, const AskOracle& ask)
-        : scene_(scene), images_(images), before_(std::move(before)), ask_(ask) {}
+    Search(const Scene& scene, const std::vector<RenderedImage>& images, std::vector<bool> before, const AskOracle& ask,
+           HeldTo heldTo)
+        : scene_(scene), images_(images), before_(std::move(before)), ask_(ask), heldTo_(heldTo) {}
 
     Result<std::optional<Explanation>> run(const Hypotheses& declared) {
         const auto wrong = static_cast<uint64_t>(std::count(before_.begin(), before_.end(), true));
@@ -97,7 +110,7 @@ class Search {
     Result<bool> judge(Explanation& explanation) const {
         const std::optional<std::vector<OracleImage>> answer = ask_(explanation.hypotheses);
         if (!answer) return false;
-        const Result<std::vector<bool>> after = wrongMap(images_, *answer);
+        const Result<std::vector<bool>> after = wrongMap(images_, *answer, heldTo_);
         if (!after) return after.error();
         for (size_t i = 0; i < before_.size(); ++i) {
             explanation.explained += before_[i] && !(*after)[i];
@@ -110,6 +123,7 @@ class Search {
     const std::vector<RenderedImage>& images_;
     const std::vector<bool> before_;
     const AskOracle& ask_;
+    const HeldTo heldTo_;
 };
 
 }  // namespace
@@ -131,18 +145,19 @@ std::string namesOf(const Hypotheses& hypotheses) {
     return names;
 }
 
-Result<uint64_t> wrongPixels(const std::vector<RenderedImage>& images, const std::vector<OracleImage>& oracle) {
-    const Result<std::vector<bool>> map = wrongMap(images, oracle);
+Result<uint64_t> wrongPixels(const std::vector<RenderedImage>& images, const std::vector<OracleImage>& oracle,
+                             HeldTo heldTo) {
+    const Result<std::vector<bool>> map = wrongMap(images, oracle, heldTo);
     if (!map) return map.error();
     return static_cast<uint64_t>(std::count(map->begin(), map->end(), true));
 }
 
 Result<std::optional<Explanation>> explainWrong(const Scene& scene, const std::vector<RenderedImage>& images,
                                                 const std::vector<OracleImage>& oracle, const AskOracle& ask,
-                                                const Hypotheses& declared) {
-    Result<std::vector<bool>> before = wrongMap(images, oracle);
+                                                const Hypotheses& declared, HeldTo heldTo) {
+    Result<std::vector<bool>> before = wrongMap(images, oracle, heldTo);
     if (!before) return before.error();
-    return Search(scene, images, std::move(before).value(), ask).run(declared);
+    return Search(scene, images, std::move(before).value(), ask, heldTo).run(declared);
 }
 
 std::string describe(const Explanation& explanation) {

@@ -34,15 +34,24 @@ struct Explanation {
 /// The oracle's images of a scene under hypotheses; nothing when it has none in time.
 using AskOracle = std::function<std::optional<std::vector<OracleImage>>(const Hypotheses& hypotheses)>;
 
+/// What an implementation is held to.
+enum class HeldTo : uint8_t {
+    specification,
+    /// The rules that Vernier declares: where snapping, ties or the order of near depths leave a pixel open, it has the
+    /// declared value.
+    declaredRules,
+};
+
 /// Pixels of an implementation's images that the oracle does not permit.
-Result<uint64_t> wrongPixels(const std::vector<RenderedImage>& images, const std::vector<OracleImage>& oracle);
+Result<uint64_t> wrongPixels(const std::vector<RenderedImage>& images, const std::vector<OracleImage>& oracle,
+                             HeldTo heldTo = HeldTo::specification);
 
 /// Tries the hypotheses that change something in this scene, one by one and then added to the best of them, until what
 /// holds together convinces: returns that, or what explains most, or nothing when nothing is wrong or nothing is
 /// explained. Begins with what the implementation declares.
 Result<std::optional<Explanation>> explainWrong(const Scene& scene, const std::vector<RenderedImage>& images,
                                                 const std::vector<OracleImage>& oracle, const AskOracle& ask,
-                                                const Hypotheses& declared = {});
+                                                const Hypotheses& declared = {}, HeldTo heldTo = HeldTo::specification);
 
 /// One sentence: "2 of 83 wrong pixels ...", for the report.
 std::string describe(const Explanation& explanation);

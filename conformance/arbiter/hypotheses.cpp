@@ -90,6 +90,13 @@ bool snap(const Scene&, OracleRules& rules, int bits) {
     return true;
 }
 
+bool giveTies(const Scene& scene, OracleRules& rules, TieRule ties) {
+    rules.ties = ties;
+    return std::ranges::any_of(scene.pipelines, [](const ScenePipeline& pipeline) {
+        return pipeline.topology >= VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST && pipeline.polygonMode == VK_POLYGON_MODE_FILL;
+    });
+}
+
 constexpr Hypothesis kHypotheses[] = {
     {"majorAxis", "attributes of Bresenham lines follow the major axis alone, not the projection on the segment",
      [](Scene& scene, OracleRules& rules) {
@@ -116,8 +123,13 @@ constexpr Hypothesis kHypotheses[] = {
      }},
     {"snap4", "vertices are snapped to 4 sub-pixel bits",
      [](Scene& scene, OracleRules& rules) { return snap(scene, rules, 4); }},
-    {"snap3", "vertices are snapped to 3 sub-pixel bits",
-     [](Scene& scene, OracleRules& rules) { return snap(scene, rules, 3); }},
+    {"tiesInclusive", "the fill rule is missing: samples on an edge belong to both triangles",
+     [](Scene& scene, OracleRules& rules) { return giveTies(scene, rules, TieRule::both); }},
+    {"tiesExclusive", "samples on an edge belong to neither triangle",
+     [](Scene& scene, OracleRules& rules) { return giveTies(scene, rules, TieRule::neither); }},
+    // Permitted: it explains departures from declared rules alone.
+    {"tiesBottomRight", "samples on an edge belong to the triangle whose bottom or right edge it is",
+     [](Scene& scene, OracleRules& rules) { return giveTies(scene, rules, TieRule::bottomRight); }},
     // SwiftShader, PixelRoutine::quad, subtracts a sample's x where its edges and its y are added.
     {"mirroredDepths", "depths of samples are taken at places mirrored from left to right in the pixel",
      [](Scene& scene, OracleRules& rules) {

@@ -40,6 +40,15 @@ struct OracleImage {
     std::vector<OraclePixel> pixels;  // row by row
 };
 
+/// Which triangles a sample exactly on an edge belongs to. The specification wants one of the two that share the edge;
+/// which one is the implementation's. The last two break that: for explaining what an implementation does.
+enum class TieRule : uint8_t {
+    topLeft,  // of top and left edges: declared
+    bottomRight,
+    both,
+    neither,
+};
+
 /// What an implementation declares and the specification leaves to it.
 struct OracleRules {
     int subPixelBits = 8;               // subPixelPrecisionBits: vertices may be snapped by up to 2^-bits pixel
@@ -55,6 +64,7 @@ struct OracleRules {
     // The same of depths of samples at x mirrored within the pixel; of depths and inputs extrapolated from snapped
     // vertices behind the eye; of linear blits whose coordinates are truncated instead of floored.
     bool mirroredDepths = false, planesBehindEye = false, truncatedBlits = false;
+    TieRule ties = TieRule::topLeft;  // of triangles
 };
 
 /// One image per Scene::outputs, in that order. An error with code `unsupported` when the scene uses

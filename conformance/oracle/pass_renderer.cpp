@@ -76,7 +76,8 @@ class PassRenderer {
                                      output.depthFormat,
                                      view_ ? std::nullopt : std::optional(layer_),
                                      rules_.majorAxisLines,
-                                     rules_.planesBehindEye};
+                                     rules_.planesBehindEye,
+                                     rules_.ties};
         const Result<std::vector<PreparedPrimitive>> primitives = preparePrimitives(context, *geometry);
         if (!primitives) return primitives.error();
         positions_ = locations(pipeline);

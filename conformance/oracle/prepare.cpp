@@ -80,7 +80,8 @@ class Preparer {
                               {},
                               viewHash_,
                               context_.subPixelBits,
-                              context_.planesBehindEye};
+                              context_.planesBehindEye,
+                              context_.ties};
         size_t distances = ~size_t{0};
         for (size_t k = 0; k < 3; ++k) {
             setup.position[k] = vertices[k]->position;

@@ -39,6 +39,7 @@ struct PrepareContext {
     std::optional<uint32_t> layer;  // only primitives of this layer
     // Of OracleRules.
     bool majorAxisLines = false, planesBehindEye = false;
+    TieRule ties = TieRule::topLeft;
 };
 
 /// In the order of the draw. The geometry must outlive the result.

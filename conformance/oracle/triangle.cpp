@@ -65,6 +65,7 @@ std::optional<Triangle> Triangle::create(const Setup& setup) {
     t.freedom_ = t.subUnit_;
     t.snapped_ = inFront;
     t.planesBehindEye_ = setup.planesBehindEye && !inFront;
+    t.ties_ = setup.ties;
     for (size_t i = 0; i < 3 && t.snapped_; ++i) {
         t.window_[i] = {v[i].x / v[i].w, v[i].y / v[i].w};
         const double reach = std::max(std::abs(t.window_[i][0]), std::abs(t.window_[i][1]));
@@ -208,6 +209,12 @@ OpenEdge Triangle::openEdge(size_t oppositeVertex, bool nominalInside, bool tie)
     return {edgeKey_[oppositeVertex], edgeForward_[oppositeVertex] == (side_ > 0), nominalInside, tie};
 }
 
+std::optional<bool> Triangle::tieForAll() const {
+    if (ties_ == TieRule::both) return true;
+    if (ties_ == TieRule::neither) return false;
+    return std::nullopt;
+}
+
 SampleVerdict Triangle::classifySnapped(const GridPoint& sample) const {
     SampleVerdict verdict;
     const Point p = toPoint(sample, subUnit_);
@@ -227,8 +234,12 @@ SampleVerdict Triangle::classifySnapped(const GridPoint& sample) const {
             const GridPoint& a = side_ > 0 ? grid_[j] : grid_[k];
             const GridPoint& b = side_ > 0 ? grid_[k] : grid_[j];
             const Wide exactly = edgeFunction(a, b, sample);
+            if (const std::optional<bool> in = tieForAll(); in && exactly == 0) {
+                ++(*in ? inside : outside);
+                continue;
+            }
             verdict.edges[verdict.edgeCount++] =
-                openEdge(i, exactly > 0 || (exactly == 0 && isTopLeft(a, b)), exactly == 0);
+                openEdge(i, exactly > 0 || (exactly == 0 && tieInside(isTopLeft(a, b))), exactly == 0);
         }
     }
     if (orientationOpen_) {
@@ -252,8 +263,13 @@ SampleVerdict Triangle::classifyHomogeneous(const GridPoint& sample) const {
             freedom_ * (std::abs(a) + std::abs(b)) + kNoise * (std::abs(a * p.x) + std::abs(b * p.y) + std::abs(c));
         if (e < -support) return verdict;
         if (e > support) continue;
+        if (const std::optional<bool> in = tieForAll(); in && e == 0) {
+            if (!*in) return verdict;
+            continue;
+        }
         const double dx = side_ * a, dy = side_ * b;
-        verdict.edges[verdict.edgeCount++] = openEdge(i, e > 0 || (e == 0 && (dx > 0 || (dx == 0 && dy > 0))), e == 0);
+        const bool topLeft = dx > 0 || (dx == 0 && dy > 0);
+        verdict.edges[verdict.edgeCount++] = openEdge(i, e > 0 || (e == 0 && tieInside(topLeft)), e == 0);
     }
     verdict.possible = true;
     return verdict;

@@ -12,6 +12,7 @@
 #include "conformance/oracle/coverage.h"
 #include "conformance/oracle/homogeneous.h"
 #include "conformance/oracle/interval.h"
+#include "conformance/oracle/oracle.h"
 
 #include <array>
 #include <cstdint>
@@ -63,6 +64,7 @@ class Triangle {
         uint64_t context = 0;  // vertices with equal clip coordinates snap alike within a context
         int subPixelBits = 8;
         bool planesBehindEye = false;  // OracleRules::planesBehindEye
+        TieRule ties = TieRule::topLeft;
     };
 
     /// Nothing when no implementation draws any of it.
@@ -109,9 +111,13 @@ class Triangle {
     SampleVerdict classifyHomogeneous(const GridPoint& sample) const;
     void applyCuts(const GridPoint& sample, SampleVerdict& verdict) const;
     OpenEdge openEdge(size_t oppositeVertex, bool nominalInside, bool tie) const;
+    /// What the rule says of a sample exactly on an edge; nothing where it is one triangle's and not the other's.
+    std::optional<bool> tieForAll() const;
+    bool tieInside(bool topLeft) const { return topLeft == (ties_ == TieRule::topLeft); }
 
     HomogeneousTriangle<double> shape_;
     bool snapped_ = false, planesBehindEye_ = false;
+    TieRule ties_ = TieRule::topLeft;
     double side_ = 1;  // sign that makes edge functions positive inside
     int orientation_ = 0;
     bool orientationOpen_ = false;
