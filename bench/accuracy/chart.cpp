@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "bench/accuracy/choose.h"
@@ -49,6 +50,26 @@ std::string dotShape(const Dot& dot, double x, double y) {
                   dot.onFront ? color : "white");
 }
 
+/// What shapes and colours stand for, in two lines.
+std::string legendSvg(double left, double top) {
+    constexpr std::pair<const char*, double> kKinds[] = {
+        {"profiles", 0}, {"other drivers", 90}, {"standard with one axis moved", 205}};
+    std::string svg;
+    for (size_t kind = 0; kind < std::size(kKinds); ++kind) {
+        const double x = left + kKinds[kind].second;
+        if (kind == 1)
+            svg += format("<rect x='%.1f' y='%.1f' width='8' height='8' fill='%s'/>\n", x - 4, top - 8,
+                          kChartColors[kind]);
+        else
+            svg += format("<circle cx='%.1f' cy='%.1f' r='4.5' stroke='%s' stroke-width='2' fill='%s'/>\n", x, top - 4,
+                          kChartColors[kind], kChartColors[kind]);
+        svg += svgLabel(x + 10, top, "start", kKinds[kind].first);
+    }
+    return svg +
+           svgLabel(left - 4, top + 18, "start",
+                    "filled: on the front; error: mean of values, and all of it for a misplaced pixel; 1e-07: none");
+}
+
 /// Where labels go so that none covers another: beside their dots where there is room, else below each other, and all
 /// above `bottom`. They come in the order of their dots' heights.
 class LabelColumn {
@@ -74,9 +95,10 @@ std::string paretoSvg(const AccuracyRun& run, const MeasuredScene& scene) {
     constexpr double kLeft = 64, kRight = 440, kTop = 40, kBottom = 350;
     std::vector<Dot> dots = dotsOf(run, scene);
     const LogAxis x = around(dots, &Dot::time, kLeft, kRight), y = around(dots, &Dot::error, kBottom, kTop);
-    std::string svg = svgStart(640, 400) + svgGrid(x, y);
-    svg += svgLabel(kLeft, kTop - 22, "start", std::string(scene.scene->name) + ": mean error (1/255) over time");
+    std::string svg = svgStart(640, 440) + svgGrid(x, y);
+    svg += svgLabel(kLeft, kTop - 22, "start", std::string(scene.scene->name) + ": error (1/255) over time");
     svg += svgLabel((kLeft + kRight) / 2, kBottom + 36, "middle", "milliseconds per frame");
+    svg += legendSvg(kLeft, kBottom + 58);
     std::vector<Dot> front;
     std::copy_if(dots.begin(), dots.end(), std::back_inserter(front), [](const Dot& dot) { return dot.onFront; });
     std::sort(front.begin(), front.end(), [](const Dot& a, const Dot& b) { return a.time < b.time; });
@@ -93,7 +115,7 @@ std::string paretoSvg(const AccuracyRun& run, const MeasuredScene& scene) {
 }
 
 std::string axesSvg(const AccuracyRun& run, const MeasuredScene& scene) {
-    constexpr double kWidth = 210, kTop = 36, kRow = 20, kBar = 60, kNames = 70;
+    constexpr double kWidth = 234, kTop = 36, kRow = 20, kBar = 60, kNames = 70;
     const AccuracyFigures& base = scene.figures.at(kBaseProfile);
     std::vector<std::string> axes;
     for (const AccuracyPosition& position : run.positions)
@@ -103,7 +125,7 @@ std::string axesSvg(const AccuracyRun& run, const MeasuredScene& scene) {
     std::string svg = svgStart(static_cast<int>(kWidth * static_cast<double>(axes.size())), 170);
     for (size_t a = 0; a < axes.size(); ++a) {
         const double left = kWidth * static_cast<double>(a) + 8;
-        svg += svgLabel(left, 16, "start", axes[a] + ": time, mean error");
+        svg += svgLabel(left, 16, "start", axes[a] + ": time, error");
         double top = kTop;
         const auto row = [&](const std::string& name, const AccuracyFigures& figures) {
             const double relative = base.frame > 0 ? figures.frame / base.frame : 1;
@@ -124,10 +146,11 @@ std::string axesSvg(const AccuracyRun& run, const MeasuredScene& scene) {
 
 std::string errorBarSvg(const AccuracyRun& run, const MeasuredScene& scene) {
     constexpr double kWidth = 400;
-    std::string svg = svgStart(640, 44);
+    std::string svg = svgStart(640, 62);
+    svg += svgLabel(4, 14, "start", "the error of standard, by the axis that takes it away");
     const AccuracyFigures& base = scene.figures.at(kBaseProfile);
     const double total = base.failure.empty() ? rankedError(scene, base) : 0;
-    if (total <= 0) return svg + svgLabel(4, 26, "start", "no error at standard") + "</svg>\n";
+    if (total <= 0) return svg + svgLabel(4, 34, "start", "none") + "</svg>\n";
     double left = 4, rest = total;
     size_t color = 0;
     std::string legend;
@@ -135,16 +158,16 @@ std::string errorBarSvg(const AccuracyRun& run, const MeasuredScene& scene) {
         if (axis == "all") continue;
         const double part = std::clamp(removed, 0.0, rest);
         const double width = part / total * kWidth;
-        svg += format("<rect x='%.1f' y='4' width='%.1f' height='16' fill='%s'/>\n", left, width,
+        svg += format("<rect x='%.1f' y='22' width='%.1f' height='16' fill='%s'/>\n", left, width,
                       kChartColors[color % kChartColors.size()]);
         legend += format("<tspan fill='%s'>", kChartColors[color++ % kChartColors.size()]) + axis +
                   format(" %.0f %%</tspan>  ", 100 * part / total);
         left += width;
         rest -= part;
     }
-    svg += format("<rect x='%.1f' y='4' width='%.1f' height='16' fill='#bbb'/>\n", left, rest / total * kWidth);
+    svg += format("<rect x='%.1f' y='22' width='%.1f' height='16' fill='#bbb'/>\n", left, rest / total * kWidth);
     svg +=
-        "<text x='4' y='36'>" + legend + format("format and what no axis changes %.0f %%</text>\n", 100 * rest / total);
+        "<text x='4' y='54'>" + legend + format("format and what no axis changes %.0f %%</text>\n", 100 * rest / total);
     return svg + "</svg>\n";
 }
 

@@ -3,7 +3,8 @@
 #include <vernier/vernier_accuracy.h>
 
 #include <algorithm>
-#include <cstdio>
+
+#include "bench/svg/svg.h"
 
 namespace vernier::bench {
 namespace {
@@ -131,6 +132,10 @@ std::vector<Standing> standings(const AccuracyRun& run) {
 }
 
 std::string standingsText(const AccuracyRun& run) {
+    const bool isRepeated = std::all_of(run.scenes.begin(), run.scenes.end(), [](const MeasuredScene& scene) {
+        return std::any_of(scene.figures.begin(), scene.figures.end(),
+                           [](const auto& each) { return each.second.rounds.size() > 1; });
+    });
     double least = 1, most = 0;
     for (const MeasuredScene& scene : run.scenes) {
         least = std::min(least, timeNoise(run, scene));
@@ -145,10 +150,8 @@ std::string standingsText(const AccuracyRun& run) {
                 std::to_string(standing.alone.size()) + " | " + scenes + " | " +
                 std::to_string(standing.shared.size()) + " |\n";
     }
-    char noise[80];
-    std::snprintf(noise, sizeof noise, "\nTimes that differ by less than %.1f to %.1f %%, by scene, are equal.\n",
-                  100 * least, 100 * most);
-    return text + noise;
+    text += format("\nTimes that differ by less than %.1f to %.1f %%, by scene, are equal", 100 * least, 100 * most);
+    return text + (isRepeated ? ".\n" : ", but not all were taken twice: the noise is not known.\n");
 }
 
 std::string mostExactWithin(const AccuracyRun& run, const MeasuredScene& scene, double milliseconds) {

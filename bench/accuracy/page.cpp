@@ -15,10 +15,12 @@ namespace {
 
 using namespace conformance;
 
+constexpr double kFirstDecade = -7, kDecades = 6;
+constexpr Rgb8 kNotJudged{84, 88, 96};
+
 /// Red above the exact value, blue below it, on a logarithmic scale that is the same everywhere: from 1e-7 to 1e-1 of
 /// the full range.
 Rgb8 errorColor(double codes) {
-    constexpr double kFirstDecade = -7, kDecades = 6;
     if (codes == 0) return {14, 16, 22};
     const double decade = std::isinf(codes) ? 0 : std::log10(std::abs(codes) / 255);
     const double strength = 0.15 + 0.85 * std::clamp((decade - kFirstDecade) / kDecades, 0.0, 1.0);
@@ -30,7 +32,29 @@ Picture errorMap(const RenderedImage& image, const OracleImage& oracle) {
     Picture picture(image.extent.width, image.extent.height);
     const std::vector<double> errors = signedErrors(image, oracle);
     std::transform(errors.begin(), errors.end(), picture.pixels.begin(), errorColor);
+    for (size_t i = 0; i < errors.size(); ++i)
+        if ((oracle.pixels[i].flags & kOracleOpen) != 0) picture.pixels[i] = kNotJudged;
     return picture;
+}
+
+std::string swatch(Rgb8 color) {
+    return format(
+        "<i style='display:inline-block;width:14px;height:14px;margin:0 3px;vertical-align:-2px;background:"
+        "rgb(%d,%d,%d)'></i>",
+        color.r, color.g, color.b);
+}
+
+/// The scale of errorColor(), from the least to the largest decade.
+std::string mapLegend() {
+    std::string above, below;
+    for (double decade = kFirstDecade; decade <= kFirstDecade + kDecades; decade += 2) {
+        above += swatch(errorColor(255 * std::pow(10, decade)));
+        below += swatch(errorColor(-255 * std::pow(10, decade)));
+    }
+    return "<p>Errors by pixel, of the component that is most wrong; beside each map the worst pixel magnified. " +
+           swatch(errorColor(0)) + " exact; above the exact value " + above + ", below it " + below +
+           " by 1e-7, 1e-5, 1e-3 and 1e-1 of the full range, on one scale everywhere; " + swatch(kNotJudged) +
+           " not judged, as the specification leaves open what is seen there.</p>\n";
 }
 
 std::string number(double value) {
@@ -59,26 +83,34 @@ std::string figuresTable(const AccuracyRun& run, const MeasuredScene& scene) {
         html += "<td>" + number(f.mean) + "<td>" + number(f.worst);
         for (const uint64_t count : {f.outside, f.misplaced, f.holes, f.doubles}) html += "<td>" + grouped(count);
         const bool onFront = std::find(front.begin(), front.end(), position.label) != front.end();
-        html += std::string("<td>") + (onFront ? "on the front" : "") +
-                (position.belowVulkan ? " below what Vulkan asks for" : "") + "</tr>";
+        html += std::string("<td>") + (onFront ? "on the front" : "") + (onFront && position.belowVulkan ? ", " : "") +
+                (position.belowVulkan ? "below what Vulkan asks for" : "") + "</tr>";
     }
     return html + "</table>\n";
 }
 
 /// Error maps of the profiles and drivers, and the worst pixel of each magnified.
 std::string maps(const AccuracyRun& run, const MeasuredScene& scene) {
-    constexpr uint32_t kSquare = 9, kScale = 16;
-    std::string html = "<div class=row>";
+    constexpr uint32_t kSquare = 9, kScale = 16, kWidth = 192;
+    std::string html = mapLegend() + "<div class=row>";
     for (const AccuracyPosition& position : run.positions) {
         const auto image = scene.images.find(position.label);
         if (image == scene.images.end() || !position.axis.empty()) continue;
         const AccuracyFigures& f = scene.figures.at(position.label);
         const Picture map = errorMap(image->second, scene.oracle);
-        html += "<figure>" + imageTag(map, "error of " + position.label) +
-                imageTag(magnified(map, f.worstX, f.worstY, kSquare, kScale), "its worst pixel") + "<figcaption>" +
-                escapeHtml(position.label) + ": worst at " + std::to_string(f.worstX) + ", " +
-                std::to_string(f.worstY) + ": " + vector4(f.worstGot) + ", exactly " + vector4(f.worstExact) +
-                "</figcaption></figure>";
+        // Small maps are shown enlarged by a whole number.
+        const uint32_t shown = map.width * std::max(1u, kWidth / map.width);
+        html += "<figure style='max-width:400px'><div style='display:flex;gap:6px;align-items:flex-start'>" +
+                imageTag(map, "error of " + position.label, format("class=pixelated style='width:%upx'", shown));
+        if (f.worst > 0)
+            html += imageTag(magnified(map, f.worstX, f.worstY, kSquare, kScale), "its worst pixel", "class=pixelated");
+        html += "</div><figcaption><b>" + escapeHtml(position.label) + "</b>: ";
+        if (f.worst > 0)
+            html += "worst at " + std::to_string(f.worstX) + ", " + std::to_string(f.worstY) + ": " +
+                    vector4(f.worstGot) + "; exactly " + vector4(f.worstExact);
+        else
+            html += "every judged pixel is exact";
+        html += "</figcaption></figure>";
     }
     return html + "</div>\n";
 }
@@ -121,8 +153,8 @@ std::string standingsTable(const AccuracyRun& run) {
         std::string scenes;
         for (const std::string& name : standing.alone) scenes += (scenes.empty() ? "" : ", ") + escapeHtml(name);
         html += "<tr><td>" + escapeHtml(standing.axis) + "<td>" + escapeHtml(standing.position) +
-                (standing.isStandard ? " (standard)" : "") + "<td>" + std::to_string(standing.alone.size()) + "<td>" +
-                scenes + "<td>" + std::to_string(standing.shared.size()) + "</tr>";
+                (standing.isStandard ? " (standard)" : "") + "<td>" + std::to_string(standing.alone.size()) +
+                "<td style='text-align:left'>" + scenes + "<td>" + std::to_string(standing.shared.size()) + "</tr>";
     }
     return html + "</table>\n";
 }
@@ -136,7 +168,7 @@ std::string removed() {
         html += "<tr>";
         for (const char* text :
              {position.axis, position.position, position.saved, position.error, position.verdict, position.known})
-            html += "<td>" + escapeHtml(text);
+            html += "<td style='text-align:left'>" + escapeHtml(text);
         html += "</tr>";
     }
     return html + "</table>\n";
@@ -151,7 +183,8 @@ Result<std::string> accuracyPage(const AccuracyRun& run) {
         "1/255 of the full range; pixels whose coverage may legally differ are left out. Misplaced: "
         "pixels that show another surface than the exact geometry, which is not snapped to any grid. "
         "Holes and doubles: pixels that the mesh covers too seldom or too often. Time is the median of "
-        "steady frames of the same scene drawn larger.</p><p>" +
+        "steady frames of the same scene drawn larger, in the fastest of several rounds; each round of each position "
+        "is a process of its own.</p><p>" +
         escapeHtml(run.machine) +
         "</p>\n<h2>Scenes by positions</h2><p>time against standard / worst "
         "error / holes / doubles</p>" +

@@ -214,7 +214,8 @@ TEST(AccuracyChoice, PositionsAreEarnedAgainstTheirAxis) {
                 ElementsAre("profile=standard", "subpixel=4", "subpixel=8", "math=fast", "math=fine"));
     EXPECT_THAT(standingsText(run), HasSubstr("| subpixel | 8 (standard) | 1 | far_triangles | 0 |\n"));
     EXPECT_THAT(standingsText(run), HasSubstr("| subpixel | 12 | 0 |  | 0 |\n"));
-    EXPECT_THAT(*accuracyPage(run), HasSubstr("<td>subpixel<td>8 (standard)<td>1<td>far_triangles<td>0"));
+    EXPECT_THAT(*accuracyPage(run),
+                HasSubstr("<td>subpixel<td>8 (standard)<td>1<td style='text-align:left'>far_triangles<td>0"));
     EXPECT_THAT(runJson(run), HasSubstr("\"standings\""));
 }
 
