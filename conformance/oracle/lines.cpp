@@ -17,16 +17,19 @@ int compareWithRoot(const Rational& value, const Rational& factor, const Rationa
     return sgn(value) < 0 ? -1 : sgn(factor) < 0 ? 1 : cmp(left, right);
 }
 
-/// How a sample lies to a segment: across it and along it, both times the segment's length.
+/// How a sample lies to a segment: how far across it and along it, both times the segment's length; and on which side
+/// across, the positive one being that of the direction (-dy, dx).
 struct LinePlace {
     Rational across, along, lengthSquared;
+    int side;
 };
 
 LinePlace placeOf(const GridLine& line, const GridPoint& p) {
     const Integer dx = wide(line.b.x - line.a.x), dy = wide(line.b.y - line.a.y);
     const Integer px = wide(p.x - line.a.x), py = wide(p.y - line.a.y);
-    return {Rational(abs(Integer(dx * py - dy * px))), Rational(Integer(dx * px + dy * py)),
-            Rational(Integer(dx * dx + dy * dy))};
+    const Integer across = dx * py - dy * px;
+    return {Rational(abs(across)), Rational(Integer(dx * px + dy * py)), Rational(Integer(dx * dx + dy * dy)),
+            sgn(across)};
 }
 
 /// Whether a sample lies in the rectangle grown by `margin` on all sides.
@@ -74,7 +77,21 @@ Coverage classifyLine(const GridLine& line, const GridPoint& sample, int64_t sla
 
 bool lineCovers(const GridLine& line, const GridPoint& sample) {
     const LinePlace place = placeOf(line, sample);
-    return sgn(place.lengthSquared) != 0 && within(place, line.width, 0);
+    if (sgn(place.lengthSquared) == 0) return false;
+    const int64_t dx = line.b.x - line.a.x, dy = line.b.y - line.a.y;
+    const Rational half = line.width / 2, across = place.across * place.side;
+    // The sample's side of each border, positive inside; and the border's normal, which points inwards.
+    const struct {
+        int side;
+        int64_t normalX, normalY;
+    } borders[] = {{sgn(place.along), dx, dy},
+                   {-cmp(place.along, place.lengthSquared), -dx, -dy},
+                   {-compareWithRoot(-across, half, place.lengthSquared), -dy, dx},
+                   {-compareWithRoot(across, half, place.lengthSquared), dy, -dx}};
+    return std::ranges::all_of(borders, [](const auto& border) {
+        const bool topLeft = border.normalX > 0 || (border.normalX == 0 && border.normalY > 0);
+        return border.side > 0 || (border.side == 0 && topLeft);
+    });
 }
 
 std::vector<PixelIndex> bresenhamPixels(const std::array<Rational, 2>& a, const std::array<Rational, 2>& b) {

@@ -50,6 +50,30 @@ TEST(RectangularLine, ExactOnAThreeFourFiveTriangle) {
     EXPECT_FALSE(lineCovers({{5, 5}, {5, 5}, fraction(256, 1)}, {5, 5})) << "no length";
 }
 
+TEST(RectangularLine, LeftAndTopBordersAreIn) {
+    // From (2, 3) to (6, 3) pixels, one pixel wide, in both directions; then upright.
+    const GridPoint a{512, 768}, b{1536, 768};
+    for (const GridLine& line : {GridLine{a, b, fraction(256, 1)}, GridLine{b, a, fraction(256, 1)}}) {
+        EXPECT_TRUE(lineCovers(line, {512, 768})) << "left";
+        EXPECT_FALSE(lineCovers(line, {1536, 768})) << "right";
+        EXPECT_TRUE(lineCovers(line, {1000, 640})) << "top";
+        EXPECT_FALSE(lineCovers(line, {1000, 896})) << "bottom";
+        EXPECT_TRUE(lineCovers(line, {512, 640})) << "top left";
+        EXPECT_FALSE(lineCovers(line, {512, 896})) << "bottom left";
+    }
+    for (const GridLine& line :
+         {GridLine{{768, 512}, {768, 1536}, fraction(256, 1)}, {{768, 1536}, {768, 512}, fraction(256, 1)}}) {
+        EXPECT_TRUE(lineCovers(line, {640, 1000})) << "left";
+        EXPECT_FALSE(lineCovers(line, {896, 1000})) << "right";
+        EXPECT_TRUE(lineCovers(line, {768, 512})) << "top";
+        EXPECT_FALSE(lineCovers(line, {768, 1536})) << "bottom";
+    }
+    // The sides of a 3-4-5 line, whose corners are on the grid.
+    const GridLine aslant{{0, 0}, {3 * 320, 4 * 320}, fraction(640, 1)};
+    EXPECT_TRUE(lineCovers(aslant, {480 - 256, 640 + 192})) << "the left one";
+    EXPECT_FALSE(lineCovers(aslant, {480 + 256, 640 - 192})) << "the right one";
+}
+
 TEST(RectangularLine, ShiftedByFourSubUnitsIsCaught) {
     const GridLine line{{0, 128}, {2560, 128}, fraction(256, 1)}, shifted{{0, 132}, {2560, 132}, fraction(256, 1)};
     const GridPoint above{1280, 2}, below{1280, 258};
