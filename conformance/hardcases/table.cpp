@@ -1,5 +1,7 @@
 #include "conformance/hardcases/table.h"
 
+#include "conformance/hardcases/allowed.h"
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -69,6 +71,18 @@ void writeWitnesses(std::ostringstream& out, const Table& table) {
             if (verdict.outcome != Outcome::wrong && verdict.outcome != Outcome::crashed) continue;
             out << "- **" << table.rows[i]->id << " " << column.name << "**: " << escaped(verdict.witness) << '\n';
         }
+    }
+}
+
+void writeAllowed(std::ostringstream& out) {
+    out << "\n## Allowed, not exact\n\nWhere Vernier at `standard` gives another answer than the declared or the "
+           "nearest "
+           "one, and why that is right. Every such case has its reason here, and no other one: `hardcases_test`.\n\n"
+           "| What is not the nearest | Cases | Why |\n| --- | --- | --- |\n";
+    for (const AllowedReason& reason : allowedReasons()) {
+        std::string cases;
+        for (const std::string_view id : reason.cases) cases += (cases.empty() ? "" : ", ") + std::string(id);
+        out << "| " << escaped(reason.what) << " | " << cases << " | " << escaped(reason.why) << " |\n";
     }
 }
 
@@ -144,6 +158,7 @@ std::string tableMarkdown(const Table& table) {
     }
     out << "\n" << table.rows.size() << " cases run, " << table.unreachable.size() << " are not.\n";
     for (const CaseGroup& group : caseGroups()) writeGroup(out, table, group);
+    writeAllowed(out);
     writeWitnesses(out, table);
     writeCandidates(out, table);
     out << "\n## Not run\n\n| Case | Input | Why |\n| --- | --- | --- |\n";

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "conformance/drivers/api_driver.h"
+#include "conformance/hardcases/allowed.h"
 #include "conformance/hardcases/run.h"
 
 namespace vernier::conformance::hardcases {
@@ -46,6 +47,9 @@ TEST_P(HardCases, HoldOnVernier) {
         EXPECT_LE(verdict.outcome, Outcome::allowed) << GetParam()->id << " at profile " << profile << ": "
                                                      << outcomeName(verdict.outcome) << ": " << verdict.witness;
         if (profile != VN_PROFILE_STANDARD) continue;
+        EXPECT_EQ(whyAllowed(GetParam()->id) != nullptr, verdict.outcome == Outcome::allowed)
+            << GetParam()->id << " is " << outcomeName(verdict.outcome)
+            << "; allowedReasons() is to have those that are allowed, and no others: " << verdict.witness;
         for (const uint32_t threads : {1u, 5u}) {
             const std::vector<SceneOutcome> again = draw(driverOf(profile, threads), input);
             for (size_t i = 0; i < drawn.size(); ++i) {
