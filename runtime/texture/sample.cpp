@@ -10,6 +10,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "runtime/texture/half_sampler-inl.h"
 #include "runtime/texture/sampler-inl.h"
 #include "runtime/texture/word_sampler-inl.h"
 
@@ -60,13 +61,20 @@ SampleFn selectFilter(const TextureView& view, const SamplerState& sampler) {
     return kAny;
 }
 
-/// kAny if no fast routine fits.
-template <SampleFn kAny, class Words>
-SampleFn selectWords(const TextureView& view, const SamplerState& sampler) {
+/// The address mode of all axes, if a fast routine may fit at all.
+std::optional<VkSamplerAddressMode> commonMode(const TextureView& view, const SamplerState& sampler) {
     const bool oneDimensional = view.type == VK_IMAGE_VIEW_TYPE_1D || view.type == VK_IMAGE_VIEW_TYPE_1D_ARRAY;
     const VkSamplerAddressMode u = sampler.addressMode[0], v = oneDimensional ? u : sampler.addressMode[1];
     if (u != v || sampler.magFilter != sampler.minFilter || sampler.unnormalizedCoordinates || !offsetsFitInt32(view))
-        return kAny;
+        return std::nullopt;
+    return u;
+}
+
+/// kAny if no fast routine fits.
+template <SampleFn kAny, class Words>
+SampleFn selectWords(const TextureView& view, const SamplerState& sampler) {
+    const std::optional<VkSamplerAddressMode> u = commonMode(view, sampler);
+    if (!u) return kAny;
     if (u == VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE)
         return selectFilter<kAny, Words, WordWrap::clampToEdge>(view, sampler);
     if constexpr (Words::kBorder) {
@@ -74,6 +82,26 @@ SampleFn selectWords(const TextureView& view, const SamplerState& sampler) {
             return selectFilter<kAny, Words, WordWrap::clampToBorder>(view, sampler);
     } else {
         if (u == VK_SAMPLER_ADDRESS_MODE_REPEAT) return selectFilter<kAny, Words, WordWrap::repeat>(view, sampler);
+    }
+    return kAny;
+}
+
+template <SampleFn kAny, WordWrap kWrap>
+void runHalves(const TextureView& view, const SamplerState& sampler, const SampleRequest& request) {
+    if ((request.offset[0] | request.offset[1]) != 0) return kAny(view, sampler, request);
+    HalfSampler<kWrap>({view, sampler, request}).sample();
+}
+
+/// Likewise.
+template <SampleFn kAny>
+SampleFn selectHalves(const TextureView& view, const SamplerState& sampler) {
+    if constexpr (kConvertsHalves) {
+        const std::optional<VkSamplerAddressMode> mode = commonMode(view, sampler);
+        if (!mode || sampler.magFilter != VK_FILTER_LINEAR || sampler.compareEnable || view.layerCount != 1 ||
+            !onlyLevel(view, sampler))
+            return kAny;
+        if (mode == VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE) return runHalves<kAny, WordWrap::clampToEdge>;
+        if (mode == VK_SAMPLER_ADDRESS_MODE_REPEAT) return runHalves<kAny, WordWrap::repeat>;
     }
     return kAny;
 }
@@ -101,6 +129,8 @@ SampleFn selectSampleRoutine(const TextureView& view, const SamplerState& sample
                                          : selectWords<kAny, Srgb8Words>(view, sampler);
     }
     const TexelLayout& layout = view.ops.layout;
+    if (shape == Shape::flat && isFourHalves(view))
+        return selectHalves<runSample<AnySource<4>, Shape::flat>>(view, sampler);
     if (shape != Shape::flat || layout.rgba[1].bits != 0) return byShape<AnySource<4>>(view.type);
     if (!isOneWord(view)) return runSample<AnySource<1>, Shape::flat>;
     constexpr SampleFn kAny = runSample<R32Source, Shape::flat>;

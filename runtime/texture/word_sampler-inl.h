@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <optional>
 
 #include "runtime/texture/word_taps-inl.h"
@@ -104,23 +103,6 @@ struct DepthWords {
     }
     HWY_INLINE VF finish(VF value) const { return value; }
 };
-
-/// The one level that all samples come from, whatever their level of detail; nothing if there are several.
-inline std::optional<uint32_t> onlyLevel(const TextureView& view, const SamplerState& sampler) {
-    if (view.levelCount == 1) return 0;
-    // chooseLevels() at both ends of the sampler's range; in between it is monotonic.
-    const auto last = static_cast<float>(view.levelCount - 1);
-    const bool linear = sampler.mipmapMode == VK_SAMPLER_MIPMAP_MODE_LINEAR;
-    const float first = linear ? view.minLod : std::floor(view.minLod);
-    const auto at = [&](float lambda) { return std::min(std::max(lambda, first), last); };
-    float low = at(std::min(sampler.minLod, sampler.maxLod)), high = at(sampler.maxLod);
-    if (!linear) {
-        low = std::ceil(low + 0.5f) - 1.0f;
-        high = std::ceil(high + 0.5f) - 1.0f;
-    }
-    if (low != high || low != std::floor(low)) return std::nullopt;
-    return static_cast<uint32_t>(low);
-}
 
 /// kLevels: each lane chooses its level or its two levels; otherwise all take the only one.
 template <class Words, WordWrap kWrap, bool kLinear, bool kLevels>

@@ -8,11 +8,32 @@
 #define VERNIER_TEXTURE_WORD_TAPS_INL_H
 #endif
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
 #include "runtime/texture/texels-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vernier {
 namespace HWY_NAMESPACE {
+
+/// The one level that all samples come from, whatever their level of detail; nothing if there are several.
+inline std::optional<uint32_t> onlyLevel(const TextureView& view, const SamplerState& sampler) {
+    if (view.levelCount == 1) return 0;
+    // chooseLevels() at both ends of the sampler's range; in between it is monotonic.
+    const auto last = static_cast<float>(view.levelCount - 1);
+    const bool linear = sampler.mipmapMode == VK_SAMPLER_MIPMAP_MODE_LINEAR;
+    const float first = linear ? view.minLod : std::floor(view.minLod);
+    const auto at = [&](float lambda) { return std::min(std::max(lambda, first), last); };
+    float low = at(std::min(sampler.minLod, sampler.maxLod)), high = at(sampler.maxLod);
+    if (!linear) {
+        low = std::ceil(low + 0.5f) - 1.0f;
+        high = std::ceil(high + 0.5f) - 1.0f;
+    }
+    if (low != high || low != std::floor(low)) return std::nullopt;
+    return static_cast<uint32_t>(low);
+}
 
 /// The address mode of both axes.
 enum class WordWrap { repeat, clampToEdge, clampToBorder };
