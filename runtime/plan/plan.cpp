@@ -218,6 +218,11 @@ void planDepth(const GraphicsState& state, const ir::Program* fragment, Plan& pl
     const bool dropsFragments = fragment->canDiscard || fragment->writesSampleMask || state.alphaToCoverage;
     const bool exportsStencil = depth.stencil && writesStencilRef(*fragment);
     depth.early = !fragment->writesDepth && !exportsStencil && !fragment->hasSideEffects && !(writes && dropsFragments);
+    // Fragments of the draw that are yet to be tested can but move the depth away from those that fail; unless they
+    // pass where depths differ.
+    constexpr uint8_t kNotEqual = 5;
+    depth.rejects = !depth.early && depth.test && !depth.bounds && !depth.stencil && !fragment->writesDepth &&
+                    !fragment->hasSideEffects && depth.compare != kNotEqual && plan.skips.has(Skip::coarseDepth);
 }
 
 /// src * 1 + dst * 0: the source itself.

@@ -83,6 +83,7 @@ struct DepthPlan {
     bool test = false, write = false;
     bool bounds = false, stencil = false;
     bool early = true;             // before the fragment program
+    bool rejects = false;          // not early, but what fails before the program would fail after it, too
     bool clampToViewport = false;  // depth clamping
     uint8_t compare = 7;           // bit 0: passes when less, bit 1: equal, bit 2: greater (as VkCompareOp is numbered)
     bool any() const { return test || bounds || stencil; }

@@ -110,15 +110,18 @@ struct Comparison {
 
 alignas(64) constexpr float kColumns[8] = {0, 1, 2, 3, 4, 5, 6, 7};
 
-/// The depths of a block's pixels at one sample, as the format keeps them: the operations of depthOf(), those that all
-/// rows have in common done once.
+/// The depths of a block's pixels at one sample, as the format keeps them: those that were exported, or the operations
+/// of depthOf(), those that all rows have in common done once.
 template <class Format>
 class BlockDepths {
   public:
     static constexpr uint32_t kLanes = hn::MaxLanes(F8()), kParts = 8 / kLanes;
 
     HWY_INLINE BlockDepths(const DepthTestInput& in, const BlockCoverage& block, uint32_t sample)
-        : planes_(*in.planes), y_(in.tileY + block.y - planes_.anchorY) {
+        : planes_(*in.planes),
+          exported_(in.exported),
+          special_(in.exported != nullptr || in.planes->precise),
+          y_(in.tileY + block.y - planes_.anchorY) {
         const F8 f;
         offsetX_ = in.positions[sample].x() - planes_.fractionX;
         offsetY_ = in.positions[sample].y() - planes_.fractionY;
@@ -133,15 +136,27 @@ class BlockDepths {
     HWY_INLINE typename Format::Value at(int32_t row, uint32_t part) const {
         const F8 f;
         const auto y = static_cast<float>(y_ + row);
-        if (HWY_UNLIKELY(planes_.precise))
+        if (HWY_UNLIKELY(special_)) {
+            if (exported_ != nullptr) return Format::encode(exported(row, part));
             return Format::encode(
                 depthOf(f, planes_, columns_[part], hn::Set(f, y), hn::Set(f, offsetX_), hn::Set(f, offsetY_)));
+        }
         const VF rise = hn::Set(f, planes_.zy * (y + offsetY_));
         return Format::encode(clampDepth(f, planes_, hn::Add(hn::Set(f, planes_.z0), hn::Add(slopes_[part], rise))));
     }
 
   private:
+    /// NaN becomes the lower bound.
+    HWY_INLINE VF exported(int32_t row, uint32_t part) const {
+        const F8 f;
+        const VF low = hn::Set(f, planes_.zLow), high = hn::Set(f, planes_.zHigh);
+        const VF z = maxOrSecond(hn::LoadU(f, exported_ + row * kBlockSize + part * kLanes), low);
+        return hn::IfThenElse(hn::Gt(z, high), high, z);
+    }
+
     const TrianglePlanes& planes_;
+    const float* exported_;
+    bool special_;
     int32_t y_;
     float offsetX_, offsetY_;
     VF columns_[kParts], slopes_[kParts];

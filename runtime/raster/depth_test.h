@@ -1,4 +1,4 @@
-// The early depth and stencil tests: blocks of 8x8 pixels at once, when there is no bounds test.
+// The depth and stencil tests of blocks of 8x8 pixels, when there is no bounds test.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +18,9 @@ struct DepthTestInput {
     const SamplePosition* positions;
     const DepthStencilState::Face* face;  // of the stencil test
     uint64_t certain;                     // without one, bit blockIndex(): all samples of the block pass
+    // Depths that the fragment program gave, of all samples: a float for every pixel of the block, row by row. Of one
+    // block only; nullptr: the planes tell.
+    const float* exported = nullptr;
 };
 
 /// Tests the samples of the blocks and writes the depth of those that pass, and the stencil of all. Clears the bits of

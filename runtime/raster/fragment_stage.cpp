@@ -74,6 +74,7 @@ void FragmentStage::bind(const PreparedDraw& draw, uint64_t token) {
     interpolate_ = interpolateFunction(isa);
     placeLanes_ = placeLanesFunction(isa);
     spreadPixels_ = spreadPixelsFunction(isa);
+    collectPixels_ = collectPixelsFunction(isa);
     gatherSmall_ = gatherSmallFunction(isa);
     shadeSmall_ = shadeSmallFunction(isa);
     blend_ = blendFunction(isa);
@@ -319,51 +320,6 @@ void FragmentStage::smoothAlpha(const FragmentBatch& batch) {
         for (uint32_t n = part.first; n < part.first + part.count; ++n) {
             const double area = coveredArea(*part.planes->shape, batch.x[n], batch.y[n], draw_->subPixelBits);
             smoothAlpha_[n] = static_cast<float>(double{alpha[n]} * area);
-        }
-    }
-}
-
-/// Coverage after the program: its own sample mask, and alpha to coverage.
-void FragmentStage::reduceCoverage(FragmentBatch& batch) {
-    if (plan_->sampleMaskSlot != kNoSlot) {
-        const float* plane = context_->output(plan_->sampleMaskSlot);
-        for (uint32_t lane = 0; lane < batch.count; ++lane)
-            batch.coverage[lane] &= std::bit_cast<uint32_t>(plane[lane]);
-    }
-    if (plan_->alphaToCoverage && plan_->alphaSlot != kNoSlot) {
-        const float* alpha = plan_->smoothLines ? smoothAlpha_.data() : context_->output(plan_->alphaSlot);
-        const auto samples = static_cast<float>(samples_);
-        for (uint32_t lane = 0; lane < batch.count; ++lane) {
-            const float a = alpha[lane] > 0 ? std::min(alpha[lane], 1.0f) : 0.0f;
-            const auto count = static_cast<uint32_t>(a * samples + 0.5f);
-            batch.coverage[lane] &= (1u << count) - 1;
-        }
-    }
-}
-
-void FragmentStage::testLate(FragmentBatch& batch) {
-    const float* fragDepth = plan_->fragDepthSlot != kNoSlot ? context_->output(plan_->fragDepthSlot) : nullptr;
-    const float* stencilRef = plan_->stencilRefSlot != kNoSlot ? context_->output(plan_->stencilRefSlot) : nullptr;
-    for (uint32_t s = 0; s < batch.segmentCount; ++s) {
-        const FragmentSegment& part = batch.segments[s];
-        const TrianglePlanes& planes = *part.planes;
-        for (uint32_t lane = part.first; lane < part.first + part.count; ++lane) {
-            const uint32_t covered = batch.coverage[lane];
-            uint32_t passed = 0, reference = 0;
-            if (stencilRef != nullptr) reference = std::bit_cast<uint32_t>(stencilRef[lane]);
-            for (uint32_t rest = covered; rest != 0; rest &= rest - 1) {
-                const auto sample = static_cast<uint32_t>(std::countr_zero(rest));
-                const float z =
-                    fragDepth != nullptr
-                        ? (fragDepth[lane] > planes.zLow ? std::min(fragDepth[lane], planes.zHigh) : planes.zLow)
-                        : depthAt(planes, batch.x[lane], batch.y[lane], positions_[sample].x(), positions_[sample].y());
-                std::byte* texel = depthState_.target.texel(batch.x[lane], batch.y[lane], sample);
-                ++statistics_.depthReads;
-                if (testSample(depthState_, texel, z, planes.primitive->front,
-                               stencilRef != nullptr ? &reference : nullptr))
-                    passed |= 1u << sample;
-            }
-            batch.coverage[lane] = passed;
         }
     }
 }

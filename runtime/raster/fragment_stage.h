@@ -87,8 +87,13 @@ class FragmentStage {
     void fillBuiltins(const FragmentBatch& batch, std::span<const BuiltinSlot> builtins, BatchContext& context);
     void fillBuiltin(const FragmentBatch& batch, const BuiltinSlot& builtin, float* plane);
     void centroidOffsets(const FragmentBatch& batch);
+    // fragment_late.cpp
     void reduceCoverage(FragmentBatch& batch);
     void testLate(FragmentBatch& batch);
+    void testLateSamples(FragmentBatch& batch);
+    void testLateSpans(FragmentBatch& batch);
+    void testLateRectangle(FragmentBatch& batch);
+    void testLateBlock(BlockCoverage& block, const TrianglePlanes& planes, const float* exported);
     void bindColors(Isa isa);
     void smoothAlpha(const FragmentBatch& batch);
     void writeColors(const FragmentBatch& batch, uint32_t sample, const uint32_t* mask);
@@ -130,6 +135,7 @@ class FragmentStage {
     InterpolateFn interpolate_ = nullptr;
     PlaceLanesFn placeLanes_ = nullptr;
     SpreadPixelsFn spreadPixels_ = nullptr;
+    CollectPixelsFn collectPixels_ = nullptr;
     BlendFn blend_ = nullptr;
     /// An attachment that changes, bound to the planes of the program's outputs.
     struct BoundColor {

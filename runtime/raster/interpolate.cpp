@@ -329,15 +329,28 @@ constexpr LaneBits laneBits() {
     return bits;
 }
 
+static constexpr LaneBits kLaneBits = laneBits();
+
 void spreadPixels(uint64_t pixels, LaneOrder order, uint32_t count, uint32_t* lanes) {
-    static constexpr LaneBits kBits = laneBits();
     const hn::RebindToUnsigned<F> u;
-    const auto* bits = kBits.bit[order == LaneOrder::quads ? 1 : 0];
+    const auto* bits = kLaneBits.bit[order == LaneOrder::quads ? 1 : 0];
     for (uint32_t n = 0; n < count; n += kLanes) {
         const auto part = hn::Set(u, static_cast<uint32_t>(pixels >> (n & ~15u) & 0xFFFF));
         const auto set = hn::Ne(hn::And(part, hn::Load(u, bits + n % 16)), hn::Zero(u));
         hn::StoreU(hn::VecFromMask(u, set), u, lanes + n);
     }
+}
+
+uint64_t collectPixels(const uint32_t* lanes, uint32_t bits, LaneOrder order, uint32_t count) {
+    const hn::RebindToUnsigned<F> u;
+    const auto* laneBits = kLaneBits.bit[order == LaneOrder::quads ? 1 : 0];
+    uint64_t pixels = 0;
+    for (uint32_t n = 0; n < count; n += kLanes) {
+        const auto set = hn::Ne(hn::And(hn::LoadU(u, lanes + n), hn::Set(u, bits)), hn::Zero(u));
+        const auto sum = hn::SumOfLanes(u, hn::IfThenElseZero(set, hn::Load(u, laneBits + n % 16)));
+        pixels |= uint64_t{hn::GetLane(sum)} << (n & ~15u);
+    }
+    return pixels;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -351,8 +364,10 @@ InterpolateFn interpolateFunction(Isa isa){VERNIER_SELECT_ISA(isa, interpolate)}
 
 PlaceLanesFn placeLanesFunction(Isa isa){VERNIER_SELECT_ISA(isa, placeLanes)}
 
-SpreadPixelsFn spreadPixelsFunction(Isa isa) {
-    VERNIER_SELECT_ISA(isa, spreadPixels)
+SpreadPixelsFn spreadPixelsFunction(Isa isa){VERNIER_SELECT_ISA(isa, spreadPixels)}
+
+CollectPixelsFn collectPixelsFunction(Isa isa) {
+    VERNIER_SELECT_ISA(isa, collectPixels)
 }
 
 void interpolatePrecise(const InterpolationInput& in) {

@@ -46,4 +46,8 @@ PlaceLanesFn placeLanesFunction(Isa isa);
 using SpreadPixelsFn = void (*)(uint64_t pixels, LaneOrder order, uint32_t count, uint32_t* lanes);
 SpreadPixelsFn spreadPixelsFunction(Isa isa);
 
+/// The other way: the pixels whose lanes have a bit of `bits`.
+using CollectPixelsFn = uint64_t (*)(const uint32_t* lanes, uint32_t bits, LaneOrder order, uint32_t count);
+CollectPixelsFn collectPixelsFunction(Isa isa);
+
 }  // namespace vernier

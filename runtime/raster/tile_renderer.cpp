@@ -235,6 +235,20 @@ uint32_t TileRenderer::testEarly(const PreparedDraw& draw, const TrianglePlanes&
     return count;
 }
 
+/// Where the test comes late: drops what cannot pass it.
+uint32_t TileRenderer::rejectEarly(const PreparedDraw& draw, const TrianglePlanes& planes, uint32_t count) {
+    const Plan& plan = *draw.plan;
+    DepthPlan reading = plan.depth;
+    reading.write = false;
+    uint64_t certain = 0;
+    const uint32_t left = coarse_.reject(reading, planes, tileX_, tileY_, plan.samples, blocks_.data(), count, certain);
+    fragments_.statistics().coarseDepthRejects += count - left;
+    const DepthTestInput input{
+        &reading, fragments_.depthState().target, &planes, tileX_, tileY_, plan.samples, draw.positions, nullptr,
+        certain};
+    return depthTestFunction(draw.call.pipeline->isa())(input, blocks_.data(), left);
+}
+
 void TileRenderer::draw(const Primitive& primitive, const Chunk& chunk, const PreparedDraw& draw, bool coversTile) {
     const Plan& plan = *draw.plan;
     // What interpolation reads comes while coverage and depth are worked out.
@@ -270,7 +284,12 @@ void TileRenderer::draw(const Primitive& primitive, const Chunk& chunk, const Pr
                    viewport.depthHigh, planes);
     }
     if (fragments_.testsDepth() && plan.depth.early) count = testEarly(draw, planes, count);
-    if (plan.depth.write && !plan.depth.early) coarse_.forget();
+    if (fragments_.testsDepth() && plan.depth.rejects) count = rejectEarly(draw, planes, count);
+    if (plan.depth.write && !plan.depth.early) {
+        uint64_t touched = 0;
+        for (uint32_t b = 0; b < count; ++b) touched |= uint64_t{1} << blockIndex(blocks_[b]);
+        coarse_.updateParts(plan.depth, touched);
+    }
     if (!plan.runsFragments) {
         fragments_.statistics().samplesPassed += countSamples(blocks_.data(), count, plan.samples);
         return;

@@ -47,6 +47,7 @@ class TileRenderer {
     void flushSmall();
     void finishSegment(PassStatistics& counts);
     void drawSmall(const PreparedDraw& draw, uint32_t count);
+    uint32_t rejectEarly(const PreparedDraw& draw, const TrianglePlanes& planes, uint32_t count);
     uint32_t testEarly(const PreparedDraw& draw, const TrianglePlanes& planes, uint32_t count);
 
     void selectLayer(uint32_t layer);

@@ -180,6 +180,27 @@ TEST_P(Depth, HiddenBlocksAreDroppedUnread) {
     expectColor(2);
 }
 
+TEST_P(Depth, LateTestsDropWhatIsHidden) {
+    // Of what may be discarded, too, nothing is shaded that cannot pass; unless it could pass after what waits before
+    // it, or its depth is its own.
+    const auto with = [](VkCompareOp compare) { return [=](GraphicsState& s) { s.depthCompare = compare; }; };
+    const std::vector<Vertex> near = triangle(0.2f, 0.3f, 0.2f), far = triangle(0.6f, 0.7f, 0.6f);
+    constexpr uint64_t kPixels = uint64_t{kSize} * kSize;
+    run({{near, with(VK_COMPARE_OP_LESS), {}, "discard_frag"}, {far, with(VK_COMPARE_OP_LESS), {}, "discard_frag"}},
+        GetParam());
+    EXPECT_EQ(statistics_.fragmentInvocations, kPixels);
+    expectColor(1);
+    run({{near, with(VK_COMPARE_OP_LESS), {}, "fragdepth_frag"}, {far, with(VK_COMPARE_OP_LESS), {}, "fragdepth_frag"}},
+        GetParam());
+    EXPECT_EQ(statistics_.fragmentInvocations, 2 * kPixels);
+    expectColor(1);
+    run({{near, with(VK_COMPARE_OP_LESS), {}, "discard_frag"},
+         {near, with(VK_COMPARE_OP_NOT_EQUAL), {}, "discard_frag"}},
+        GetParam());
+    EXPECT_EQ(statistics_.fragmentInvocations, 2 * kPixels);
+    expectColor(1);
+}
+
 TEST_P(Depth, DiscardedFragmentsLeaveNoDepth) {
     run({{triangle(0.2f, 0.2f, 0.2f, {0, 1, 1, 1}), {}, {}, "discard_frag"}}, GetParam());
     EXPECT_EQ(depth_->depth(3, 3), 1);

@@ -2,7 +2,10 @@
 // bytes are left.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cstring>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -90,8 +93,16 @@ TEST_P(StencilBlocksTest, SameAsOneSampleAtATime) {
             block.masks[s] = random() % 3 == 0 ? ~uint64_t{0} : uint64_t{random()} << 32 | random();
         const BlockCoverage before = block;
         const SamplePosition* positions = samplePositions(kSamples);
-        const DepthTestInput input{
-            &plan, blocks.target, &planes, 0, 0, kSamples, positions, primitive.front ? &state.front : &state.back, 0};
+        // Depths of the fragment program's own, cut to the range; NaN is its lower end.
+        constexpr float kExported[] = {-1, 0, 0.25f, 0.5f, 0.96875f, 1, 2, std::numeric_limits<float>::quiet_NaN()};
+        std::array<float, 64> exported;
+        for (float& z : exported) z = kExported[random() % std::size(kExported)];
+        const bool exports = random() % 3 == 0;
+        const DepthTestInput input{&plan,     blocks.target,
+                                   &planes,   0,
+                                   0,         kSamples,
+                                   positions, primitive.front ? &state.front : &state.back,
+                                   0,         exports ? exported.data() : nullptr};
         const uint32_t kept = stencilTestFunction(GetParam())(input, &block, 1);
         uint64_t any = 0;
         for (uint32_t s = 0; s < kSamples; ++s) {
@@ -99,7 +110,9 @@ TEST_P(StencilBlocksTest, SameAsOneSampleAtATime) {
             for (int32_t bit = 0; bit < 64; ++bit) {
                 if ((before.masks[s] >> bit & 1) == 0) continue;
                 const int32_t x = block.x + bit % 8, y = block.y + bit / 8;
-                const float z = depthAt(planes, x, y, positions[s].x(), positions[s].y());
+                const float own = exported[static_cast<size_t>(bit)];
+                const float z = exports ? (own > planes.zLow ? std::min(own, planes.zHigh) : planes.zLow)
+                                        : depthAt(planes, x, y, positions[s].x(), positions[s].y());
                 if (testSample(state, state.target.texel(x, y, s), z, primitive.front)) passed |= uint64_t{1} << bit;
             }
             ASSERT_EQ(block.masks[s], passed) << "round " << round << " sample " << s;
