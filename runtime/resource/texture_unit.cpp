@@ -132,9 +132,13 @@ void runFetch(const TextureUnit& unit, const ImageCall& call) {
 
 /// Components in the order of the coordinates of the instruction: sizes of the dimensions, then layers (or cubes).
 void runQuerySize(const TextureUnit& unit, const ImageCall& call) {
+    uint32_t level = call.lodOrBias ? call.lodOrBias[0] : 0;
+    std::array<uint32_t, 4> size = querySize(*unit.view, level);
     for (uint32_t lane = 0; lane < call.lanes; ++lane) {
-        const uint32_t level = call.lodOrBias ? call.lodOrBias[lane] : 0;
-        const std::array<uint32_t, 4> size = querySize(*unit.view, level);
+        if (call.lodOrBias && call.lodOrBias[lane] != level) {
+            level = call.lodOrBias[lane];
+            size = querySize(*unit.view, level);
+        }
         for (size_t i = 0; i < 4; ++i)
             if (call.result[i]) call.result[i][lane] = size[i];
     }

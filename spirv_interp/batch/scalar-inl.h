@@ -63,8 +63,10 @@ inline T srem(T a, T b) {
 }
 template <class T>
 inline T smod(T a, T b) {
+    // Without branches, for vectors.
     const T remainder = srem(a, b);
-    return remainder != 0 && (remainder < 0) != (b < 0) ? remainder + b : remainder;
+    const bool otherSign = (remainder != 0) & ((remainder ^ b) < 0);
+    return remainder + (otherSign ? b : T{0});
 }
 template <class T>
 inline T udiv(T a, T b) {
