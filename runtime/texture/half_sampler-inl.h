@@ -40,24 +40,40 @@ class HalfSampler {
         : call_(call), level_(call.view.levels[onlyLevel(call.view, call.sampler).value_or(0)]) {}
 
     void sample() const {
-        const VF width = splatFloat(static_cast<float>(level_.width));
-        const VF height = splatFloat(static_cast<float>(level_.height));
+        // Copies, which stores to the outputs cannot change.
+        const TextureLevel level = level_;
+        const VF width = splatFloat(static_cast<float>(level.width));
+        const VF height = splatFloat(static_cast<float>(level.height));
+        struct {
+            float* target;
+            uint32_t component;
+        } outputs[4];
+        uint32_t outputCount = 0;
+        for (uint32_t c = 0; c < 4; ++c) {
+            const Route route = routeOf(call_.view.swizzle, c);
+            if (call_.request.out[c] != nullptr && route <= Route::a)
+                outputs[outputCount++] = {call_.request.out[c], static_cast<uint32_t>(route)};
+        }
         call_.forEachVector([&](uint32_t first, uint32_t count) HWY_ATTR {
+            const VF s = call_.coordinate(0, first, count);
             const VF t = call_.isOneDimensional() ? splatFloat(0.5f) : call_.coordinate(1, first, count);
-            const WordAxis x =
-                linearIndices<kWrap>(call_.coordinate(0, first, count), width, static_cast<int32_t>(level_.width));
-            const WordAxis y = linearIndices<kWrap>(t, height, static_cast<int32_t>(level_.height));
-            Footprint4 texels;
-            for (int tap = 0; tap < 4; ++tap) locate(x.index[tap & 1], y.index[tap >> 1], texels, tap);
+            const WordAxis x = linearIndices<kWrap>(s, width, static_cast<int32_t>(level.width));
+            const WordAxis y = linearIndices<kWrap>(t, height, static_cast<int32_t>(level.height));
+            Places places;
+            locate(level, x, y, places);
             alignas(64) float filtered[4 * kVectorLanes];
-            if (HWY_UNLIKELY(!filter<true>(texels, x.weight, y.weight, filtered)))
-                filter<false>(texels, x.weight, y.weight, filtered);
-            VF planes[4];
-            hn::LoadInterleaved4(F32(), filtered, planes[0], planes[1], planes[2], planes[3]);
-            for (uint32_t c = 0; c < 4; ++c) {
-                const Route route = routeOf(call_.view.swizzle, c);
-                if (call_.request.out[c] != nullptr && route <= Route::a)
-                    storeLanes(bitsOf(planes[static_cast<uint32_t>(route)]), call_.request.out[c], first, count);
+            if (HWY_UNLIKELY(!filter<true>(places, x.weight, y.weight, filtered)))
+                filter<false>(places, x.weight, y.weight, filtered);
+            alignas(64) float planes[4][kVectorLanes];
+            VF r, g, b, a;
+            hn::LoadInterleaved4(F32(), filtered, r, g, b, a);
+            hn::Store(r, F32(), planes[0]);
+            hn::Store(g, F32(), planes[1]);
+            hn::Store(b, F32(), planes[2]);
+            hn::Store(a, F32(), planes[3]);
+            for (uint32_t k = 0; k < outputCount; ++k) {
+                const VF plane = hn::Load(F32(), planes[outputs[k].component]);
+                storeLanes(bitsOf(plane), outputs[k].target, first, count);
             }
         });
         // Last, for outputs may take the place of coordinates.
@@ -75,11 +91,13 @@ class HalfSampler {
     static constexpr uint32_t kTexels = kVectorLanes / 4;
     /// Lanes that lie side by side on the screen, when blocks of pixels are shaded row by row.
     static constexpr uint32_t kRun = kVectorLanes < 8 ? kVectorLanes : 8;
-    static constexpr int32_t kTexelBytes = 8;
+    static constexpr uint32_t kTexelBytes = 8;
 
-    /// Where the texels of each tap are, a quarter of the lanes after the other; in the image, or copied side by side.
-    struct Footprint4 {
-        const std::byte* texels[4][4];
+    /// Where the texels are, a quarter of the lanes after the other: those of tap 0, and how far behind them those of
+    /// each tap; in the image, or copied side by side.
+    struct Places {
+        const std::byte* texels[4];
+        size_t taps[4];
         alignas(64) std::byte copies[4][kVectorLanes * kTexelBytes];
     };
 
@@ -99,28 +117,37 @@ class HalfSampler {
         LaneTable table{};
         for (uint32_t n = 0; n < kVectorLanes; ++n) {
             table.lane[0][n] = static_cast<int32_t>(n / kRun * kRun);
-            table.lane[1][n] = static_cast<int32_t>(n % kRun) * kTexelBytes;
+            table.lane[1][n] = static_cast<int32_t>(n % kRun * kTexelBytes);
         }
         return table;
     }
 
-    HWY_INLINE void locate(VI column, VI row, Footprint4& footprint, int tap) const {
+    static HWY_INLINE void locate(const TextureLevel& level, const WordAxis& x, const WordAxis& y, Places& places) {
         static constexpr LaneTable kLanes = runLanes();
-        const VI offset =
-            hn::Add(hn::Mul(row, splatInt(static_cast<int32_t>(level_.rowPitch))), hn::ShiftLeft<3>(column));
+        const VI pitch = splatInt(static_cast<int32_t>(level.rowPitch)), one = splatInt(1);
+        const VI rows[2] = {hn::Mul(y.index[0], pitch), hn::Mul(y.index[1], pitch)};
+        const VI offset = hn::Add(rows[0], hn::ShiftLeft<3>(x.index[0]));
         const VI origin = hn::Sub(offset, hn::Load(I32(), kLanes.lane[1]));
         const VI first = hn::TableLookupLanes(origin, hn::SetTableIndices(I32(), kLanes.lane[0]));
+        const auto inRows = hn::And(hn::Eq(origin, first), hn::And(hn::Eq(hn::Sub(x.index[1], x.index[0]), one),
+                                                                   hn::Eq(hn::Sub(y.index[1], y.index[0]), one)));
         alignas(64) int32_t offsets[kVectorLanes];
-        hn::Store(offset, I32(), offsets);
-        if (hn::AllTrue(I32(), hn::Eq(origin, first))) {
+        if (hn::AllTrue(I32(), inRows)) {
+            hn::Store(offset, I32(), offsets);
             for (uint32_t quarter = 0; quarter < 4; ++quarter)
-                footprint.texels[tap][quarter] = level_.data + offsets[quarter * kTexels];
+                places.texels[quarter] = level.data + offsets[quarter * kTexels];
+            for (size_t tap = 0; tap < 4; ++tap)
+                places.taps[tap] = (tap & 1) * kTexelBytes + (tap >> 1) * level.rowPitch;
             return;
         }
-        for (uint32_t lane = 0; lane < kVectorLanes; ++lane)
-            std::memcpy(footprint.copies[tap] + lane * kTexelBytes, level_.data + offsets[lane], kTexelBytes);
+        for (size_t tap = 0; tap < 4; ++tap) {
+            hn::Store(hn::Add(rows[tap >> 1], hn::ShiftLeft<3>(x.index[tap & 1])), I32(), offsets);
+            for (uint32_t lane = 0; lane < kVectorLanes; ++lane)
+                std::memcpy(places.copies[tap] + lane * kTexelBytes, level.data + offsets[lane], kTexelBytes);
+            places.taps[tap] = tap * sizeof places.copies[0];
+        }
         for (uint32_t quarter = 0; quarter < 4; ++quarter)
-            footprint.texels[tap][quarter] = footprint.copies[tap] + quarter * kTexels * kTexelBytes;
+            places.texels[quarter] = places.copies[0] + quarter * kTexels * kTexelBytes;
     }
 
     template <bool kPlain>
@@ -140,14 +167,15 @@ class HalfSampler {
     /// kPlain: by the short interpolation, and false if some texel is not zero or a positive number, so that the
     /// result may not be that of the long one.
     template <bool kPlain>
-    HWY_FLATTEN static bool filter(const Footprint4& footprint, VF wx, VF wy, float* filtered) {
+    HWY_FLATTEN static bool filter(const Places& places, VF wx, VF wy, float* filtered) {
         static constexpr LaneTable kLanes = quarterLanes();
         const Halves d;
         hn::Vec<Halves> greatest = hn::Zero(d);
         for (uint32_t quarter = 0; quarter < 4; ++quarter) {
             VU taps[4];
             unrolled<4>([&](auto tap) VERNIER_INLINE_LAMBDA {
-                const auto halves = hn::LoadU(d, reinterpret_cast<const uint16_t*>(footprint.texels[tap][quarter]));
+                const auto halves =
+                    hn::LoadU(d, reinterpret_cast<const uint16_t*>(places.texels[quarter] + places.taps[tap]));
                 if constexpr (kPlain) greatest = hn::Max(greatest, halves);
                 taps[tap] = bitsOf(decode<kPlain>(halves));
             });
