@@ -34,48 +34,61 @@ inline T umulHigh(T a, T b) {
     return static_cast<T>((static_cast<UnsignedDouble<T>>(a) * b) >> kBits<T>);
 }
 
-/// The quotient of integers of 32 bits, towards zero. A double has room for it and for how far it is from the next
-/// integer: the division rounds to no other. What vectors of doubles convert to is an integer of 64 bits at most.
+/// Whether integers of 32 bits are divided as doubles: loops over them become vector code, if there are no branches,
+/// not even those of a choice.
+template <class T>
+inline constexpr bool kVectorQuotients = HWY_TARGET == HWY_AVX3 && sizeof(T) == 4;
+
+/// 1 instead of 0.
+template <class T>
+inline T divisorOf(T b) {
+    return static_cast<T>(b | static_cast<T>(b == 0));
+}
+/// The quotient, towards zero. A double has room for it and for how far it is from the next integer: the division
+/// rounds to no other. What vectors of doubles convert to is an integer of 64 bits at most. `b` is not 0.
 template <class T>
 inline T quotient(T a, T b) {
     return static_cast<T>(static_cast<int64_t>(static_cast<double>(a) / static_cast<double>(b)));
 }
-/// Whether loops over quotients become vector code.
-inline constexpr bool kVectorQuotients = HWY_TARGET == HWY_AVX3;
+/// b where `condition`, else 0.
+template <class T>
+inline T keptIf(bool condition, T b) {
+    using U = std::make_unsigned_t<T>;
+    return static_cast<T>(static_cast<U>(b) & (U{0} - static_cast<U>(condition)));
+}
 
 /// INT_MIN / -1 is INT_MIN; a division by zero gives 0, remainders included.
 template <class T>
 inline T sdiv(T a, T b) {
     using U = std::make_unsigned_t<T>;
-    if constexpr (kVectorQuotients && sizeof(T) == 4) return b == 0 ? 0 : quotient(a, b == 0 ? 1 : b);
+    if constexpr (kVectorQuotients<T>) return keptIf(b != 0, quotient(a, divisorOf(b)));
     if (b == 0) return 0;
     return b == -1 ? static_cast<T>(U{0} - static_cast<U>(a)) : a / b;
 }
 template <class T>
 inline T srem(T a, T b) {
-    if constexpr (kVectorQuotients && sizeof(T) == 4) {
+    if constexpr (kVectorQuotients<T>) {
         using U = std::make_unsigned_t<T>;
-        return b == 0 ? 0
-                      : static_cast<T>(static_cast<U>(a) -
-                                       static_cast<U>(quotient(a, b == 0 ? 1 : b)) * static_cast<U>(b));
+        const T divisor = divisorOf(b);  // 1 leaves 0
+        return static_cast<T>(static_cast<U>(a) - static_cast<U>(quotient(a, divisor)) * static_cast<U>(divisor));
     }
     return b == 0 || b == -1 ? 0 : a % b;
 }
 template <class T>
 inline T smod(T a, T b) {
-    // Without branches, for vectors.
+    using U = std::make_unsigned_t<T>;
     const T remainder = srem(a, b);
     const bool otherSign = (remainder != 0) & ((remainder ^ b) < 0);
-    return remainder + (otherSign ? b : T{0});
+    return static_cast<T>(static_cast<U>(remainder) + static_cast<U>(keptIf(otherSign, b)));
 }
 template <class T>
 inline T udiv(T a, T b) {
-    if constexpr (kVectorQuotients && sizeof(T) == 4) return b == 0 ? 0 : quotient(a, b == 0 ? 1 : b);
+    if constexpr (kVectorQuotients<T>) return keptIf(b != 0, quotient(a, divisorOf(b)));
     return b == 0 ? 0 : a / b;
 }
 template <class T>
 inline T umod(T a, T b) {
-    if constexpr (kVectorQuotients && sizeof(T) == 4) return b == 0 ? 0 : a - quotient(a, b == 0 ? 1 : b) * b;
+    if constexpr (kVectorQuotients<T>) return a - quotient(a, divisorOf(b)) * divisorOf(b);
     return b == 0 ? 0 : a % b;
 }
 
