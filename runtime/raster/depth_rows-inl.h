@@ -110,6 +110,17 @@ struct Comparison {
 
 alignas(64) constexpr float kColumns[8] = {0, 1, 2, 3, 4, 5, 6, 7};
 
+/// Depths that are exported, where NaN becomes the lower bound; else depthOf(). Out of line, for it is inlined often.
+[[maybe_unused]] HWY_NOINLINE static VF specialDepth(const TrianglePlanes& planes, const float* exported, VF columns,
+                                                     float y, float offsetX, float offsetY) {
+    const F8 f;
+    if (exported == nullptr)
+        return depthOf(f, planes, columns, hn::Set(f, y), hn::Set(f, offsetX), hn::Set(f, offsetY));
+    const VF low = hn::Set(f, planes.zLow), high = hn::Set(f, planes.zHigh);
+    const VF z = maxOrSecond(hn::LoadU(f, exported), low);
+    return hn::IfThenElse(hn::Gt(z, high), high, z);
+}
+
 /// The depths of a block's pixels at one sample, as the format keeps them: those that were exported, or the operations
 /// of depthOf(), those that all rows have in common done once.
 template <class Format>
@@ -137,23 +148,14 @@ class BlockDepths {
         const F8 f;
         const auto y = static_cast<float>(y_ + row);
         if (HWY_UNLIKELY(special_)) {
-            if (exported_ != nullptr) return Format::encode(exported(row, part));
-            return Format::encode(
-                depthOf(f, planes_, columns_[part], hn::Set(f, y), hn::Set(f, offsetX_), hn::Set(f, offsetY_)));
+            const float* exported = exported_ == nullptr ? nullptr : exported_ + row * kBlockSize + part * kLanes;
+            return Format::encode(specialDepth(planes_, exported, columns_[part], y, offsetX_, offsetY_));
         }
         const VF rise = hn::Set(f, planes_.zy * (y + offsetY_));
         return Format::encode(clampDepth(f, planes_, hn::Add(hn::Set(f, planes_.z0), hn::Add(slopes_[part], rise))));
     }
 
   private:
-    /// NaN becomes the lower bound.
-    HWY_INLINE VF exported(int32_t row, uint32_t part) const {
-        const F8 f;
-        const VF low = hn::Set(f, planes_.zLow), high = hn::Set(f, planes_.zHigh);
-        const VF z = maxOrSecond(hn::LoadU(f, exported_ + row * kBlockSize + part * kLanes), low);
-        return hn::IfThenElse(hn::Gt(z, high), high, z);
-    }
-
     const TrianglePlanes& planes_;
     const float* exported_;
     bool special_;

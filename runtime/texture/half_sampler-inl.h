@@ -63,7 +63,7 @@ class HalfSampler {
             locate(level, x, y, places);
             alignas(64) float filtered[4 * kVectorLanes];
             if (HWY_UNLIKELY(!filter<true>(places, x.weight, y.weight, filtered)))
-                filter<false>(places, x.weight, y.weight, filtered);
+                filterAny(places, x.weight, y.weight, filtered);
             alignas(64) float planes[4][kVectorLanes];
             VF r, g, b, a;
             hn::LoadInterleaved4(F32(), filtered, r, g, b, a);
@@ -167,7 +167,7 @@ class HalfSampler {
     /// kPlain: by the short interpolation, and false if some texel is not zero or a positive number, so that the
     /// result may not be that of the long one.
     template <bool kPlain>
-    HWY_FLATTEN static bool filter(const Places& places, VF wx, VF wy, float* filtered) {
+    static HWY_INLINE bool filter(const Places& places, VF wx, VF wy, float* filtered) {
         static constexpr LaneTable kLanes = quarterLanes();
         const Halves d;
         hn::Vec<Halves> greatest = hn::Zero(d);
@@ -191,6 +191,10 @@ class HalfSampler {
         constexpr uint16_t kGreatestNumber = 0x7bff;
         return !kPlain ||
                hn::AllTrue(d, hn::Eq(hn::Max(greatest, hn::Set(d, kGreatestNumber)), hn::Set(d, kGreatestNumber)));
+    }
+
+    static HWY_NOINLINE void filterAny(const Places& places, VF wx, VF wy, float* filtered) {
+        filter<false>(places, wx, wy, filtered);
     }
 
     const SampleCall& call_;
