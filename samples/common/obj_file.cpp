@@ -116,7 +116,7 @@ MeshData loadObj(const std::string& path, bool smooth) {
     return mesh;
 }
 
-void fitIntoUnitBall(const std::vector<MeshData*>& meshes) {
+Ball ballAround(const std::vector<MeshData*>& meshes) {
     glm::vec3 low(0), high(0);
     bool first = true;
     for (const MeshData* mesh : meshes)
@@ -126,9 +126,16 @@ void fitIntoUnitBall(const std::vector<MeshData*>& meshes) {
             first = false;
         }
     const float radius = glm::length(high - low) * 0.5f;
-    for (MeshData* mesh : meshes)
-        for (MeshVertex& vertex : mesh->vertices)
-            vertex.position = (vertex.position - (low + high) * 0.5f) / (radius > 0 ? radius : 1);
+    return {(low + high) * 0.5f, radius > 0 ? radius : 1};
+}
+
+void moveIntoUnitBall(const Ball& ball, MeshData& mesh) {
+    for (MeshVertex& vertex : mesh.vertices) vertex.position = (vertex.position - ball.center) / ball.radius;
+}
+
+void fitIntoUnitBall(const std::vector<MeshData*>& meshes) {
+    const Ball ball = ballAround(meshes);
+    for (MeshData* mesh : meshes) moveIntoUnitBall(ball, *mesh);
 }
 
 void fitIntoUnitBall(MeshData& mesh) {

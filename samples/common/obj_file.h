@@ -31,7 +31,15 @@ bool readObj(const std::string& path, bool smooth, ObjModel& model, std::string&
 /// All of the file in one mesh. A file that cannot be read ends the program with a message.
 MeshData loadObj(const std::string& path, bool smooth = true);
 
-/// Moves and scales meshes, together, into the ball of radius 1 around the origin.
+/// The ball around the box around meshes.
+struct Ball {
+    glm::vec3 center{0};
+    float radius = 1;
+};
+Ball ballAround(const std::vector<MeshData*>& meshes);
+/// Moves and scales what lies in a ball into that of radius 1 around the origin.
+void moveIntoUnitBall(const Ball& ball, MeshData& mesh);
+/// The same with the ball around them, together.
 void fitIntoUnitBall(const std::vector<MeshData*>& meshes);
 void fitIntoUnitBall(MeshData& mesh);
 

@@ -16,53 +16,55 @@ struct Elements {
     const uint8_t* bytes = nullptr;
     size_t count = 0, stride = 0;
     int componentType = 0;
-    bool normalized = false;
 };
 
-bool locate(const tinygltf::Model& model, int index, int components, Elements& elements, std::string& error) {
+/// `count` elements of `components` from a byte of a buffer view on, whatever the view's stride is good for.
+bool locateIn(const tinygltf::Model& model, int view, size_t byteOffset, size_t count, int componentType,
+              int components, const std::string& name, Elements& elements, std::string& error) {
+    size_t viewSize = 0;
+    if (!bytesOfView(model, view, elements.bytes, viewSize, error)) {
+        error = name + ": " + error;
+        return false;
+    }
+    const auto componentSize =
+        static_cast<size_t>(tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(componentType)));
+    const size_t elementSize = componentSize * static_cast<size_t>(components);
+    const size_t declared = model.bufferViews[static_cast<size_t>(view)].byteStride;
+    elements.stride = declared ? declared : elementSize;
+    // The last element needs its own bytes only, not a whole stride.
+    const bool inside = byteOffset <= viewSize && count > 0 && elementSize <= viewSize - byteOffset &&
+                        count - 1 <= (viewSize - byteOffset - elementSize) / elements.stride;
+    if (!inside || elements.stride < elementSize) {
+        error = name + ": " + std::to_string(count) + " elements of " + std::to_string(elementSize) +
+                " bytes from byte " + std::to_string(byteOffset) + " on do not lie in its buffer view of " +
+                std::to_string(viewSize) + " bytes";
+        return false;
+    }
+    elements.bytes += byteOffset;
+    elements.count = count;
+    elements.componentType = componentType;
+    return true;
+}
+
+/// The accessor, if it is one of `components` that glTF allows.
+const tinygltf::Accessor* accessorOf(const tinygltf::Model& model, int index, int components, std::string& error) {
     const std::string name = named("accessor", index);
     if (index < 0 || static_cast<size_t>(index) >= model.accessors.size()) {
         error = "there is no " + name;
-        return false;
+        return nullptr;
     }
     const tinygltf::Accessor& accessor = model.accessors[static_cast<size_t>(index)];
-    if (accessor.sparse.isSparse) {
-        error = name + " is sparse, which the viewer cannot read";
-        return false;
-    }
     if (tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor.type)) != components) {
         error = name + " has not " + std::to_string(components) + " components";
-        return false;
+        return nullptr;
     }
     const int componentSize = tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(accessor.componentType));
     if (componentSize <= 0 || accessor.componentType == TINYGLTF_COMPONENT_TYPE_DOUBLE ||
         accessor.componentType == TINYGLTF_COMPONENT_TYPE_INT) {
         error = name + " has the component type " + std::to_string(accessor.componentType) + ", which glTF lacks";
-        return false;
+        return nullptr;
     }
-    size_t viewSize = 0;
-    if (!bytesOfView(model, accessor.bufferView, elements.bytes, viewSize, error)) {
-        error = name + ": " + error;
-        return false;
-    }
-    const size_t elementSize = static_cast<size_t>(componentSize) * static_cast<size_t>(components);
-    const size_t declared = model.bufferViews[static_cast<size_t>(accessor.bufferView)].byteStride;
-    elements.stride = declared ? declared : elementSize;
-    // The last element needs its own bytes only, not a whole stride.
-    const bool inside = accessor.byteOffset <= viewSize && accessor.count > 0 &&
-                        elementSize <= viewSize - accessor.byteOffset &&
-                        accessor.count - 1 <= (viewSize - accessor.byteOffset - elementSize) / elements.stride;
-    if (!inside || elements.stride < elementSize) {
-        error = name + ": " + std::to_string(accessor.count) + " elements of " + std::to_string(elementSize) +
-                " bytes from byte " + std::to_string(accessor.byteOffset) + " on do not lie in its buffer view of " +
-                std::to_string(viewSize) + " bytes";
-        return false;
-    }
-    elements.bytes += accessor.byteOffset;
-    elements.count = accessor.count;
-    elements.componentType = accessor.componentType;
-    elements.normalized = accessor.normalized;
-    return true;
+    return &accessor;
 }
 
 template <class T>
@@ -120,43 +122,107 @@ bool bytesOfView(const tinygltf::Model& model, int view, const uint8_t*& bytes, 
     return true;
 }
 
-bool readFloats(const tinygltf::Model& model, int accessor, int components, std::vector<float>& values,
-                std::string& error) {
-    Elements elements;
-    if (!locate(model, accessor, components, elements, error)) return false;
-    const auto width = static_cast<size_t>(components);
-    const auto size =
-        static_cast<size_t>(tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(elements.componentType)));
-    values.resize(elements.count * width);
-    for (size_t i = 0; i < elements.count; ++i)
-        for (size_t c = 0; c < width; ++c)
-            values[i * width + c] =
-                component(elements.bytes + i * elements.stride + c * size, elements.componentType, elements.normalized);
-    return true;
+namespace {
+
+bool indexAt(const Elements& elements, size_t i, uint32_t& value) {
+    const uint8_t* bytes = elements.bytes + i * elements.stride;
+    switch (elements.componentType) {
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            value = *bytes;
+            return true;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            value = load<uint16_t>(bytes);
+            return true;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+            value = load<uint32_t>(bytes);
+            return true;
+        default:
+            return false;
+    }
 }
 
-bool readIndices(const tinygltf::Model& model, int accessor, std::vector<uint32_t>& values, std::string& error) {
+/// More than any mesh has; without a buffer view nothing else bounds how many zeros an accessor may ask for.
+constexpr size_t kMostZeros = size_t{1} << 22;
+
+/// Calls put(element, its elements, its place among them) for the elements of an accessor in order, then for those that
+/// it replaces (glTF 2.0, 3.6.2.3: sparse accessors). Elements that are in no buffer view are zero: those put() is not
+/// called for. `resize`: gets their number before.
+template <class Resize, class Put>
+bool forEachElement(const tinygltf::Model& model, int index, int components, const Resize& resize, const Put& put,
+                    std::string& error) {
+    const tinygltf::Accessor* accessor = accessorOf(model, index, components, error);
+    if (!accessor) return false;
+    const std::string name = named("accessor", index);
     Elements elements;
-    if (!locate(model, accessor, 1, elements, error)) return false;
-    values.resize(elements.count);
-    for (size_t i = 0; i < elements.count; ++i) {
-        const uint8_t* bytes = elements.bytes + i * elements.stride;
-        switch (elements.componentType) {
-            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-                values[i] = *bytes;
-                break;
-            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-                values[i] = load<uint16_t>(bytes);
-                break;
-            case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-                values[i] = load<uint32_t>(bytes);
-                break;
-            default:
-                error = named("accessor", accessor) + ": indices are unsigned integers";
-                return false;
+    if (accessor->bufferView >= 0 || !accessor->sparse.isSparse) {
+        if (!locateIn(model, accessor->bufferView, accessor->byteOffset, accessor->count, accessor->componentType,
+                      components, name, elements, error))
+            return false;
+    } else if (accessor->count == 0 || accessor->count > kMostZeros) {
+        error = name + ": " + std::to_string(accessor->count) + " elements";
+        return false;
+    }
+    resize(accessor->count);
+    for (size_t i = 0; i < elements.count; ++i)
+        if (!put(i, elements, i)) {
+            error = name + ": indices are unsigned integers";
+            return false;
+        }
+    if (!accessor->sparse.isSparse) return true;
+    const auto& sparse = accessor->sparse;
+    if (sparse.count <= 0) {
+        error = name + ": replaces " + std::to_string(sparse.count) + " elements";
+        return false;
+    }
+    Elements places, values;
+    const auto count = static_cast<size_t>(sparse.count);
+    if (tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(sparse.indices.componentType)) <= 0 ||
+        !locateIn(model, sparse.indices.bufferView, static_cast<size_t>(sparse.indices.byteOffset), count,
+                  sparse.indices.componentType, 1, name + ", sparse indices", places, error) ||
+        !locateIn(model, sparse.values.bufferView, static_cast<size_t>(sparse.values.byteOffset), count,
+                  accessor->componentType, components, name + ", sparse values", values, error)) {
+        if (error.empty()) error = name + ": indices are unsigned integers";
+        return false;
+    }
+    for (size_t i = 0; i < count; ++i) {
+        uint32_t place = 0;
+        if (!indexAt(places, i, place) || place >= accessor->count || !put(place, values, i)) {
+            error = name + ": replaces element " + std::to_string(place) + " of " + std::to_string(accessor->count);
+            return false;
         }
     }
     return true;
+}
+
+}  // namespace
+
+bool readFloats(const tinygltf::Model& model, int accessor, int components, std::vector<float>& values,
+                std::string& error) {
+    const auto width = static_cast<size_t>(components);
+    const auto put = [&](size_t at, const Elements& elements, size_t from) {
+        const auto size =
+            static_cast<size_t>(tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(elements.componentType)));
+        const bool normalized = model.accessors[static_cast<size_t>(accessor)].normalized;
+        for (size_t c = 0; c < width; ++c)
+            values[at * width + c] =
+                component(elements.bytes + from * elements.stride + c * size, elements.componentType, normalized);
+        return true;
+    };
+    return forEachElement(
+        model, accessor, components, [&](size_t count) { values.assign(count * width, 0.0f); }, put, error);
+}
+
+bool readIndices(const tinygltf::Model& model, int accessor, std::vector<uint32_t>& values, std::string& error) {
+    const auto put = [&](size_t at, const Elements& elements, size_t from) {
+        return indexAt(elements, from, values[at]);
+    };
+    return forEachElement(
+        model, accessor, 1, [&](size_t count) { values.assign(count, 0); }, put, error);
+}
+
+int componentsOf(const tinygltf::Model& model, int accessor) {
+    if (accessor < 0 || static_cast<size_t>(accessor) >= model.accessors.size()) return 0;
+    return tinygltf::GetNumComponentsInType(static_cast<uint32_t>(model.accessors[static_cast<size_t>(accessor)].type));
 }
 
 }  // namespace samples

@@ -1,288 +1,319 @@
 #include "samples/viewer/gltf_scene.h"
 
 #include <algorithm>
-#include <glm/gtc/quaternion.hpp>
-#include <map>
+#include <cmath>
 #include <set>
 
 #include "samples/common/obj_file.h"
-#include "samples/common/transform.h"
 #include "samples/viewer/gltf_accessor.h"
+#include "samples/viewer/gltf_animation.h"
 #include "samples/viewer/gltf_file.h"
+#include "samples/viewer/gltf_material.h"
+#include "samples/viewer/gltf_primitive.h"
 
 namespace samples {
 namespace {
 
 constexpr const char* kQuantization = "KHR_mesh_quantization";
+constexpr size_t kNoNode = SIZE_MAX;
 
-class Builder {
+/// What vertices are moved by: positions and tangents, and normals.
+struct Move {
+    explicit Move(const glm::mat4& by)
+        : matrix(by),
+          linear(by),
+          // Without inverse, which a flattening matrix lacks: the cofactors turn normals as well.
+          turn(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]), glm::cross(linear[0], linear[1])),
+          mirrors(glm::determinant(linear) < 0) {}
+
+    void apply(MeshVertex& vertex, VertexExtras* extras) const {
+        vertex.position = glm::vec3(matrix * glm::vec4(vertex.position, 1));
+        const glm::vec3 normal = turn * vertex.normal;
+        if (glm::dot(normal, normal) > 0) vertex.normal = glm::normalize(normal);
+        if (mirrors) vertex.normal = -vertex.normal;
+        if (!extras) return;
+        const glm::vec3 tangent = linear * glm::vec3(extras->tangent);
+        const float length = glm::length(tangent);
+        if (length > 0 && std::isfinite(length))
+            extras->tangent = glm::vec4(tangent / length, mirrors ? -extras->tangent.w : extras->tangent.w);
+    }
+
+    glm::mat4 matrix;
+    glm::mat3 linear, turn;
+    bool mirrors;
+};
+
+/// The meshes of a scene where their nodes place them, at rest or at a time of an animation.
+class GltfScene : public SceneMotion {
   public:
-    Builder(const tinygltf::Model& model, const std::vector<Picture>& pictures, Scene& scene)
-        : model_(model), pictures_(pictures), scene_(scene) {}
-
-    bool build(std::string& error) {
-        for (const std::string& extension : model_.extensionsRequired)
-            if (extension != kQuantization) {
-                error = "needs the extension " + extension + ", which the viewer lacks";
+    bool read(const tinygltf::Model& model, const std::vector<int>& textureSets, Scene& scene, std::string& error) {
+        for (const tinygltf::Node& node : model.nodes) places_.push_back(placeOf(node));
+        parents_.assign(model.nodes.size(), kNoNode);
+        materials_ = &scene.materials;
+        textureSets_ = &textureSets;
+        if (!readSkins(model, error) || !readNodes(model, error)) return false;
+        materials_ = nullptr;
+        textureSets_ = nullptr;
+        readAnimations(model, scene);
+        if (leftOut_ > 0) scene.notes.emplace_back("points and lines are not shown");
+        if (morphs_) scene.notes.emplace_back("morph targets are not shown");
+        for (const Drawn& drawn : drawn_) scene.parts.push_back(drawn.primitive.part);
+        place(places_, scene.parts);
+        for (const ScenePart& part : scene.parts)
+            if (!positionsAreFinite(part.mesh)) {
+                error = "a node moves a position beyond 1e18";
                 return false;
             }
-        for (const tinygltf::Material& from : model_.materials) addMaterial(from);
-        scene_.materials.push_back({"", {0.8f, 0.8f, 0.8f, 1}});
-        if (!addNodes(error)) return false;
-        const auto note = [&](bool wanted, const char* text) {
-            if (wanted) scene_.notes.emplace_back(text);
-        };
-        note(!model_.animations.empty(), "animations are not played");
-        note(!model_.skins.empty(), "skins are shown in the pose of their mesh");
-        note(leftOut_ > 0, "points and lines are not shown");
-        note(colors_, "colours of vertices are not shown");
-        for (const std::string& extension : model_.extensionsUsed)
-            note(extension != kQuantization, ("the extension " + extension + " is left out").c_str());
-        if (scene_.parts.empty()) error = "has no triangles";
-        return !scene_.parts.empty();
+        return true;
+    }
+
+    size_t animations() const override { return animations_.size(); }
+    double seconds(size_t animation) const override { return animations_.at(animation).seconds(); }
+    void pose(size_t animation, double seconds, std::vector<ScenePart>& parts) const override {
+        std::vector<NodePlace> places = places_;
+        const GltfAnimation& chosen = animations_.at(animation);
+        if (chosen.seconds() > 0) seconds -= std::floor(seconds / chosen.seconds()) * chosen.seconds();
+        chosen.apply(seconds, places);
+        for (size_t i = 0; i < drawn_.size(); ++i) parts[i] = drawn_[i].primitive.part;
+        place(places, parts);
     }
 
   private:
-    static glm::vec3 vec3Of(const std::vector<double>& values, const glm::vec3& otherwise) {
-        return values.size() == 3 ? glm::vec3(values[0], values[1], values[2]) : otherwise;
-    }
+    struct Skin {
+        std::vector<size_t> joints;       // nodes
+        std::vector<glm::mat4> fromMesh;  // into the space of each joint
+    };
+    struct Drawn {
+        GltfPrimitive primitive;
+        size_t node = kNoNode, skin = SIZE_MAX;
+    };
 
-    void addMaterial(const tinygltf::Material& from) {
-        SceneMaterial material;
-        material.name = from.name;
-        const tinygltf::PbrMetallicRoughness& surface = from.pbrMetallicRoughness;
-        if (const auto& c = surface.baseColorFactor; c.size() == 4) material.color = glm::vec4(c[0], c[1], c[2], c[3]);
-        material.metallic = glm::clamp(static_cast<float>(surface.metallicFactor), 0.0f, 1.0f);
-        material.roughness = glm::clamp(static_cast<float>(surface.roughnessFactor), 0.05f, 1.0f);
-        material.emission = vec3Of(from.emissiveFactor, glm::vec3(0));
-        material.twoSided = from.doubleSided;
-        material.cutoff = static_cast<float>(from.alphaCutoff);
-        if (from.alphaMode == "MASK") material.alpha = Alpha::kMasked;
-        if (from.alphaMode == "BLEND") material.alpha = Alpha::kBlended;
-        addTexture(surface.baseColorTexture.index, material);
-        textureSets_.push_back(surface.baseColorTexture.texCoord);
-        scene_.materials.push_back(material);
-    }
-
-    static VkSamplerAddressMode addressOf(int wrap) {
-        if (wrap == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-        return wrap == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT
-                                                             : VK_SAMPLER_ADDRESS_MODE_REPEAT;
-    }
-
-    /// A texture that cannot be read becomes a note: the model is worth seeing without.
-    void addTexture(int index, SceneMaterial& material) {
-        if (index < 0) return;
-        if (static_cast<size_t>(index) >= model_.textures.size()) {
-            scene_.notes.push_back("there is no texture " + std::to_string(index));
-            return;
-        }
-        const tinygltf::Texture& texture = model_.textures[static_cast<size_t>(index)];
-        if (texture.sampler >= 0 && static_cast<size_t>(texture.sampler) < model_.samplers.size()) {
-            const tinygltf::Sampler& sampler = model_.samplers[static_cast<size_t>(texture.sampler)];
-            material.addressU = addressOf(sampler.wrapS);
-            material.addressV = addressOf(sampler.wrapT);
-            if (sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) material.filter = VK_FILTER_NEAREST;
-        }
-        if (const auto known = textureOfImage_.find(texture.source); known != textureOfImage_.end()) {
-            material.texture = known->second;
-            return;
-        }
-        Picture picture;
-        std::string error;
-        if (pictureOf(model_, pictures_, texture.source, picture, error)) {
-            material.texture = static_cast<int>(scene_.textures.size());
-            scene_.textures.push_back(std::move(picture));
-        } else {
-            scene_.notes.push_back(error);
-        }
-        textureOfImage_[texture.source] = material.texture;
-    }
-
-    static glm::mat4 matrixOf(const tinygltf::Node& node) {
-        glm::mat4 matrix(1);
-        if (node.matrix.size() == 16) {
-            for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = static_cast<float>(node.matrix[static_cast<size_t>(i)]);
-            return matrix;
-        }
-        matrix = glm::translate(matrix, vec3Of(node.translation, glm::vec3(0)));
-        if (const auto& r = node.rotation; r.size() == 4)
-            matrix *= glm::mat4_cast(glm::quat(static_cast<float>(r[3]), static_cast<float>(r[0]),
-                                               static_cast<float>(r[1]), static_cast<float>(r[2])));
-        return glm::scale(matrix, vec3Of(node.scale, glm::vec3(1)));
-    }
-
-    /// The nodes of the scene form trees (glTF 2.0, 3.5.2): none is met twice.
-    bool addNodes(std::string& error) {
-        std::vector<std::pair<int, glm::mat4>> stack;
-        if (model_.scenes.empty()) {
-            // A library of meshes: each as it is.
-            for (const tinygltf::Mesh& mesh : model_.meshes)
-                if (!addMesh(mesh, glm::mat4(1), error)) return false;
-            return true;
-        }
-        const int first = std::max(model_.defaultScene, 0);
-        if (static_cast<size_t>(first) >= model_.scenes.size()) {
-            error = "there is no scene " + std::to_string(first);
-            return false;
-        }
-        const std::vector<int>& roots = model_.scenes[static_cast<size_t>(first)].nodes;
-        for (auto root = roots.rbegin(); root != roots.rend(); ++root) stack.emplace_back(*root, glm::mat4(1));
-        std::set<int> met;
-        while (!stack.empty()) {
-            const auto [index, parent] = stack.back();
-            stack.pop_back();
-            if (index < 0 || static_cast<size_t>(index) >= model_.nodes.size()) {
-                error = "there is no node " + std::to_string(index);
-                return false;
-            }
-            if (!met.insert(index).second) {
-                error = "node " + std::to_string(index) + " is the child of two nodes, or of itself";
-                return false;
-            }
-            const tinygltf::Node& node = model_.nodes[static_cast<size_t>(index)];
-            const glm::mat4 matrix = parent * matrixOf(node);
-            if (node.mesh >= 0) {
-                if (static_cast<size_t>(node.mesh) >= model_.meshes.size()) {
-                    error = "node " + std::to_string(index) + ": there is no mesh " + std::to_string(node.mesh);
+    bool readSkins(const tinygltf::Model& model, std::string& error) {
+        for (size_t i = 0; i < model.skins.size(); ++i) {
+            const tinygltf::Skin& from = model.skins[i];
+            Skin skin;
+            const std::string name = "skin " + std::to_string(i) + ": ";
+            for (const int joint : from.joints) {
+                if (joint < 0 || static_cast<size_t>(joint) >= model.nodes.size()) {
+                    error = name + "there is no node " + std::to_string(joint);
                     return false;
                 }
-                if (!addMesh(model_.meshes[static_cast<size_t>(node.mesh)], matrix, error)) return false;
+                skin.joints.push_back(static_cast<size_t>(joint));
             }
-            for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
-                stack.emplace_back(*child, matrix);
+            std::vector<float> matrices;
+            if (from.inverseBindMatrices >= 0 && !readFloats(model, from.inverseBindMatrices, 16, matrices, error)) {
+                error = name + error;
+                return false;
+            }
+            if (!matrices.empty() && matrices.size() / 16 < skin.joints.size()) {
+                error = name + std::to_string(matrices.size() / 16) + " matrices for " +
+                        std::to_string(skin.joints.size()) + " joints";
+                return false;
+            }
+            for (size_t k = 0; k < skin.joints.size(); ++k) {
+                glm::mat4 matrix(1);
+                for (size_t c = 0; c < 16 && !matrices.empty(); ++c)
+                    matrix[static_cast<int>(c / 4)][static_cast<int>(c % 4)] = matrices[k * 16 + c];
+                skin.fromMesh.push_back(matrix);
+            }
+            skins_.push_back(std::move(skin));
         }
         return true;
     }
 
-    bool addMesh(const tinygltf::Mesh& mesh, const glm::mat4& matrix, std::string& error) {
+    /// The nodes of the scene form trees (glTF 2.0, 3.5.2): none is met twice.
+    bool readNodes(const tinygltf::Model& model, std::string& error) {
+        if (model.scenes.empty()) {
+            // A library of meshes: each as it is.
+            for (const tinygltf::Mesh& mesh : model.meshes)
+                if (!addMesh(model, mesh, {}, error)) return false;
+            return true;
+        }
+        const int first = std::max(model.defaultScene, 0);
+        if (static_cast<size_t>(first) >= model.scenes.size()) {
+            error = "there is no scene " + std::to_string(first);
+            return false;
+        }
+        std::vector<std::pair<int, size_t>> stack;
+        const std::vector<int>& roots = model.scenes[static_cast<size_t>(first)].nodes;
+        for (auto root = roots.rbegin(); root != roots.rend(); ++root) stack.emplace_back(*root, kNoNode);
+        std::set<int> met;
+        while (!stack.empty()) {
+            const auto [number, parent] = stack.back();
+            stack.pop_back();
+            if (number < 0 || static_cast<size_t>(number) >= model.nodes.size()) {
+                error = "there is no node " + std::to_string(number);
+                return false;
+            }
+            if (!met.insert(number).second) {
+                error = "node " + std::to_string(number) + " is the child of two nodes, or of itself";
+                return false;
+            }
+            const auto index = static_cast<size_t>(number);
+            order_.push_back(index);
+            parents_[index] = parent;
+            const tinygltf::Node& node = model.nodes[index];
+            if (!addMeshOf(model, node, index, error)) {
+                return false;
+            }
+            for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
+                stack.emplace_back(*child, index);
+        }
+        for (const Drawn& drawn : drawn_)
+            if (drawn.skin != SIZE_MAX)
+                for (const size_t joint : skins_[drawn.skin].joints)
+                    if (met.count(static_cast<int>(joint)) == 0) {
+                        error = "skin " + std::to_string(drawn.skin) + ": node " + std::to_string(joint) +
+                                " is not in the scene";
+                        return false;
+                    }
+        return true;
+    }
+
+    bool addMeshOf(const tinygltf::Model& model, const tinygltf::Node& node, size_t index, std::string& error) {
+        if (node.mesh < 0) return true;
+        const std::string name = "node " + std::to_string(index) + ": ";
+        if (static_cast<size_t>(node.mesh) >= model.meshes.size()) {
+            error = name + "there is no mesh " + std::to_string(node.mesh);
+            return false;
+        }
+        Drawn drawn;
+        drawn.node = index;
+        if (node.skin >= 0) {
+            drawn.skin = static_cast<size_t>(node.skin);
+            if (drawn.skin >= skins_.size()) {
+                error = name + "there is no skin " + std::to_string(node.skin);
+                return false;
+            }
+        }
+        return addMesh(model, model.meshes[static_cast<size_t>(node.mesh)], drawn, error);
+    }
+
+    bool addMesh(const tinygltf::Model& model, const tinygltf::Mesh& mesh, const Drawn& where, std::string& error) {
         for (size_t i = 0; i < mesh.primitives.size(); ++i) {
             const tinygltf::Primitive& primitive = mesh.primitives[i];
             if (primitive.mode >= TINYGLTF_MODE_POINTS && primitive.mode < TINYGLTF_MODE_TRIANGLES) {
                 ++leftOut_;
                 continue;
             }
-            ScenePart part;
-            if (!readPrimitive(primitive, part, error) || !moveTo(matrix, part.mesh, error)) {
+            morphs_ |= !primitive.targets.empty();
+            Drawn drawn = where;
+            if (!readPrimitive(model, primitive, drawn, error)) {
                 error = "mesh \"" + mesh.name + "\", primitive " + std::to_string(i) + ": " + error;
                 return false;
             }
-            if (!part.mesh.indices.empty()) scene_.parts.push_back(std::move(part));
+            if (!drawn.primitive.part.mesh.indices.empty()) drawn_.push_back(std::move(drawn));
         }
         return true;
     }
 
-    bool readPrimitive(const tinygltf::Primitive& primitive, ScenePart& part, std::string& error) {
-        part.material = model_.materials.size();
+    bool readPrimitive(const tinygltf::Model& model, const tinygltf::Primitive& primitive, Drawn& drawn,
+                       std::string& error) {
+        ScenePart& part = drawn.primitive.part;
+        // The last one is that of meshes without material.
+        part.material = textureSets_->size();
         if (primitive.material >= 0) part.material = static_cast<size_t>(primitive.material);
-        if (part.material > model_.materials.size()) {
+        if (part.material > textureSets_->size()) {
             error = "there is no material " + std::to_string(primitive.material);
             return false;
         }
-        std::vector<float> positions, normals, coordinates;
-        const int set = part.material < textureSets_.size() ? textureSets_[part.material] : 0;
-        const auto attribute = [&](const std::string& name, int components, std::vector<float>& values) {
-            const auto found = primitive.attributes.find(name);
-            if (found == primitive.attributes.end()) return true;
-            if (readFloats(model_, found->second, components, values, error)) return true;
-            error = name + ": " + error;
-            return false;
-        };
-        if (!attribute("POSITION", 3, positions) || !attribute("NORMAL", 3, normals) ||
-            !attribute("TEXCOORD_" + std::to_string(set), 2, coordinates))
-            return false;
-        colors_ = colors_ || primitive.attributes.count("COLOR_0") != 0;
-        const size_t count = positions.size() / 3;
-        if (count == 0) {
-            error = "has no POSITION";
-            return false;
-        }
-        if ((!normals.empty() && normals.size() / 3 != count) ||
-            (!coordinates.empty() && coordinates.size() / 2 != count)) {
-            error = "its attributes have different counts";
-            return false;
-        }
-        for (size_t i = 0; i < count; ++i) {
-            MeshVertex vertex{};
-            for (int c = 0; c < 3; ++c) vertex.position[c] = positions[i * 3 + static_cast<size_t>(c)];
-            for (int c = 0; c < 3 && !normals.empty(); ++c) vertex.normal[c] = normals[i * 3 + static_cast<size_t>(c)];
-            if (!coordinates.empty()) vertex.uv = {coordinates[i * 2], coordinates[i * 2 + 1]};
-            part.mesh.vertices.push_back(vertex);
-        }
-        if (!positionsAreFinite(part.mesh)) {
-            error = "a position is not a number below 1e18";
-            return false;
-        }
-        std::vector<uint32_t> order(count);
-        for (size_t i = 0; i < count; ++i) order[i] = static_cast<uint32_t>(i);
-        if (primitive.indices >= 0 && !readIndices(model_, primitive.indices, order, error)) {
-            error = "indices: " + error;
-            return false;
-        }
-        for (const uint32_t index : order)
-            if (index >= count) {
-                error = "index " + std::to_string(index) + ", but there are " + std::to_string(count) + " vertices";
-                return false;
-            }
-        part.mesh.indices = trianglesOf(order, primitive.mode);
-        if (normals.empty()) makeFlat(part.mesh);
+        const int set = part.material < textureSets_->size() ? (*textureSets_)[part.material] : 0;
+        const SceneMaterial& material = (*materials_)[part.material];
+        const bool extras = material.surfaceTexture.texture >= 0 || material.normalTexture.texture >= 0 ||
+                            material.emissionTexture.texture >= 0;
+        if (!readGltfPrimitive(model, primitive, set, extras, drawn.primitive, error)) return false;
+        if (drawn.skin == SIZE_MAX) return true;
+        const size_t joints = skins_[drawn.skin].joints.size();
+        for (const VertexJoints& vertex : drawn.primitive.joints)
+            for (size_t k = 0; k < 4; ++k)
+                if (vertex.weights[k] > 0 && vertex.joints[k] >= joints) {
+                    error =
+                        "joint " + std::to_string(vertex.joints[k]) + ", but its skin has " + std::to_string(joints);
+                    return false;
+                }
         return true;
     }
 
-    /// Strips and fans as lists (glTF 2.0, 3.7.2.1).
-    static std::vector<uint32_t> trianglesOf(const std::vector<uint32_t>& order, int mode) {
-        std::vector<uint32_t> list;
-        if (mode == TINYGLTF_MODE_TRIANGLE_STRIP || mode == TINYGLTF_MODE_TRIANGLE_FAN) {
-            for (size_t i = 0; i + 2 < order.size(); ++i)
-                if (mode == TINYGLTF_MODE_TRIANGLE_FAN)
-                    list.insert(list.end(), {order[i + 1], order[i + 2], order[0]});
-                else
-                    list.insert(list.end(), {order[i], order[i + 1 + i % 2], order[i + 2 - i % 2]});
-            return list;
+    /// An animation that cannot be read becomes a note: the model is worth seeing at rest.
+    void readAnimations(const tinygltf::Model& model, Scene& scene) {
+        for (size_t i = 0; i < model.animations.size(); ++i) {
+            GltfAnimation animation;
+            std::string error;
+            if (animation.read(model, model.animations[i], morphs_, error)) {
+                if (animation.seconds() > 0) animations_.push_back(std::move(animation));
+            } else {
+                scene.notes.push_back("animation " + std::to_string(i) + ": " + error);
+            }
         }
-        list.assign(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(order.size() / 3 * 3));
-        return list;
     }
 
-    /// A mesh without normals has those of its faces (glTF 2.0, 3.7.2.1).
-    static void makeFlat(MeshData& mesh) {
-        MeshData flat;
-        for (const uint32_t index : mesh.indices) {
-            flat.indices.push_back(static_cast<uint32_t>(flat.vertices.size()));
-            flat.vertices.push_back(mesh.vertices[index]);
+    /// Moves what is drawn, whose copies `parts` are.
+    void place(const std::vector<NodePlace>& places, std::vector<ScenePart>& parts) const {
+        std::vector<glm::mat4> global(places.size(), glm::mat4(1));
+        for (const size_t node : order_) {
+            const glm::mat4 local = places[node].local();
+            global[node] = parents_[node] == kNoNode ? local : global[parents_[node]] * local;
         }
-        computeNormals(flat);
-        mesh = std::move(flat);
+        for (size_t i = 0; i < drawn_.size(); ++i) {
+            const Drawn& drawn = drawn_[i];
+            if (drawn.skin != SIZE_MAX && !drawn.primitive.joints.empty()) {
+                placeSkinned(drawn, global, parts[i]);
+            } else if (drawn.node != kNoNode) {
+                placeWhole(Move(global[drawn.node]), parts[i]);
+            }
+        }
     }
 
-    static bool moveTo(const glm::mat4& matrix, MeshData& mesh, std::string& error) {
-        const glm::mat3 linear(matrix);
-        // Without inverse, which a flattening matrix lacks: the cofactors turn normals as well.
-        const glm::mat3 turn(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
-                             glm::cross(linear[0], linear[1]));
-        for (MeshVertex& vertex : mesh.vertices) {
-            vertex.position = glm::vec3(matrix * glm::vec4(vertex.position, 1));
-            const glm::vec3 normal = turn * vertex.normal;
-            if (glm::dot(normal, normal) > 0) vertex.normal = glm::normalize(normal);
-        }
+    static void placeWhole(const Move& move, ScenePart& part) {
+        for (size_t v = 0; v < part.mesh.vertices.size(); ++v)
+            move.apply(part.mesh.vertices[v], part.extras.empty() ? nullptr : &part.extras[v]);
         // A mirrored mesh shows its triangles the other way round.
-        if (glm::determinant(linear) < 0) {
-            for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
-            for (MeshVertex& vertex : mesh.vertices) vertex.normal = -vertex.normal;
-        }
-        if (positionsAreFinite(mesh)) return true;
-        error = "its node moves a position beyond 1e18";
-        return false;
+        if (!move.mirrors) return;
+        std::vector<uint32_t>& indices = part.mesh.indices;
+        for (size_t i = 0; i + 2 < indices.size(); i += 3) std::swap(indices[i + 1], indices[i + 2]);
     }
 
-    const tinygltf::Model& model_;
-    const std::vector<Picture>& pictures_;
-    Scene& scene_;
-    std::map<int, int> textureOfImage_;
-    std::vector<int> textureSets_;  // TEXCOORD_n, by material
+    /// Where the mesh's own node is does not matter (glTF 2.0, 3.7.3.3).
+    void placeSkinned(const Drawn& drawn, const std::vector<glm::mat4>& global, ScenePart& part) const {
+        const Skin& skin = skins_[drawn.skin];
+        std::vector<glm::mat4> joints;
+        for (size_t k = 0; k < skin.joints.size(); ++k) joints.push_back(global[skin.joints[k]] * skin.fromMesh[k]);
+        for (size_t v = 0; v < part.mesh.vertices.size(); ++v) {
+            const VertexJoints& vertex = drawn.primitive.joints[v];
+            glm::mat4 sum(0);
+            for (size_t k = 0; k < 4; ++k)
+                if (vertex.weights[k] > 0) sum += joints[vertex.joints[k]] * vertex.weights[k];
+            Move(sum).apply(part.mesh.vertices[v], part.extras.empty() ? nullptr : &part.extras[v]);
+        }
+    }
+
+    std::vector<NodePlace> places_;  // of all nodes, at rest
+    std::vector<size_t> parents_, order_;
+    std::vector<Skin> skins_;
+    std::vector<Drawn> drawn_;
+    std::vector<GltfAnimation> animations_;
     size_t leftOut_ = 0;
-    bool colors_ = false;
+    bool morphs_ = false;
+    // While it is read.
+    const std::vector<SceneMaterial>* materials_ = nullptr;
+    const std::vector<int>* textureSets_ = nullptr;
 };
+
+bool build(const tinygltf::Model& model, const std::vector<Picture>& pictures, Scene& scene, std::string& error) {
+    for (const std::string& extension : model.extensionsRequired)
+        if (extension != kQuantization) {
+            error = "needs the extension " + extension + ", which the viewer lacks";
+            return false;
+        }
+    const std::vector<int> textureSets = addGltfMaterials(model, pictures, scene);
+    const auto read = std::make_shared<GltfScene>();
+    if (!read->read(model, textureSets, scene, error)) return false;
+    for (const std::string& extension : model.extensionsUsed)
+        if (extension != kQuantization) scene.notes.push_back("the extension " + extension + " is left out");
+    if (read->animations() > 0) scene.motion = read;
+    if (scene.parts.empty()) error = "has no triangles";
+    return !scene.parts.empty();
+}
 
 }  // namespace
 
@@ -290,7 +321,7 @@ bool readGltfScene(const std::string& path, Scene& scene, std::string& error) {
     tinygltf::Model model;
     std::vector<Picture> pictures;
     if (!readGltfFile(path, model, pictures, error)) return false;
-    if (Builder(model, pictures, scene).build(error)) return true;
+    if (build(model, pictures, scene, error)) return true;
     error = path + ": " + error;
     return false;
 }

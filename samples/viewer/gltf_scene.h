@@ -8,8 +8,9 @@
 
 namespace samples {
 
-/// Adds the default scene: meshes of triangles, moved by their nodes, with base colour, metal, roughness, emission,
-/// alpha modes and the texture of the base colour. What else there is becomes a note. False with what is wrong.
+/// Adds the default scene: meshes of triangles, moved by their nodes and skins, with colours of vertices, base colour,
+/// metal, roughness, normals, emission, the textures of these, and alpha modes; and its animations. What else there is
+/// becomes a note. False with what is wrong.
 bool readGltfScene(const std::string& path, Scene& scene, std::string& error);
 
 }  // namespace samples

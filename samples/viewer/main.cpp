@@ -16,7 +16,8 @@ struct Settings {
     samples::Dial dial;
     samples::ViewSettings view;
     samples::CameraSettings camera;
-    bool panel = false, hidden = false;
+    bool panel = false, hidden = false, animate = true;
+    int animation = 1;
     double uiScale = 0;
     int turntable = 0;
 };
@@ -31,6 +32,8 @@ std::vector<samples::Option> optionsOf(Settings& settings) {
     add(samples::cameraOptions(settings.camera));
     add({{"--panel", "the panel, without a window too", &settings.panel},
          {"--hide", "no panel", &settings.hidden, 'h'},
+         {"--animate", "the model's animation is played", &settings.animate, 'm'},
+         {"--animation", "which, from 1 on", &settings.animation},
          {"--ui-scale", "size of letters (0: as the screen has it)", &settings.uiScale},
          {"--turntable", "write so many pictures once round to --out, without a window", &settings.turntable}});
     return options;
@@ -70,6 +73,7 @@ class Viewer {
         }
         if (moveDivide(input)) input.dragging = false;
         rig_.update(input, frame.elapsed, settings_.camera.fly != 0);
+        animate(frame.seconds);
         const bool panel = app_.hasWindow() ? !settings_.hidden : settings_.panel;
         drawView();
         const samples::UiActions clicked = drawUi(frame, panel);
@@ -112,6 +116,14 @@ class Viewer {
         } else {
             message_ = error;
         }
+    }
+
+    void animate(double seconds) {
+        const bool chosen = scene_.motion && settings_.animation >= 1 &&
+                            static_cast<size_t>(settings_.animation) <= scene_.motion->animations();
+        if (!chosen || !settings_.animate) return;
+        samples::poseScene(scene_, static_cast<size_t>(settings_.animation) - 1, seconds);
+        model_.moveParts(scene_);
     }
 
     /// The line of the split screen can be taken hold of. Whether it is.

@@ -13,6 +13,12 @@ float exponentOf(float roughness) {
     return glm::clamp(2 / (r * r) - 2, 1.0f, 2000.0f);
 }
 
+glm::vec3 centerOf(const MeshData& mesh) {
+    glm::vec3 sum(0);
+    for (const MeshVertex& vertex : mesh.vertices) sum += vertex.position;
+    return sum / static_cast<float>(mesh.vertices.size());
+}
+
 }  // namespace
 
 ModelRenderer::ModelRenderer(App& app) : app_(app) {
@@ -21,10 +27,19 @@ ModelRenderer::ModelRenderer(App& app) : app_(app) {
     vertex_ = app.shader(VK_SHADER_STAGE_VERTEX_BIT, kModelVertex);
     lit_ = fragment(kModelFragment);
     litMasked_ = fragment(kModelMaskedFragment);
+    mappedVertex_ = app.shader(VK_SHADER_STAGE_VERTEX_BIT, kMappedVertex);
+    mapped_ = fragment(kMappedFragment);
+    mappedMasked_ = fragment(kMappedMaskedFragment);
     count_ = fragment(kCountFragment);
     countMasked_ = fragment(kCountMaskedFragment);
     plain_ = fragment(kPlainFragment);
     layout_ = app.meshLayout();
+    mappedLayout_ = app.layout({{0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(MeshVertex, position)},
+                                {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(MeshVertex, normal)},
+                                {2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(MeshVertex, uv)},
+                                {3, 1, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(VertexExtras, color)},
+                                {4, 1, VK_FORMAT_R32G32B32A32_SFLOAT, offsetof(VertexExtras, tangent)}},
+                               {{sizeof(MeshVertex), 0}, {sizeof(VertexExtras), 0}});
     writeDepth_ = app.depthState();
     readDepth_ = app.depthState(false);
     edgeDepth_ = app.depthState(false, VK_COMPARE_OP_LESS_OR_EQUAL);
@@ -40,13 +55,15 @@ ModelRenderer::ModelRenderer(App& app) : app_(app) {
     over.attachments[0].enable = 1;  // source over, which leaves an opaque picture opaque
     must(vnCreateBlendState(app.device(), &over, &over_));
     add_ = app.blendState(VK_BLEND_FACTOR_ONE, VK_BLEND_FACTOR_ONE);
-    white_ = upload({1, 1, {0xFFFFFFFF}});
+    white_ = upload({{1, 1, {0xFFFFFFFF}}});
+    straight_ = upload({{1, 1, {0xFFFF8080}}, true});
 }
 
 void ModelRenderer::release() {
     for (const Part& part : parts_) {
         vnDestroyBuffer(app_.device(), part.mesh.vertices);
         vnDestroyBuffer(app_.device(), part.mesh.indices);
+        if (part.extras.id) vnDestroyBuffer(app_.device(), part.extras);
     }
     for (const Texture& texture : textures_)
         if (texture.image.id) vnDestroyImage(app_.device(), texture.image);
@@ -54,9 +71,10 @@ void ModelRenderer::release() {
     textures_.clear();
 }
 
-ModelRenderer::Texture ModelRenderer::upload(const Picture& picture) {
+ModelRenderer::Texture ModelRenderer::upload(const SceneTexture& from) {
+    const Picture& picture = from.picture;
     VnImageDesc desc{};
-    desc.format = VK_FORMAT_R8G8B8A8_SRGB;
+    desc.format = from.linear ? VK_FORMAT_R8G8B8A8_UNORM : VK_FORMAT_R8G8B8A8_SRGB;
     desc.width = picture.width;
     desc.height = picture.height;
     desc.mipLevels = VN_ALL_MIPS;
@@ -71,22 +89,33 @@ ModelRenderer::Texture ModelRenderer::upload(const Picture& picture) {
 void ModelRenderer::setScene(Scene& scene) {
     release();
     materials_ = scene.materials;
-    for (const Picture& picture : scene.textures) {
-        textures_.push_back(upload(picture));
+    for (const SceneTexture& texture : scene.textures) {
+        textures_.push_back(upload(texture));
         if (textures_.back().view.id == 0)
-            scene.notes.push_back("a texture of " + std::to_string(picture.width) + " x " +
-                                  std::to_string(picture.height) + " texels is too large for the device");
+            scene.notes.push_back("a texture of " + std::to_string(texture.picture.width) + " x " +
+                                  std::to_string(texture.picture.height) + " texels is too large for the device");
     }
-    for (const ScenePart& from : scene.parts) {
-        glm::vec3 sum(0);
-        for (const MeshVertex& vertex : from.mesh.vertices) sum += vertex.position;
-        parts_.push_back({app_.mesh(from.mesh), from.material, sum / static_cast<float>(from.mesh.vertices.size())});
+    for (const ScenePart& from : scene.parts)
+        parts_.push_back({app_.mesh(from.mesh), from.extras.empty() ? VnBuffer{} : app_.buffer(from.extras),
+                          from.material, centerOf(from.mesh)});
+}
+
+void ModelRenderer::moveParts(const Scene& scene) {
+    const auto update = [&](VnBuffer buffer, const auto& elements) {
+        must(vnUpdateBuffer(app_.context(), buffer, 0, elements.data(), elements.size() * sizeof elements[0]));
+    };
+    for (size_t i = 0; i < parts_.size(); ++i) {
+        const ScenePart& from = scene.parts[i];
+        update(parts_[i].mesh.vertices, from.mesh.vertices);
+        update(parts_[i].mesh.indices, from.mesh.indices);  // mirrored, perhaps
+        if (!from.extras.empty()) update(parts_[i].extras, from.extras);
+        parts_[i].center = centerOf(from.mesh);
     }
 }
 
-VnProgram ModelRenderer::link(VnShader fragment, const DialPosition& dial) {
+VnProgram ModelRenderer::link(VnShader vertex, VnShader fragment, const DialPosition& dial) {
     VnProgramDesc desc{};
-    desc.vertex = vertex_;
+    desc.vertex = vertex;
     desc.fragment = fragment;
     desc.profile = dial.profile;
     desc.axes = dial.axes.c_str();
@@ -100,26 +129,28 @@ ModelRenderer::Programs& ModelRenderer::programsOf(const DialPosition& dial) {
     const auto found = programs_.find(key);
     if (found != programs_.end()) return found->second;
     Programs made;
-    made.lit = link(lit_, dial);
-    made.litMasked = link(litMasked_, dial);
-    made.count = link(count_, dial);
-    made.countMasked = link(countMasked_, dial);
-    made.plain = link(plain_, dial);
+    made.lit = link(vertex_, lit_, dial);
+    made.litMasked = link(vertex_, litMasked_, dial);
+    made.mapped = link(mappedVertex_, mapped_, dial);
+    made.mappedMasked = link(mappedVertex_, mappedMasked_, dial);
+    made.count = link(vertex_, count_, dial);
+    made.countMasked = link(vertex_, countMasked_, dial);
+    made.plain = link(vertex_, plain_, dial);
     return programs_.emplace(key, made).first->second;
 }
 
-VnSampler ModelRenderer::samplerOf(const SceneMaterial& material) {
-    const uint32_t key = static_cast<uint32_t>(material.filter) | static_cast<uint32_t>(material.addressU) << 8 |
-                         static_cast<uint32_t>(material.addressV) << 16;
+VnSampler ModelRenderer::samplerOf(const MaterialTexture& texture) {
+    const uint32_t key = static_cast<uint32_t>(texture.filter) | static_cast<uint32_t>(texture.addressU) << 8 |
+                         static_cast<uint32_t>(texture.addressV) << 16;
     if (const auto found = samplers_.find(key); found != samplers_.end()) return found->second;
     VnSamplerDesc desc{};
-    desc.magFilter = material.filter;
+    desc.magFilter = texture.filter;
     desc.minFilter = VK_FILTER_LINEAR;
     desc.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
-    desc.addressU = material.addressU;
-    desc.addressV = material.addressV;
+    desc.addressU = texture.addressU;
+    desc.addressV = texture.addressV;
     // The dial's own axis says how many of them are taken. Anisotropic filters are linear ones.
-    if (material.filter == VK_FILTER_LINEAR) desc.maxAnisotropy = 16;
+    if (texture.filter == VK_FILTER_LINEAR) desc.maxAnisotropy = 16;
     VnSampler sampler{};
     must(vnCreateSampler(app_.device(), &desc, &sampler));
     return samplers_[key] = sampler;
@@ -142,23 +173,44 @@ std::vector<const ModelRenderer::Part*> ModelRenderer::inOrder(const glm::vec3& 
 void ModelRenderer::bind(const Part& part) {
     VnContext context = app_.context();
     const SceneMaterial& material = materials_[part.material];
-    const bool textured = material.texture >= 0 && textures_[static_cast<size_t>(material.texture)].view.id != 0;
     vnBindVertexLayout(context, layout_);
     vnSetTopology(context, VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST, 0);
     vnBindRasterState(context, material.twoSided ? twoSided_ : oneSided_);
     vnBindDepthStencilState(context, material.alpha == Alpha::kBlended ? readDepth_ : writeDepth_);
-    vnBindTexture(context, 0, 0, 0, textured ? textures_[static_cast<size_t>(material.texture)].view : white_.view,
-                  samplerOf(material));
+    bindTexture(0, material.texture, white_);
+}
+
+void ModelRenderer::bindTexture(uint32_t binding, const MaterialTexture& texture, const Texture& otherwise) {
+    const bool textured = texture.texture >= 0 && textures_[static_cast<size_t>(texture.texture)].view.id != 0;
+    const Texture& bound = textured ? textures_[static_cast<size_t>(texture.texture)] : otherwise;
+    vnBindTexture(app_.context(), 0, binding, 0, bound.view, samplerOf(texture));
+}
+
+/// The program that lights a part, with what it wants beyond bind().
+void ModelRenderer::bindLit(const Part& part, const Programs& programs) {
+    const SceneMaterial& material = materials_[part.material];
+    const bool masked = material.alpha == Alpha::kMasked;
+    if (part.extras.id == 0) {
+        vnBindProgram(app_.context(), masked ? programs.litMasked : programs.lit);
+        return;
+    }
+    vnBindProgram(app_.context(), masked ? programs.mappedMasked : programs.mapped);
+    vnBindVertexLayout(app_.context(), mappedLayout_);
+    vnBindVertexBuffer(app_.context(), 1, part.extras, 0);
+    bindTexture(1, material.surfaceTexture, white_);
+    bindTexture(2, material.emissionTexture, white_);
+    bindTexture(3, material.normalTexture, straight_);
 }
 
 void ModelRenderer::push(const Part& part, const ModelLook& look, float weight) {
     const SceneMaterial& material = materials_[part.material];
-    const float exponent = exponentOf(material.roughness);
     // Smooth surfaces gather the light that rough ones spread.
-    const float strength = (1 - material.roughness) * 1.6f;
+    constexpr float kStrength = 1.6f;
+    const glm::vec4 plain(material.metallic, exponentOf(material.roughness), (1 - material.roughness) * kStrength, 0);
+    const glm::vec4 mapped(material.metallic, material.roughness, kStrength, material.normalScale);
     app_.push(viewer_shaders::ModelPush{look.transform, glm::vec4(look.eye, weight), material.color,
                                         glm::vec4(material.emission, material.cutoff),
-                                        glm::vec4(material.metallic, exponent, strength, 0)});
+                                        part.extras.id == 0 ? plain : mapped});
 }
 
 std::string ModelRenderer::explain(VnExplainFormat format) {
@@ -175,7 +227,7 @@ void ModelRenderer::drawLit(const ModelLook& look, const DialPosition& dial, std
     for (const Part* part : inOrder(look.eye)) {
         const Alpha alpha = materials_[part->material].alpha;
         bind(*part);
-        vnBindProgram(app_.context(), alpha == Alpha::kMasked ? programs.litMasked : programs.lit);
+        bindLit(*part, programs);
         vnBindBlendState(app_.context(), alpha == Alpha::kBlended ? over_ : VnBlendState{});
         push(*part, look, 0);
         if (explained) *std::exchange(explained, nullptr) = explain(VN_EXPLAIN_TEXT);
@@ -184,11 +236,12 @@ void ModelRenderer::drawLit(const ModelLook& look, const DialPosition& dial, std
     vnBindBlendState(app_.context(), VnBlendState{});
 }
 
-float ModelRenderer::costOf(const DialPosition& dial, Alpha alpha) {
+float ModelRenderer::costOf(const Part& part, const DialPosition& dial) {
     Programs& programs = programsOf(dial);
-    std::optional<float>& cost = programs.cost[static_cast<size_t>(alpha)];
+    const size_t alpha = static_cast<size_t>(materials_[part.material].alpha);
+    std::optional<float>& cost = programs.cost[part.extras.id != 0][alpha];
     if (cost) return *cost;
-    vnBindProgram(app_.context(), alpha == Alpha::kMasked ? programs.litMasked : programs.lit);
+    bindLit(part, programs);
     cost = 0.0f;
     for (const nlohmann::json& fact : nlohmann::json::parse(explain(VN_EXPLAIN_JSON))) {
         if (!fact.contains("rates") || fact["what"].get<std::string>().find("fragment program") == std::string::npos)
@@ -205,7 +258,7 @@ void ModelRenderer::drawCounts(const ModelLook& look, const DialPosition& dial, 
     for (const Part* part : inOrder(look.eye)) {
         const Alpha alpha = materials_[part->material].alpha;
         bind(*part);
-        const float weight = count == Count::kCost ? costOf(dial, alpha) : 1;
+        const float weight = count == Count::kCost ? costOf(*part, dial) : 1;
         const Programs& programs = programsOf(dial);
         vnBindProgram(app_.context(), alpha == Alpha::kMasked ? programs.countMasked : programs.count);
         if (count == Count::kSurfaces) vnBindDepthStencilState(app_.context(), VnDepthStencilState{});

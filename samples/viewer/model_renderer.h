@@ -25,6 +25,8 @@ class ModelRenderer {
 
     /// Replaces what is drawn. Textures that the device cannot hold are left out and noted in `scene`.
     void setScene(Scene& scene);
+    /// Draws the parts of that scene where they are now.
+    void moveParts(const Scene& scene);
 
     // Inside a pass with a depth image.
     /// What is opaque first, then masked, then blended from far to near. `explained` gets what the first draw runs.
@@ -38,17 +40,14 @@ class ModelRenderer {
     /// One colour.
     void drawPlain(const ModelLook& look, const DialPosition& dial, const glm::vec3& color);
 
-    /// What a run of the fragment program of parts of that kind costs, in additions, as vnExplain says it. Inside a
-    /// pass.
-    float costOf(const DialPosition& dial, Alpha alpha);
-
   private:
     struct Programs {
-        VnProgram lit{}, litMasked{}, count{}, countMasked{}, plain{};
-        std::optional<float> cost[3];  // by Alpha
+        VnProgram lit{}, litMasked{}, mapped{}, mappedMasked{}, count{}, countMasked{}, plain{};
+        std::optional<float> cost[2][3];  // without and with extras, by Alpha
     };
     struct Part {
         Mesh mesh;
+        VnBuffer extras;  // VertexExtras, if there are some
         size_t material;
         glm::vec3 center;
     };
@@ -57,25 +56,29 @@ class ModelRenderer {
         VnView view{};
     };
     Programs& programsOf(const DialPosition& dial);
-    VnProgram link(VnShader fragment, const DialPosition& dial);
-    VnSampler samplerOf(const SceneMaterial& material);
-    Texture upload(const Picture& picture);
+    VnProgram link(VnShader vertex, VnShader fragment, const DialPosition& dial);
+    VnSampler samplerOf(const MaterialTexture& texture);
+    Texture upload(const SceneTexture& from);
     void release();
     std::vector<const Part*> inOrder(const glm::vec3& eye) const;
     /// Binds all that a part is drawn with but the program.
     void bind(const Part& part);
+    void bindTexture(uint32_t binding, const MaterialTexture& texture, const Texture& otherwise);
+    void bindLit(const Part& part, const Programs& programs);
+    /// What a run of the fragment program that lights a part costs, in additions, as vnExplain says it. Inside a pass.
+    float costOf(const Part& part, const DialPosition& dial);
     void push(const Part& part, const ModelLook& look, float weight);
     std::string explain(VnExplainFormat format);
 
     App& app_;
-    VnShader vertex_, lit_, litMasked_, count_, countMasked_, plain_;
+    VnShader vertex_, lit_, litMasked_, mappedVertex_, mapped_, mappedMasked_, count_, countMasked_, plain_;
     std::map<std::string, Programs> programs_;
     std::map<uint32_t, VnSampler> samplers_;
-    VnVertexLayout layout_;
+    VnVertexLayout layout_, mappedLayout_;
     VnDepthStencilState writeDepth_, readDepth_, edgeDepth_;
     VnRasterState twoSided_{}, oneSided_{}, edges_{};
     VnBlendState over_{}, add_{};
-    Texture white_;
+    Texture white_, straight_;  // straight: normals as they are
     std::vector<Part> parts_;
     std::vector<Texture> textures_;
     std::vector<SceneMaterial> materials_;

@@ -30,7 +30,7 @@ int textureOf(const std::string& folder, const std::string& name, Scene& scene) 
         scene.notes.push_back(error);
         return -1;
     }
-    scene.textures.push_back(std::move(picture));
+    scene.textures.push_back({std::move(picture)});
     return static_cast<int>(scene.textures.size()) - 1;
 }
 
@@ -41,17 +41,18 @@ bool readObjScene(const std::string& path, Scene& scene, std::string& error) {
     for (const ObjMaterial& from : model.materials) {
         SceneMaterial material;
         material.name = from.name;
-        material.texture = textureOf(folder, from.texture, scene);
+        material.texture.texture = textureOf(folder, from.texture, scene);
         material.color = glm::vec4(from.color, from.opacity);
         // Exporters that know no colour beside a texture write black.
-        if (material.texture >= 0 && from.color == glm::vec3(0)) material.color = glm::vec4(1, 1, 1, from.opacity);
+        if (material.texture.texture >= 0 && from.color == glm::vec3(0))
+            material.color = glm::vec4(1, 1, 1, from.opacity);
         if (from.opacity < 1) material.alpha = Alpha::kBlended;
         material.roughness = 1 / (1 + std::max(from.shininess, 0.0f) * 0.02f);
         scene.materials.push_back(material);
     }
     scene.materials.push_back({"", {0.8f, 0.75f, 0.65f, 1}});
     for (size_t i = 0; i < model.parts.size(); ++i)
-        if (!model.parts[i].indices.empty()) scene.parts.push_back({std::move(model.parts[i]), i});
+        if (!model.parts[i].indices.empty()) scene.parts.push_back({std::move(model.parts[i]), i, {}});
     if (!model.warning.empty()) scene.notes.push_back(model.warning);
     return true;
 }
@@ -59,7 +60,8 @@ bool readObjScene(const std::string& path, Scene& scene, std::string& error) {
 void fit(Scene& scene) {
     std::vector<MeshData*> meshes;
     for (ScenePart& part : scene.parts) meshes.push_back(&part.mesh);
-    fitIntoUnitBall(meshes);
+    scene.ball = ballAround(meshes);
+    for (MeshData* mesh : meshes) moveIntoUnitBall(scene.ball, *mesh);
 }
 
 glm::mat4 placed(float x, float y, float z, float scale) {
@@ -91,23 +93,28 @@ bool loadScene(const std::string& path, Scene& scene, std::string& error) {
     return true;
 }
 
+void poseScene(Scene& scene, size_t animation, double seconds) {
+    scene.motion->pose(animation, seconds, scene.parts);
+    for (ScenePart& part : scene.parts) moveIntoUnitBall(scene.ball, part.mesh);
+}
+
 Scene builtInScene() {
     Scene scene;
     scene.name = "built-in";
-    scene.textures.push_back({256, 256, checkerTexels(256, 16, 0xFF606870, 0xFFE8E4DC)});
-    scene.textures.push_back({128, 128, checkerTexels(128, 8, 0xFF2868C8, 0xFFF0F0F0)});
+    scene.textures.push_back({{256, 256, checkerTexels(256, 16, 0xFF606870, 0xFFE8E4DC)}});
+    scene.textures.push_back({{128, 128, checkerTexels(128, 8, 0xFF2868C8, 0xFFF0F0F0)}});
     // A lattice: what is not 0xFF in alpha is left out.
-    scene.textures.push_back({128, 128, checkerTexels(128, 16, 0xFF48A0D8, 0x0048A0D8)});
+    scene.textures.push_back({{128, 128, checkerTexels(128, 16, 0xFF48A0D8, 0x0048A0D8)}});
     scene.materials = {{"floor", {0.9f, 0.9f, 0.9f, 1}}, {"knot", {0.95f, 0.8f, 0.5f, 1}},
                        {"ball", {0.9f, 0.35f, 0.3f, 1}}, {"crate", {1, 1, 1, 1}},
                        {"lattice", {1, 1, 1, 1}},        {"glass", {0.35f, 0.7f, 0.9f, 0.4f}}};
-    scene.materials[0].texture = 0;
+    scene.materials[0].texture.texture = 0;
     scene.materials[0].roughness = 0.9f;
     scene.materials[1].metallic = 0.8f;
     scene.materials[1].roughness = 0.35f;
     scene.materials[2].roughness = 0.2f;
-    scene.materials[3].texture = 1;
-    scene.materials[4].texture = 2;
+    scene.materials[3].texture.texture = 1;
+    scene.materials[4].texture.texture = 2;
     scene.materials[4].alpha = Alpha::kMasked;
     scene.materials[5].alpha = Alpha::kBlended;
     scene.materials[5].roughness = 0.15f;
@@ -117,12 +124,14 @@ Scene builtInScene() {
         placed(0.4f, 0.9f, 1.9f, 1) * rotation(0.5, {0, 1, 0}) * glm::scale(glm::mat4(1), glm::vec3(1.1f, 0.9f, 0.03f));
     const glm::mat4 fence = placed(-1.9f, 0.75f, 1.2f, 1) * rotation(-0.35, {0, 1, 0}) * rotation(kPi / 2, {1, 0, 0}) *
                             glm::scale(glm::mat4(1), glm::vec3(0.8f, 1, 0.75f));
-    scene.parts = {{moved(planeMesh(3.1f, 3), glm::mat4(1)), 0},
-                   {moved(knot, placed(0, 1.35f, -0.4f, 0.38f)), 1},
-                   {moved(sphereMesh(0.6f, 48, 24), placed(2.1f, 0.6f, -0.2f, 1)), 2},
-                   {moved(boxMesh(), placed(-2.2f, 0.6f, -1.1f, 0.6f) * rotation(0.6, {0, 1, 0})), 3},
-                   {moved(planeMesh(1, 1), fence), 4},
-                   {moved(boxMesh(), pane), 5}};
+    const std::pair<MeshData, size_t> parts[] = {
+        {moved(planeMesh(3.1f, 3), glm::mat4(1)), 0},
+        {moved(knot, placed(0, 1.35f, -0.4f, 0.38f)), 1},
+        {moved(sphereMesh(0.6f, 48, 24), placed(2.1f, 0.6f, -0.2f, 1)), 2},
+        {moved(boxMesh(), placed(-2.2f, 0.6f, -1.1f, 0.6f) * rotation(0.6, {0, 1, 0})), 3},
+        {moved(planeMesh(1, 1), fence), 4},
+        {moved(boxMesh(), pane), 5}};
+    for (const auto& [mesh, material] : parts) scene.parts.push_back({mesh, material, {}});
     fit(scene);
     return scene;
 }

@@ -23,6 +23,26 @@ void main() {
     gl_Position = transform * vec4(position, 1);
 })";
 
+const std::string kMappedVertex = kModelPush + R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec2 textureCoordinate;
+layout(location = 3) in vec4 tint;
+layout(location = 4) in vec4 tangent;
+layout(location = 0) out vec3 place;
+layout(location = 1) out vec3 worldNormal;
+layout(location = 2) out vec2 uv;
+layout(location = 3) out vec4 vertexColor;
+layout(location = 4) out vec4 worldTangent;
+void main() {
+    place = position;
+    worldNormal = normal;
+    uv = textureCoordinate;
+    vertexColor = tint;
+    worldTangent = tangent;
+    gl_Position = transform * vec4(position, 1);
+})";
+
 static const std::string kModelInputs = kModelPush + R"(
 layout(set = 0, binding = 0) uniform sampler2D image;
 layout(location = 0) in vec3 place;
@@ -52,6 +72,46 @@ void main() {
     vec4 base = texture(image, uv) * color;
     if (base.a < emission.w) discard;
     result = lit(vec4(base.rgb, 1));
+})";
+
+// The same light with maps of the surface. Where there is no tangent, normals are left as they are.
+static const std::string kMapped = kModelInputs + R"(
+layout(set = 0, binding = 1) uniform sampler2D surfaceMap;
+layout(set = 0, binding = 2) uniform sampler2D emissionMap;
+layout(set = 0, binding = 3) uniform sampler2D normalMap;
+layout(location = 3) in vec4 vertexColor;
+layout(location = 4) in vec4 worldTangent;
+const vec3 toLight = vec3(0.4682929, 0.7804881, 0.4136587);  // of length 1
+vec3 mappedNormal() {
+    vec3 n = normalize(worldNormal), t = worldTangent.xyz - n * dot(n, worldTangent.xyz);
+    vec3 seen = (texture(normalMap, uv).xyz * 2 - 1) * vec3(surface.w, surface.w, 1);
+    if (dot(t, t) > 0) {
+        t = normalize(t);
+        n = normalize(t * seen.x + cross(n, t) * (worldTangent.w * seen.y) + n * seen.z);
+    }
+    return gl_FrontFacing ? n : -n;
+}
+vec4 mapped(vec4 base) {
+    vec4 texel = texture(surfaceMap, uv);
+    float metallic = surface.x * texel.b, roughness = clamp(surface.y * texel.g, 0.05, 1);
+    float square = roughness * roughness, exponent = clamp(2 / (square * square) - 2, 1, 2000);
+    vec3 normal = mappedNormal(), toEye = normalize(eye.xyz - place);
+    float cosine = dot(normal, toLight) * 0.5 + 0.5;
+    float highlight = pow(max(dot(normal, normalize(toLight + toEye)), 0), exponent) * (1 - roughness) * surface.z;
+    vec3 diffuse = base.rgb * (1 - 0.6 * metallic) * (cosine * cosine * 0.9 + 0.06);
+    vec3 glow = emission.rgb * texture(emissionMap, uv).rgb;
+    return vec4(diffuse + mix(vec3(0.25), base.rgb, metallic) * highlight + glow, base.a);
+}
+)";
+
+const std::string kMappedFragment = kMapped + R"(
+void main() { result = mapped(texture(image, uv) * color * vertexColor); })";
+
+const std::string kMappedMaskedFragment = kMapped + R"(
+void main() {
+    vec4 base = texture(image, uv) * color * vertexColor;
+    if (base.a < emission.w) discard;
+    result = mapped(vec4(base.rgb, 1));
 })";
 
 // A fragment that stands for 2x2 pixels has its place where they meet, at whole numbers.

@@ -12,7 +12,9 @@ struct ModelPush {
     glm::vec4 eye;       // place; w: what a fragment adds in the counting program
     glm::vec4 color;     // linear, of the material
     glm::vec4 emission;  // w: alpha below which masked materials are left out
-    glm::vec4 surface;   // metallic, exponent of the highlight, strength of the highlight, 0
+    // Metallic, exponent of the highlight, strength of the highlight, 0; of mapped parts metallic, roughness, how much
+    // of the highlight a smooth surface has, and how much normals of the map lean.
+    glm::vec4 surface;
 };
 
 /// What the programs that show the views are pushed.
@@ -28,6 +30,10 @@ extern const std::string kModelVertex;
 /// Half-Lambert light and a highlight (Blinn and Phong's), in linear colours.
 extern const std::string kModelFragment;
 extern const std::string kModelMaskedFragment;
+/// With colours of vertices and maps of metal and roughness, emission and normals: for parts that have VertexExtras.
+extern const std::string kMappedVertex;
+extern const std::string kMappedFragment;
+extern const std::string kMappedMaskedFragment;
 /// Adds how much of a run of the fragment program a pixel stands for, times a weight.
 extern const std::string kCountFragment;
 extern const std::string kCountMaskedFragment;

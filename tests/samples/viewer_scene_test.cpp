@@ -194,10 +194,11 @@ TEST_F(ViewerScene, PointsAndLinesAreNoted) {
 TEST_F(ViewerScene, WhatIsLeftOutIsNoted) {
     std::string json =
         replaced(squareGltf(), "\"scene\": 0,", "\"scene\": 0, \"extensionsUsed\": [\"KHR_materials_unlit\"],");
-    json = replaced(json, "\"POSITION\": 0", "\"POSITION\": 0, \"COLOR_0\": 0");
+    json = replaced(json, "\"POSITION\": 0}", "\"POSITION\": 0}, \"targets\": [{\"POSITION\": 0}]");
+    json = replaced(json, "\"alphaMode\"", "\"occlusionTexture\": {\"index\": 0}, \"alphaMode\"");
     const Scene scene = read(write("a.gltf", json));
     expectSquare(scene);
-    EXPECT_THAT(scene.notes, testing::ElementsAre("colours of vertices are not shown",
+    EXPECT_THAT(scene.notes, testing::ElementsAre("occlusion textures are not shown", "morph targets are not shown",
                                                   "the extension KHR_materials_unlit is left out"));
 }
 
@@ -336,7 +337,7 @@ void readChanged(const std::vector<uint8_t>& right, const std::string& path, int
         }
         for (const ScenePart& part : scene.parts) {
             ASSERT_LT(part.material, scene.materials.size());
-            ASSERT_LT(scene.materials[part.material].texture, static_cast<int>(scene.textures.size()));
+            ASSERT_LT(scene.materials[part.material].texture.texture, static_cast<int>(scene.textures.size()));
             for (const uint32_t index : part.mesh.indices) ASSERT_LT(index, part.mesh.vertices.size());
             for (const MeshVertex& vertex : part.mesh.vertices) ASSERT_LE(glm::length(vertex.position), 2);
         }
