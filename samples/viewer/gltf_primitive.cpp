@@ -38,7 +38,8 @@ void makeFlat(GltfPrimitive& primitive) {
     primitive = std::move(flat);
 }
 
-/// Tangents along u, from the triangles around each vertex.
+/// Tangents along u, from the triangles around each vertex. Normals of a map have y upwards, against v ("+Y is up",
+/// glTF 2.0, 3.9.3).
 void addTangents(ScenePart& part) {
     MeshData& mesh = part.mesh;
     std::vector<glm::vec3> alongU(mesh.vertices.size(), glm::vec3(0)), alongV = alongU;
@@ -60,7 +61,7 @@ void addTangents(ScenePart& part) {
         const float length = glm::length(t);
         // Where nothing says which way u goes, normals are left as they are.
         if (!(length > 0) || !std::isfinite(length)) continue;
-        const float side = glm::dot(glm::cross(normal, t), alongV[i]) < 0 ? -1.0f : 1.0f;
+        const float side = glm::dot(glm::cross(normal, t), alongV[i]) < 0 ? 1.0f : -1.0f;
         part.extras[i].tangent = glm::vec4(t / length, side);
     }
 }

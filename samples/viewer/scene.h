@@ -43,8 +43,9 @@ struct SceneMaterial {
 
 /// What few vertices have.
 struct VertexExtras {
-    glm::vec4 color{1};             // linear, multiplied with the material's
-    glm::vec4 tangent{0, 0, 0, 1};  // along u; w: 1 or -1, the side that v lies on (glTF 2.0, 3.7.2.1)
+    glm::vec4 color{1};  // linear, multiplied with the material's
+    // Along u; w: 1 or -1, the side that y of a map of normals lies on (glTF 2.0, 3.7.2.1).
+    glm::vec4 tangent{0, 0, 0, 1};
 };
 
 struct ScenePart {

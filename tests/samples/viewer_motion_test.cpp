@@ -162,8 +162,8 @@ TEST_F(ViewerMotion, MapsOfTheSurface) {
     EXPECT_EQ(material.emissionTexture.filter, VK_FILTER_NEAREST);
     EXPECT_EQ(material.emissionTexture.addressU, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
     EXPECT_EQ(material.texture.addressU, VK_SAMPLER_ADDRESS_MODE_REPEAT);
-    // Tangents, which the file lacks: u goes along x, and v against y.
-    for (const VertexExtras& extras : scene.parts.at(0).extras) EXPECT_EQ(extras.tangent, glm::vec4(1, 0, 0, -1));
+    // Tangents, which the file lacks: u goes along x, and v against y, so that up in the map is up.
+    for (const VertexExtras& extras : scene.parts.at(0).extras) EXPECT_EQ(extras.tangent, glm::vec4(1, 0, 0, 1));
 }
 
 /// A triangle of which corner 0 stays, corner 1 follows node 1, and corner 2 both by half.
