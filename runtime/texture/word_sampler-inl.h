@@ -22,6 +22,7 @@ namespace HWY_NAMESPACE {
 //   kOutputs       outputs there are
 //   kLevels        also sampled with mipmaps
 //   kBorder        sampled with borders: shadow maps; others are repeated
+//   kLooksUp       value() costs a look-up per lane: equal texels are worth being found out
 //   constant(c)    the bits of output c if no texel has a say in it
 //   beginVector()  before value() is called for a vector of lanes
 //   value()        output c of a texel, as it is filtered
@@ -63,7 +64,7 @@ class ByteRoutes {
 
 struct Unorm8Words {
     static constexpr int kOutputs = 4;
-    static constexpr bool kLevels = true, kBorder = false;
+    static constexpr bool kLevels = true, kBorder = false, kLooksUp = false;
     ByteRoutes routes;
 
     explicit Unorm8Words(const SampleCall& call) : routes(call) {}
@@ -75,7 +76,7 @@ struct Unorm8Words {
 
 struct Srgb8Words {
     static constexpr int kOutputs = 4;
-    static constexpr bool kLevels = true, kBorder = false;
+    static constexpr bool kLevels = true, kBorder = false, kLooksUp = true;
     ByteRoutes routes;
 
     explicit Srgb8Words(const SampleCall& call) : routes(call) {}
@@ -91,7 +92,7 @@ struct Srgb8Words {
 /// Depth in 32-bit floats, compared: 1 where the comparison passes. Output 0 alone.
 struct DepthWords {
     static constexpr int kOutputs = 1;
-    static constexpr bool kLevels = false, kBorder = true;
+    static constexpr bool kLevels = false, kBorder = true, kLooksUp = false;
     const SampleCall& call;
     VF dref;
 
@@ -125,6 +126,7 @@ class WordSampler {
 
   private:
     using Taps = WordTaps<kLinear>;
+    static constexpr size_t kTaps = kLinear ? 4 : 1;
     struct Point {
         VF s, t;
         VI slice;
@@ -142,14 +144,16 @@ class WordSampler {
                                  hn::Load(F32(), lambdas + first));
                 Taps high;
                 readLevels(choice.high, at, high);
+                const bool highEven = isEven(high);
                 if (hn::AllTrue(F32(), hn::Eq(choice.weight, hn::Zero(F32())))) {
-                    write(first, count, [&](uint32_t c) VERNIER_INLINE_LAMBDA { return filtered(high, c); });
+                    write(first, count, [&](uint32_t c) VERNIER_INLINE_LAMBDA { return filtered(high, highEven, c); });
                     return;
                 }
                 Taps low;
                 readLevels(choice.low, at, low);
+                const bool lowEven = isEven(low);
                 write(first, count, [&](uint32_t c) VERNIER_INLINE_LAMBDA {
-                    return lerpFinite(filtered(high, c), filtered(low, c), choice.weight);
+                    return lerpFinite(filtered(high, highEven, c), filtered(low, lowEven, c), choice.weight);
                 });
             });
         } else {
@@ -172,8 +176,9 @@ class WordSampler {
                 const Taps taps = next;
                 const uint32_t after = call_.activeVector(first + kVectorLanes);
                 if (after < call_.request.lanes) read(after, next);
+                const bool even = isEven(taps);
                 write(first, call_.request.lanes - first,
-                      [&](uint32_t c) VERNIER_INLINE_LAMBDA { return filtered(taps, c); });
+                      [&](uint32_t c) VERNIER_INLINE_LAMBDA { return filtered(taps, even, c); });
                 first = after;
             }
         }
@@ -214,8 +219,19 @@ class WordSampler {
         }
     }
 
-    HWY_INLINE VF filtered(const Taps& taps, uint32_t c) const {
+    /// Whether each lane has four equal texels: what they are filtered to.
+    static HWY_INLINE bool isEven(const Taps& taps) {
+        if constexpr (!kLinear || !Words::kLooksUp) return false;
+        return hn::AllTrue(U32(), hn::And(hn::And(hn::Eq(taps.words[0], taps.words[1 % kTaps]),
+                                                  hn::Eq(taps.words[2 % kTaps], taps.words[3 % kTaps])),
+                                          hn::Eq(taps.words[0], taps.words[2 % kTaps])));
+    }
+
+    HWY_INLINE VF filtered(const Taps& taps, bool even, uint32_t c) const {
         if constexpr (kLinear) {
+            if constexpr (Words::kLooksUp) {
+                if (even) return words_.value(taps.words[0], c);
+            }
             const VF top = lerpFinite(words_.value(taps.words[0], c), words_.value(taps.words[1], c), taps.wx);
             const VF bottom = lerpFinite(words_.value(taps.words[2], c), words_.value(taps.words[3], c), taps.wx);
             return lerpFinite(top, bottom, taps.wy);
