@@ -3,11 +3,15 @@
 //
 //   VERNIER_FRAMES_DIR   the folder: frame-0000.ppm, frame-0001.ppm, ... in the order of presentation
 //   VERNIER_FRAMES       after so many the program is ended, with success
+//   VERNIER_FRAMES_IDLE  when it presents nothing for so many seconds after a frame, too: it waits for somebody at the
+//   window
 //
+// Frames of formats that it cannot write are counted, and named once.
 // Each presentation waits for the device, so that the picture is complete: the layer is for comparing, not for speed.
 #include <vulkan/vk_layer.h>
 #include <vulkan/vulkan_core.h>
 
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -15,6 +19,8 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <system_error>
+#include <thread>
 #include <vector>
 
 namespace {
@@ -208,6 +214,76 @@ void capture(DeviceData& data, VkQueue queue, const SwapchainData& swapchain, Vk
     data.FreeMemory(device, memory, nullptr);
 }
 
+// --- Programs that show something and then wait for somebody
+
+/// The number in a variable of the environment, 0 without one.
+uint32_t numberOf(const char* variable) {
+    const char* const text = std::getenv(variable);
+    return text != nullptr ? static_cast<uint32_t>(std::strtoul(text, nullptr, 10)) : 0;
+}
+
+/// Ends the program some time after its last frame. Lives as long as the process.
+class Watch {
+  public:
+    /// nullptr when nobody asked for it.
+    static Watch* get() {
+        static Watch* const one = numberOf("VERNIER_FRAMES_IDLE") != 0 ? new Watch : nullptr;
+        return one;
+    }
+    /// While a frame is taken time does not count.
+    void pause() {
+        const std::lock_guard lock(mutex_);
+        ++taking_;
+    }
+    void resume() {
+        const std::lock_guard lock(mutex_);
+        --taking_;
+        deadline_ = Clock::now() + std::chrono::seconds(numberOf("VERNIER_FRAMES_IDLE"));
+        if (started_) return;
+        try {
+            std::thread([this] { main(); }).detach();
+            started_ = true;
+        } catch (const std::system_error&) {
+            // The next frame tries again; without a thread the program goes on.
+        }
+    }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    void main() {
+        for (;;) {
+            Clock::time_point until;
+            {
+                const std::lock_guard lock(mutex_);
+                const Clock::time_point now = Clock::now();
+                if (taking_ == 0 && now >= deadline_) {
+                    std::fprintf(stderr, "VK_LAYER_VERNIER_frames: the program presents nothing more\n");
+                    std::_Exit(EXIT_SUCCESS);
+                }
+                until = taking_ == 0 ? deadline_ : now + std::chrono::seconds(1);
+            }
+            std::this_thread::sleep_until(until);
+        }
+    }
+
+    std::mutex mutex_;
+    Clock::time_point deadline_;
+    uint32_t taking_ = 0;
+    bool started_ = false;
+};
+
+struct FrameTaken {
+    FrameTaken() {
+        if (Watch* const watch = Watch::get()) watch->pause();
+    }
+    FrameTaken(const FrameTaken&) = delete;
+    FrameTaken& operator=(const FrameTaken&) = delete;
+    ~FrameTaken() {
+        if (Watch* const watch = Watch::get()) watch->resume();
+    }
+};
+
 // --- Commands that the layer takes part in
 
 VKAPI_ATTR VkResult VKAPI_CALL createInstance(const VkInstanceCreateInfo* info, const VkAllocationCallbacks* callbacks,
@@ -317,21 +393,28 @@ VKAPI_ATTR void VKAPI_CALL destroySwapchain(VkDevice device, VkSwapchainKHR swap
 
 VKAPI_ATTR VkResult VKAPI_CALL queuePresent(VkQueue queue, const VkPresentInfoKHR* info) {
     DeviceData& data = *find(keyOf(queue));
-    // All that the semaphores stand for has been submitted, and is done then.
-    data.DeviceWaitIdle(data.device);
-    const char* const limit = std::getenv("VERNIER_FRAMES");
-    const uint32_t most = limit != nullptr ? static_cast<uint32_t>(std::strtoul(limit, nullptr, 10)) : 0;
-    for (uint32_t i = 0; i < info->swapchainCount; ++i) {
-        const SwapchainData& swapchain = data.swapchains[info->pSwapchains[i]];
-        const uint32_t index = info->pImageIndices[i];
-        if (index >= swapchain.images.size() || !isKnown(swapchain.format)) continue;
-        uint32_t number = 0;
-        {
-            const std::lock_guard lock(registry().mutex);
-            number = registry().frames++;
+    const uint32_t most = numberOf("VERNIER_FRAMES");
+    {
+        const FrameTaken taken;
+        // All that the semaphores stand for has been submitted, and is done then.
+        data.DeviceWaitIdle(data.device);
+        for (uint32_t i = 0; i < info->swapchainCount; ++i) {
+            const SwapchainData& swapchain = data.swapchains[info->pSwapchains[i]];
+            const uint32_t index = info->pImageIndices[i];
+            if (index >= swapchain.images.size()) continue;
+            uint32_t number = 0;
+            {
+                const std::lock_guard lock(registry().mutex);
+                number = registry().frames++;
+            }
+            if (isKnown(swapchain.format)) {
+                capture(data, queue, swapchain, swapchain.images[index], number);
+            } else if (number == 0) {
+                std::fprintf(stderr, "VK_LAYER_VERNIER_frames: images of format %d cannot be written\n",
+                             swapchain.format);
+            }
+            if (most != 0 && number + 1 >= most) std::_Exit(EXIT_SUCCESS);
         }
-        capture(data, queue, swapchain, swapchain.images[index], number);
-        if (most != 0 && number + 1 >= most) std::_Exit(EXIT_SUCCESS);
     }
     return data.QueuePresentKHR(queue, info);
 }
