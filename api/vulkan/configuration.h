@@ -12,7 +12,7 @@
 //   VERNIER_EXPLAIN      stderr, or a file that is appended to: what every pipeline runs and leaves out, and why, and
 //                        what every submission ran; an object a line where its name ends in .json
 //   VERNIER_REFRESH      how often a second swapchains show an image in the modes FIFO and MAILBOX, 0 to 1000; default
-//                        60, 0: at once
+//                        60, 0: at once; a Wayland compositor says it itself, unless it is 0
 //   VERNIER_LOG          set and not 0: messages go to stderr, too
 //   VERNIER_VALIDATE     set and not 0: wrong use that does no harm here, but does elsewhere, is told as well, on
 //   stderr,

@@ -18,7 +18,7 @@ Presenter::Presenter(std::shared_ptr<Screen> screen, std::vector<const Image*> i
     : screen_(std::move(screen)),
       images_(std::move(images)),
       mode_(mode),
-      period_(mode == VK_PRESENT_MODE_IMMEDIATE_KHR ? Clock::duration::zero() : period),
+      period_(mode == VK_PRESENT_MODE_IMMEDIATE_KHR || screen_->setsPace() ? Clock::duration::zero() : period),
       states_(images_.size(), State::free),
       free_(images_.size()),
       nextRefresh_(Clock::now()) {
@@ -75,6 +75,7 @@ VkResult Presenter::status() const {
 void Presenter::retire() {
     const std::lock_guard lock(mutex_);
     retired_ = true;
+    while (!waiting_.empty()) release(takeFirst(waiting_));
     changed_.notify_all();
 }
 
@@ -89,6 +90,7 @@ void Presenter::stop() {
         stopped_ = true;
         changed_.notify_all();
     }
+    if (screen_) screen_->stop();
     if (thread_.joinable()) thread_.join();
 }
 
@@ -107,13 +109,16 @@ void Presenter::main() {
     while (awaitTurn(lock)) {
         const uint32_t index = takeFirst(waiting_);
         lock.unlock();
-        const VkResult result = screen_->show(*images_[index]);
+        const VkResult result = screen_->show(*images_[index], [this, index] {
+            const std::lock_guard done(mutex_);
+            release(index);
+        });
         lock.lock();
         if (result != VK_SUCCESS) {
             status_ = result;
             while (!waiting_.empty()) release(takeFirst(waiting_));
+            changed_.notify_all();
         }
-        release(index);
     }
 }
 

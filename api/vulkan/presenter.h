@@ -21,8 +21,8 @@ class Presenter {
   public:
     using Clock = std::chrono::steady_clock;
 
-    /// `images` stay alive until stop(). `period`: between two images in the modes that wait for the next refresh; 0:
-    /// not at all. Throws std::bad_alloc or std::system_error.
+    /// `images` stay alive until stop(). `period`: between two images in the modes that wait for the next refresh, on
+    /// screens that do not set the pace; 0: not at all. Throws std::bad_alloc or std::system_error.
     Presenter(std::shared_ptr<Screen> screen, std::vector<const Image*> images, VkPresentModeKHR mode,
               Clock::duration period);
     ~Presenter() { stop(); }
@@ -39,7 +39,8 @@ class Presenter {
 
     /// What is known to be wrong with the surface.
     VkResult status() const;
-    /// Another swapchain took over the surface: no image can be acquired any more.
+    /// Another swapchain took over the surface: no image can be acquired any more, and what waits is not shown, for it
+    /// may have another size than the surface now has.
     void retire();
     bool active() const;
     /// Ends the thread; what was not shown stays so.

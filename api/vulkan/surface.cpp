@@ -8,6 +8,7 @@
 #include "api/vulkan/entry_points.h"
 #include "api/vulkan/enumerate.h"
 #include "api/vulkan/format_properties.h"
+#include "api/vulkan/wayland_library.h"
 #include "api/vulkan/x11_window.h"
 #include "runtime/limits.h"
 
@@ -17,8 +18,6 @@ extern "C" xcb_connection_t* XGetXCBConnection(Display* display);
 namespace vernier::vulkan {
 namespace {
 
-constexpr VkPresentModeKHR kPresentModes[] = {VK_PRESENT_MODE_FIFO_KHR, VK_PRESENT_MODE_MAILBOX_KHR,
-                                              VK_PRESENT_MODE_IMMEDIATE_KHR};
 constexpr VkFormat kBlueFirst[] = {VK_FORMAT_B8G8R8A8_UNORM, VK_FORMAT_B8G8R8A8_SRGB};
 constexpr VkFormat kRedFirst[] = {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB};
 
@@ -37,10 +36,6 @@ bool fits(xcb_connection_t* connection, xcb_visualid_t visual, uint32_t queueFam
 
 }  // namespace
 
-bool isPresentMode(VkPresentModeKHR mode) {
-    return std::ranges::count(kPresentModes, mode) != 0;
-}
-
 VkResult describe(const Surface& surface, SurfaceDescription& description) {
     VkSurfaceCapabilitiesKHR& can = description.capabilities;
     can.minImageCount = kMinSwapchainImages;
@@ -48,13 +43,20 @@ VkResult describe(const Surface& surface, SurfaceDescription& description) {
     can.maxImageArrayLayers = 1;
     can.supportedTransforms = can.currentTransform = VK_SURFACE_TRANSFORM_IDENTITY_BIT_KHR;
     can.supportedUsageFlags = kUsages;
+    description.presentModes = {VK_PRESENT_MODE_FIFO_KHR, VK_PRESENT_MODE_MAILBOX_KHR};
+    // A Wayland compositor shows whole pictures alone.
+    if (surface.display == nullptr) description.presentModes.push_back(VK_PRESENT_MODE_IMMEDIATE_KHR);
     if (surface.connection == nullptr) {
         can.currentExtent = {UINT32_MAX, UINT32_MAX};  // the swapchain's
         can.minImageExtent = {1, 1};
         can.maxImageExtent = {kMaxImageDimension2D, kMaxImageDimension2D};
         can.supportedCompositeAlpha = VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR | VK_COMPOSITE_ALPHA_INHERIT_BIT_KHR;
         addFormats(kBlueFirst, description);
-        addFormats(kRedFirst, description);
+        if (surface.display == nullptr) {
+            addFormats(kRedFirst, description);
+        } else {
+            can.supportedCompositeAlpha |= VK_COMPOSITE_ALPHA_PRE_MULTIPLIED_BIT_KHR;
+        }
         return VK_SUCCESS;
     }
     const std::optional<X11Window> window = findWindow(surface.connection, surface.window);
@@ -69,14 +71,27 @@ VkResult describe(const Surface& surface, SurfaceDescription& description) {
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateXcbSurfaceKHR(VkInstance, const VkXcbSurfaceCreateInfoKHR* pCreateInfo,
                                                    const VkAllocationCallbacks* pAllocator, VkSurfaceKHR* pSurface) {
-    return createHandle(pAllocator, pSurface, Surface{pCreateInfo->connection, pCreateInfo->window, {}});
+    Surface surface;
+    surface.connection = pCreateInfo->connection;
+    surface.window = pCreateInfo->window;
+    return createHandle(pAllocator, pSurface, std::move(surface));
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateXlibSurfaceKHR(VkInstance, const VkXlibSurfaceCreateInfoKHR* pCreateInfo,
                                                     const VkAllocationCallbacks* pAllocator, VkSurfaceKHR* pSurface) {
-    return createHandle(
-        pAllocator, pSurface,
-        Surface{XGetXCBConnection(pCreateInfo->dpy), static_cast<xcb_window_t>(pCreateInfo->window), {}});
+    Surface surface;
+    surface.connection = XGetXCBConnection(pCreateInfo->dpy);
+    surface.window = static_cast<xcb_window_t>(pCreateInfo->window);
+    return createHandle(pAllocator, pSurface, std::move(surface));
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL CreateWaylandSurfaceKHR(VkInstance, const VkWaylandSurfaceCreateInfoKHR* pCreateInfo,
+                                                       const VkAllocationCallbacks* pAllocator,
+                                                       VkSurfaceKHR* pSurface) {
+    Surface surface;
+    surface.display = pCreateInfo->display;
+    surface.waylandSurface = pCreateInfo->surface;
+    return createHandle(pAllocator, pSurface, std::move(surface));
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateHeadlessSurfaceEXT(VkInstance, const VkHeadlessSurfaceCreateInfoEXT*,
@@ -99,6 +114,11 @@ VKAPI_ATTR VkBool32 VKAPI_CALL GetPhysicalDeviceXcbPresentationSupportKHR(VkPhys
 VKAPI_ATTR VkBool32 VKAPI_CALL GetPhysicalDeviceXlibPresentationSupportKHR(VkPhysicalDevice, uint32_t queueFamilyIndex,
                                                                            Display* dpy, VisualID visualID) {
     return fits(XGetXCBConnection(dpy), static_cast<xcb_visualid_t>(visualID), queueFamilyIndex) ? VK_TRUE : VK_FALSE;
+}
+
+VKAPI_ATTR VkBool32 VKAPI_CALL GetPhysicalDeviceWaylandPresentationSupportKHR(VkPhysicalDevice,
+                                                                              uint32_t queueFamilyIndex, wl_display*) {
+    return queueFamilyIndex == 0 && WaylandLibrary::get() != nullptr ? VK_TRUE : VK_FALSE;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceSurfaceSupportKHR(VkPhysicalDevice, uint32_t queueFamilyIndex,
@@ -156,12 +176,16 @@ VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceSurfaceFormats2KHR(VkPhysicalDev
     });
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceSurfacePresentModesKHR(VkPhysicalDevice, VkSurfaceKHR,
+VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceSurfacePresentModesKHR(VkPhysicalDevice, VkSurfaceKHR surface,
                                                                        uint32_t* pPresentModeCount,
                                                                        VkPresentModeKHR* pPresentModes) {
-    OutputArray<VkPresentModeKHR> output(pPresentModeCount, pPresentModes);
-    for (const VkPresentModeKHR mode : kPresentModes) output.add(mode);
-    return output.result();
+    return guarded([&] {
+        SurfaceDescription description;
+        if (const VkResult result = describe(*object(surface), description); result != VK_SUCCESS) return result;
+        OutputArray<VkPresentModeKHR> output(pPresentModeCount, pPresentModes);
+        for (const VkPresentModeKHR mode : description.presentModes) output.add(mode);
+        return output.result();
+    });
 }
 
 // A group is of one device, which shows its own images on the whole of a surface.

@@ -1,4 +1,4 @@
-// Surfaces: a window of an X server, or nothing that is seen.
+// Surfaces: a window of an X server, one of a Wayland compositor, or nothing that is seen.
 #pragma once
 
 #include <memory>
@@ -12,8 +12,12 @@ namespace vernier::vulkan {
 class Presenter;
 
 struct Surface {
-    xcb_connection_t* connection = nullptr;  // nullptr: headless
+    // Of an X server.
+    xcb_connection_t* connection = nullptr;
     xcb_window_t window = 0;
+    // Of a Wayland compositor.
+    wl_display* display = nullptr;
+    wl_surface* waylandSurface = nullptr;
     /// Of the last swapchain made for it.
     std::weak_ptr<Presenter> presenter;
 };
@@ -23,12 +27,11 @@ inline constexpr uint32_t kMinSwapchainImages = 2;
 
 struct SurfaceDescription {
     VkSurfaceCapabilitiesKHR capabilities{};
+    std::vector<VkPresentModeKHR> presentModes;
     std::vector<VkSurfaceFormatKHR> formats;  // empty: nothing can be shown
 };
 
 /// VK_ERROR_SURFACE_LOST_KHR when the window is gone.
 VkResult describe(const Surface& surface, SurfaceDescription& description);
-
-bool isPresentMode(VkPresentModeKHR mode);
 
 }  // namespace vernier::vulkan

@@ -25,7 +25,7 @@ Status checkCreateInfo(const PhysicalDevice& device, const VkSwapchainCreateInfo
     if (std::ranges::none_of(surface.formats, formatFits)) {
         return invalidArgument("imageFormat " + nameOf(info.imageFormat) + " is not one of the surface's");
     }
-    if (!isPresentMode(info.presentMode)) {
+    if (std::ranges::count(surface.presentModes, info.presentMode) == 0) {
         return invalidArgument("presentMode " + std::to_string(info.presentMode) + " is not one of the surface's");
     }
     if (info.imageArrayLayers != 1) return invalidArgument("imageArrayLayers must be 1");
@@ -62,14 +62,23 @@ Result<SwapchainImage> makeImage(const VkSwapchainCreateInfoKHR& info, Screen& s
     return SwapchainImage{std::move(image).value(), std::move(memory).value()};
 }
 
+std::unique_ptr<Screen> makeScreen(const Surface& surface, const VkSwapchainCreateInfoKHR& info, uint32_t hertz) {
+    if (surface.connection != nullptr) return makeX11Screen(surface);
+    if (surface.display == nullptr) return makeHeadlessScreen();
+    const bool opaque = info.compositeAlpha == VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR;
+    return makeWaylandScreen(surface, opaque, /*paced=*/hertz != 0);
+}
+
 Presenter::Clock::duration refreshPeriod(uint32_t hertz) {
     if (hertz == 0) return Presenter::Clock::duration::zero();
     return std::chrono::duration_cast<Presenter::Clock::duration>(std::chrono::seconds(1)) / hertz;
 }
 
+constexpr const char* kCommand = "vkCreateSwapchainKHR";
+
+/// Throws std::system_error when no thread can be started.
 VkResult create(Device& device, const VkSwapchainCreateInfoKHR& info, const VkAllocationCallbacks* callbacks,
                 VkSwapchainKHR* out) {
-    constexpr const char* kCommand = "vkCreateSwapchainKHR";
     Surface& surface = *object(info.surface);
     // "oldSwapchain is retired, even if creation of the new swapchain fails".
     if (info.oldSwapchain != VK_NULL_HANDLE) object(info.oldSwapchain)->presenter->retire();
@@ -81,11 +90,13 @@ VkResult create(Device& device, const VkSwapchainCreateInfoKHR& info, const VkAl
     if (const Status status = checkCreateInfo(device.physicalDevice, info, description); !status) {
         return device.report(kCommand, status.error());
     }
-    std::shared_ptr<Screen> screen = surface.connection != nullptr ? makeX11Screen(surface) : makeHeadlessScreen();
+    const uint32_t hertz = device.physicalDevice.configuration.refreshRate;
+    std::shared_ptr<Screen> screen = makeScreen(surface, info, hertz);
     if (!screen) return VK_ERROR_SURFACE_LOST_KHR;
-    // One that waits for the refresh, one that is shown, and one to draw to: a mailbox never makes anybody wait.
-    const uint32_t least =
-        info.presentMode == VK_PRESENT_MODE_MAILBOX_KHR ? kMinSwapchainImages + 1 : kMinSwapchainImages;
+    // One that waits for the refresh, one that is shown, and one to draw to: a mailbox never makes anybody wait. A
+    // Wayland compositor can have one more, which it is about to show.
+    const uint32_t more = surface.display != nullptr ? 2 : 1;
+    const uint32_t least = kMinSwapchainImages + (info.presentMode == VK_PRESENT_MODE_MAILBOX_KHR ? more : 0);
     std::deque<SwapchainImage> images;
     std::vector<const Image*> shown;
     const uint32_t count = std::max(info.minImageCount, least);
@@ -96,14 +107,8 @@ VkResult create(Device& device, const VkSwapchainCreateInfoKHR& info, const VkAl
         if (count > heap / image->memory->size()) return VK_ERROR_OUT_OF_DEVICE_MEMORY;
         shown.push_back(&images.emplace_back(std::move(image).value()).image);
     }
-    std::shared_ptr<Presenter> presenter;
-    try {
-        presenter = std::make_shared<Presenter>(screen, std::move(shown), info.presentMode,
-                                                refreshPeriod(device.physicalDevice.configuration.refreshRate));
-    } catch (const std::system_error& error) {
-        return device.report(kCommand, VK_ERROR_OUT_OF_HOST_MEMORY,
-                             std::string("no thread could be started: ") + error.what());
-    }
+    const auto presenter =
+        std::make_shared<Presenter>(screen, std::move(shown), info.presentMode, refreshPeriod(hertz));
     const VkResult result = createHandle(callbacks, out, Swapchain(std::move(screen), std::move(images), presenter));
     if (result == VK_SUCCESS) surface.presenter = presenter;
     return result;
@@ -177,7 +182,14 @@ VkResult present(Device& device, const VkPresentInfoKHR& info) {
 
 VKAPI_ATTR VkResult VKAPI_CALL CreateSwapchainKHR(VkDevice device, const VkSwapchainCreateInfoKHR* pCreateInfo,
                                                   const VkAllocationCallbacks* pAllocator, VkSwapchainKHR* pSwapchain) {
-    return guarded([&] { return create(*object(device), *pCreateInfo, pAllocator, pSwapchain); });
+    return guarded([&] {
+        try {
+            return create(*object(device), *pCreateInfo, pAllocator, pSwapchain);
+        } catch (const std::system_error& error) {
+            return object(device)->report(kCommand, VK_ERROR_OUT_OF_HOST_MEMORY,
+                                          std::string("no thread could be started: ") + error.what());
+        }
+    });
 }
 
 VKAPI_ATTR void VKAPI_CALL DestroySwapchainKHR(VkDevice, VkSwapchainKHR swapchain,

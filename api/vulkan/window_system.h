@@ -12,4 +12,5 @@ typedef struct _XDisplay Display;
 typedef unsigned long Window;
 typedef unsigned long VisualID;
 
+#include <vulkan/vulkan_wayland.h>
 #include <vulkan/vulkan_xlib.h>

@@ -53,7 +53,7 @@ class X11Screen final : public Screen {
         return Memory::create({}, size);
     }
 
-    VkResult show(const Image& image) noexcept override {
+    VkResult show(const Image& image, Done done) noexcept override {
         const VkExtent3D extent = image.info().extent;
         const std::byte* texels = image.address(0, 0);
         const uint32_t pitch = image.level(0).rowPitch;
@@ -69,6 +69,7 @@ class X11Screen final : public Screen {
         const XcbReply<xcb_get_geometry_reply_t> now(
             xcb_get_geometry_reply(connection_, xcb_get_geometry(connection_, window_), nullptr));
         const XcbReply<xcb_generic_error_t> error(xcb_request_check(connection_, put));
+        done();
         if (!now || error) return VK_ERROR_SURFACE_LOST_KHR;
         return now->width == extent.width && now->height == extent.height ? VK_SUCCESS : VK_ERROR_OUT_OF_DATE_KHR;
     }

@@ -10,6 +10,21 @@ namespace vernier::test {
 constexpr VkExtent2D kSwapchainExtent{70, 50};
 constexpr uint64_t kTenSeconds = 10'000'000'000;
 
+/// Any pattern that tells rows, columns and channels apart.
+inline uint32_t patternAt(uint32_t x, uint32_t y, uint32_t frame) {
+    return 0xFF000000u | (x * 3 + frame) % 256 << 16 | (y * 5) % 256 << 8 | (x + y) % 256;
+}
+
+/// Whether texels, row by row, are the pattern of a frame, whatever their alpha.
+inline bool isPattern(const uint32_t* texels, VkExtent2D extent, uint32_t frame) {
+    for (uint32_t y = 0; y < extent.height; ++y) {
+        for (uint32_t x = 0; x < extent.width; ++x, ++texels) {
+            if (((*texels ^ patternAt(x, y, frame)) & 0xFFFFFF) != 0) return false;
+        }
+    }
+    return true;
+}
+
 class PresentTest : public DrawTest {
   protected:
     uint32_t apiVersion() override { return VK_API_VERSION_1_1; }
@@ -120,6 +135,30 @@ class PresentTest : public DrawTest {
         info.pSwapchains = &swapchain;
         info.pImageIndices = &index;
         return vkQueuePresentKHR(queue, &info);
+    }
+    /// Draws the pattern of a frame into the next image and presents it; tells what the presentation said.
+    VkResult presentPattern(VkSwapchainKHR swapchain, VkExtent2D extent, uint32_t frame, VkFence fence) {
+        const std::vector<VkImage> images = imagesOf(swapchain);
+        uint32_t index = 0;
+        const VkResult acquired = vkAcquireNextImageKHR(device, swapchain, kTenSeconds, VK_NULL_HANDLE, fence, &index);
+        if (acquired != VK_SUCCESS) return acquired;
+        EXPECT_EQ(vkWaitForFences(device, 1, &fence, VK_TRUE, kTenSeconds), VK_SUCCESS);
+        EXPECT_EQ(vkResetFences(device, 1, &fence), VK_SUCCESS);
+        const TestBuffer pattern =
+            makeBuffer(VkDeviceSize{extent.width} * extent.height * 4, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
+        auto* texels = static_cast<uint32_t*>(pattern.data);
+        for (uint32_t y = 0; y < extent.height; ++y)
+            for (uint32_t x = 0; x < extent.width; ++x) texels[y * extent.width + x] = patternAt(x, y, frame);
+        const VkImage image = images.at(index);
+        const VkCommandBuffer commands = begin();
+        transition(commands, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+        VkBufferImageCopy region{};
+        region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+        region.imageExtent = {extent.width, extent.height, 1};
+        vkCmdCopyBufferToImage(commands, pattern.buffer, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+        transition(commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR);
+        submit(commands);
+        return present(swapchain, index);
     }
     /// Frames one after the other, each cleared and presented; returns the seconds they took.
     double presentFrames(VkSwapchainKHR swapchain, uint32_t frames) {

@@ -13,11 +13,6 @@
 namespace vernier::test {
 namespace {
 
-/// Any pattern that tells rows, columns and channels apart.
-uint32_t patternAt(uint32_t x, uint32_t y, uint32_t frame) {
-    return 0xFF000000u | (x * 3 + frame) % 256 << 16 | (y * 5) % 256 << 8 | (x + y) % 256;
-}
-
 class X11Test : public PresentTest {
   protected:
     std::vector<const char*> moreInstanceExtensions() override {
@@ -57,30 +52,6 @@ class X11Test : public PresentTest {
     }
     VkSurfaceKHR createSurface() override { return surfaceOf(window); }
 
-    /// Draws the pattern of a frame into the next image and presents it; tells what the presentation said.
-    VkResult presentPattern(VkSwapchainKHR swapchain, VkExtent2D extent, uint32_t frame, VkFence fence) {
-        const std::vector<VkImage> images = imagesOf(swapchain);
-        uint32_t index = 0;
-        const VkResult acquired = vkAcquireNextImageKHR(device, swapchain, kTenSeconds, VK_NULL_HANDLE, fence, &index);
-        if (acquired != VK_SUCCESS) return acquired;
-        EXPECT_EQ(vkWaitForFences(device, 1, &fence, VK_TRUE, kTenSeconds), VK_SUCCESS);
-        EXPECT_EQ(vkResetFences(device, 1, &fence), VK_SUCCESS);
-        const TestBuffer pattern =
-            makeBuffer(VkDeviceSize{extent.width} * extent.height * 4, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
-        auto* texels = static_cast<uint32_t*>(pattern.data);
-        for (uint32_t y = 0; y < extent.height; ++y)
-            for (uint32_t x = 0; x < extent.width; ++x) texels[y * extent.width + x] = patternAt(x, y, frame);
-        const VkImage image = images.at(index);
-        const VkCommandBuffer commands = begin();
-        transition(commands, image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-        VkBufferImageCopy region{};
-        region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-        region.imageExtent = {extent.width, extent.height, 1};
-        vkCmdCopyBufferToImage(commands, pattern.buffer, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
-        transition(commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR);
-        submit(commands);
-        return present(swapchain, index);
-    }
     /// Whether the window comes to show the pattern of a frame, pixel by pixel, before time is out.
     bool shows(xcb_window_t of, VkExtent2D extent, uint32_t frame) {
         const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
@@ -91,12 +62,8 @@ class X11Test : public PresentTest {
             const std::unique_ptr<xcb_get_image_reply_t, decltype(&std::free)> reply(
                 xcb_get_image_reply(connection, cookie, nullptr), &std::free);
             if (!reply) return false;
-            const auto* seen = reinterpret_cast<const uint32_t*>(xcb_get_image_data(reply.get()));
-            bool same = true;
-            for (uint32_t y = 0; y < extent.height && same; ++y)
-                for (uint32_t x = 0; x < extent.width && same; ++x)
-                    same = ((seen[y * extent.width + x] ^ patternAt(x, y, frame)) & 0xFFFFFF) == 0;
-            if (same) return true;
+            if (isPattern(reinterpret_cast<const uint32_t*>(xcb_get_image_data(reply.get())), extent, frame))
+                return true;
             std::this_thread::sleep_for(std::chrono::milliseconds(2));
         }
         return false;
