@@ -1,5 +1,9 @@
 #include "base/simd.h"
 
+#if defined(__x86_64__)
+#include <cpuid.h>
+#endif
+
 #include <algorithm>
 #include <array>
 
@@ -16,13 +20,21 @@ constexpr std::string_view kAllNames = VERNIER_ISAS(VERNIER_ISA_NAME);
 constexpr std::array kIsas{VERNIER_ISAS(VERNIER_ISA_VALUE)};
 #undef VERNIER_ISA_VALUE
 
+#if defined(__x86_64__)
+/// F16C, which __builtin_cpu_supports() does not know in every compiler.
+bool convertsHalves() {
+    unsigned a = 0, b = 0, c = 0, d = 0;
+    return __get_cpuid(1, &a, &b, &c, &d) != 0 && (c & bit_F16C) != 0;
+}
+#endif
+
 }  // namespace
 
 Isa bestIsa() {
 #if defined(__x86_64__)
     // The sets Highway's targets of the same name are compiled with.
     const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
-                      __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("bmi");
+                      __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("bmi") && convertsHalves();
     const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
                         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
                         __builtin_cpu_supports("avx512cd");

@@ -95,11 +95,17 @@ struct HalfParts {
 };
 // The last of a half's bits is bit 13 of the float. Denormal halves are multiples of 2^-24, the last bit of floats from
 // 1/2 on: adding 1/2 makes the float adder round to them.
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
+// The machine's conversions give the same bits, those of NaNs, too (Intel SDM 2C, VCVTPS2PH).
+VERNIER_ELEMENT(ftoh, float, float, (V a), const hn::Rebind<hwy::float16_t, decltype(kF32)> kF16;
+                return hn::PromoteTo(kF32, hn::DemoteTo(kF16, a));)
+#else
 VERNIER_ELEMENT(ftoh, float, float, (V a), const HalfParts parts(a);
                 const VI odd = hn::And(hn::ShiftRight<13>(parts.magnitude), number(1));
                 const VI up = hn::Add(hn::Add(parts.magnitude, number(0xFFF)), odd); const VF halfway = number(0.5f);
                 const VF denormal = hn::Sub(hn::Add(hn::BitCast(kF32, parts.magnitude), halfway), halfway);
                 return parts.join(hn::And(up, number(~0x1FFF)), denormal, number(0x7F800000));)
+#endif
 VERNIER_ELEMENT(ftohZero, float, float, (V a), const HalfParts parts(a);
                 const VF units = hn::Mul(hn::BitCast(kF32, parts.magnitude), number(0x1p24f));
                 const VF denormal = hn::Mul(hn::Trunc(minOrSecond(units, number(1024.0f))), number(0x1p-24f));

@@ -106,6 +106,41 @@ class Folder {
         changed_ = true;
     }
 
+    /// Whether an f32 is known to hold a binary16 value: looks through so many operations.
+    bool isHalf(ValueId value, int depth = 4) const {
+        const Inst* const inst = definition(value);
+        if (inst == nullptr || replacement_[value] != kNoValue || inst->type != Type::f32) return false;
+        switch (inst->op) {
+            case Op::ftoh:
+            case Op::ftohZero:
+            case Op::unpackHalfLow:
+            case Op::unpackHalfHigh:
+            case Op::quantizeF16:
+                return true;
+            case Op::constant: {
+                // Zeros, and what a normal half is.
+                const uint64_t magnitude = inst->imm & 0x7FFFFFFF;
+                return magnitude == 0 || (magnitude >= 0x38800000 && magnitude < 0x47800000 && magnitude % 0x2000 == 0);
+            }
+            case Op::fneg:
+            case Op::fabs:
+            case Op::ffloor:
+            case Op::fceil:
+            case Op::ftrunc:
+            case Op::froundEven:
+            case Op::fmin:
+            case Op::fmax:
+            case Op::fclamp:
+            case Op::select:
+                for (uint32_t i = inst->op == Op::select ? 1 : 0; i < inst->operandCount; ++i) {
+                    if (depth == 0 || !isHalf(operand(*inst, i), depth - 1)) return false;
+                }
+                return true;
+            default:
+                return false;
+        }
+    }
+
     const Inst* definedBy(ValueId value, Op op) const {
         const Inst* inst = definition(value);
         return inst != nullptr && inst->op == op && replacement_[value] == kNoValue ? inst : nullptr;
@@ -377,9 +412,20 @@ class Folder {
                 return;
             case Op::ftoh:
             case Op::ftohZero:
-                // Halves already.
-                for (const Op half : {Op::ftoh, Op::ftohZero, Op::unpackHalfLow, Op::unpackHalfHigh, Op::quantizeF16}) {
-                    if (definedBy(a, half) != nullptr) return replace(inst, a);
+                if (static_cast<Type>(inst.imm) == Type::f32 && isHalf(a)) return replace(inst, a);
+                return;
+            case Op::unpackHalfLow:
+            case Op::unpackHalfHigh:
+                // Halves whose bits were asked for on the way. Mesa's modules do so between any two operations.
+                if (const Inst* pair = definedBy(a, Op::packHalf)) {
+                    const ValueId value = operand(*pair, inst.op == Op::unpackHalfLow ? 0 : 1);
+                    if (isHalf(value)) return replace(inst, value);
+                    return rewrite(inst, Op::ftoh, {value}, static_cast<uint64_t>(Type::f32));
+                }
+                return;
+            case Op::packHalf:
+                if (const Inst* half = definedBy(a, Op::unpackHalfLow); half != nullptr && is(1, 0)) {
+                    return rewrite(inst, Op::iand, {operand(*half, 0), constant(Type::i32, 0xFFFF)});
                 }
                 return;
             case Op::utof:

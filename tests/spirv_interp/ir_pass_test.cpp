@@ -205,6 +205,30 @@ TEST(Pass, FoldIntegersAndBooleans) {
               "  %0 f32 = input #0\n  storeOutput #0 %0\n");
 }
 
+// The bits of halves between operations on them.
+TEST(Pass, FoldHalves) {
+    const auto run = [](const std::string& code) { return folded(code + "  storeOutput #0 %9\n"); };
+    const std::string rounded = "  %0 f32 = input #0\n  %1 f32 = ftoh.f32 %0\n  storeOutput #0 %1\n";
+    const std::string zero = "  %2 f32 = constant 0x0\n";
+    // What is a half stays what it is; anything else is rounded as its bits would have been.
+    EXPECT_EQ(run(zero + "  %3 f32 = ftoh.f32 %0\n  %4 i32 = packHalf %3 %2\n  %9 f32 = unpackHalfLow %4\n"), rounded);
+    EXPECT_EQ(run(zero + "  %4 i32 = packHalf %0 %2\n  %9 f32 = unpackHalfLow %4\n"), rounded);
+    EXPECT_EQ(run(zero + "  %4 i32 = packHalf %2 %0\n  %9 f32 = unpackHalfHigh %4\n"), rounded);
+    EXPECT_EQ(run("  %2 f32 = ftoh.f32 %0\n  %3 f32 = constant 0x3c000000\n  %4 f32 = fmax %2 %3\n"
+                  "  %9 f32 = ftoh.f32 %4\n"),
+              "  %0 f32 = input #0\n  %1 f32 = ftoh.f32 %0\n  %2 f32 = constant 0x3c000000\n  %3 f32 = fmax %1 %2\n"
+              "  storeOutput #0 %3\n");
+    // Neither sums nor floats that no half is.
+    for (const char* code : {"  %4 f32 = fadd %2 %2\n", "  %3 f32 = constant 0x3c000001\n  %4 f32 = fmax %2 %3\n"}) {
+        const std::string kept = run("  %2 f32 = ftoh.f32 %0\n" + std::string(code) + "  %9 f32 = ftoh.f32 %4\n");
+        EXPECT_NE(kept.find("ftoh", kept.find("ftoh") + 1), std::string::npos) << kept;
+    }
+    EXPECT_NE(run("  %2 i32 = bitcast.f32 %0\n  %3 f32 = unpackHalfLow %2\n  %4 f32 = constant 0x0\n"
+                  "  %5 i32 = packHalf %3 %4\n  %9 f32 = stof.i32 %5\n")
+                  .find("iand"),
+              std::string::npos);
+}
+
 TEST(Pass, FoldConversionsOfWhatIsNotNegative) {
     const auto run = [](const std::string& code) {
         return folded("  %2 i32 = ftos.f32 %0\n  %3 i32 = constant 0xa\n  %4 i32 = constant 0x80000001\n" + code +
