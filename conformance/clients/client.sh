@@ -62,6 +62,29 @@ picture() {
     [ "$seen" -ge "$colours" ]
 }
 
+# still N COMMAND...: the Nth image that a program presents, the first being 0, as FOLDER/picture.png, which run-all compares
+# among drivers: for programs where it does not depend on time. Needs the layer that writes frames, whose folder is
+# VERNIER_FRAMES_LAYER; without it there is no picture.
+still() {
+    local number=$1 status
+    shift
+    [ -n "${VERNIER_FRAMES_LAYER:-}" ] || return 0
+    rm -rf "$out/frames"
+    mkdir -p "$out/frames"
+    VK_ADD_LAYER_PATH=$VERNIER_FRAMES_LAYER VK_INSTANCE_LAYERS=VK_LAYER_VERNIER_frames VERNIER_FRAMES=$((number + 1)) \
+        VERNIER_FRAMES_DIR=$out/frames timeout 60 "$@" >"$out/still.log" 2>&1
+    status=$?
+    [ "$status" -eq 0 ] || wrong "its first images ended with $status"
+    convert "$out/frames/$(printf 'frame-%04d.ppm' "$number")" "$out/picture.png" || wrong "image $number is missing"
+    rm -rf "$out/frames"
+}
+
+# Frames a second by the words that the gears of mesa-demos print after five seconds.
+gears_rate() {
+    vblank_mode=0 VERNIER_REFRESH=0 timeout -s INT 7 stdbuf -oL "$1" >"$out/frames.log" 2>&1
+    sed -n 's/.*= *\([0-9.]*\) FPS.*/\1/p' "$out/frames.log" | head -1
+}
+
 # The web clients and what they need from npm, in a folder that may be written to; the working directory afterwards.
 use_web() {
     need node npm
@@ -72,4 +95,15 @@ use_web() {
     # The package webgpu fetches nothing when it is installed; its script only checks the platform.
     [ -d node_modules/webgpu ] && [ -d node_modules/three ] && [ -d node_modules/playwright-core ] ||
         npm install --no-audit --no-fund >"$out/npm.log" 2>&1 || { echo "no packages from npm"; exit 77; }
+}
+
+# webgl_page PICTURE.png: the page of three.js in Chromium; sets `result` to what it says of itself, or what went wrong.
+webgl_page() {
+    local device
+    timeout 180 node browser.mjs scene.html "$1" --use-gl=angle --use-angle=vulkan --ignore-gpu-blocklist \
+        --disable-gpu-watchdog >"$out/browser.log" 2>&1 || { result=$(grep -m1 -iE 'error|exceeded' "$out/browser.log"); return 1; }
+    result=$(tail -1 "$out/browser.log")
+    # Chromium has a driver of its own to fall back to, silently.
+    device=$(vulkaninfo --summary 2>/dev/null | sed -n 's/.*deviceName *= *\([A-Za-z]*\).*/\1/p' | head -1)
+    grep -q "\"renderer\":\"[^\"]*$device" <<<"$result" || { result="not on $device: $result"; return 1; }
 }
