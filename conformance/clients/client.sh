@@ -79,6 +79,16 @@ still() {
     rm -rf "$out/frames"
 }
 
+# vkcube_at_once FRAMES: the seconds that so many frames of the cube take when they need not wait for the screen. SwiftShader
+# has the mode FIFO alone, without a pace.
+vkcube_at_once() {
+    local mode=0 start
+    timeout 60 vkcube --c 1 --present_mode 0 --suppress_popups >"$out/fast.log" 2>&1 || mode=2
+    start=$EPOCHREALTIME
+    VERNIER_REFRESH=0 timeout 100 vkcube --c "$1" --present_mode $mode --suppress_popups >"$out/fast.log" 2>&1 || return 1
+    awk "BEGIN { print $EPOCHREALTIME - $start }"
+}
+
 # Frames a second by the words that the gears of mesa-demos print after five seconds.
 gears_rate() {
     vblank_mode=0 VERNIER_REFRESH=0 timeout -s INT 7 stdbuf -oL "$1" >"$out/frames.log" 2>&1
@@ -97,11 +107,13 @@ use_web() {
         npm install --no-audit --no-fund >"$out/npm.log" 2>&1 || { echo "no packages from npm"; exit 77; }
 }
 
-# webgl_page PICTURE.png: the page of three.js in Chromium; sets `result` to what it says of itself, or what went wrong.
+# webgl_page PICTURE.png: the page of three.js in Chromium; sets `result` to what it says of itself, or what went wrong. The
+# workarounds for drivers would refuse lavapipe WebGL 2.
 webgl_page() {
     local device
     timeout 180 node browser.mjs scene.html "$1" --use-gl=angle --use-angle=vulkan --ignore-gpu-blocklist \
-        --disable-gpu-watchdog >"$out/browser.log" 2>&1 || { result=$(grep -m1 -iE 'error|exceeded' "$out/browser.log"); return 1; }
+        --disable-gpu-watchdog --disable-gpu-driver-bug-workarounds >"$out/browser.log" 2>&1 ||
+        { result=$(grep -m1 -iE 'error|exceeded' "$out/browser.log"); return 1; }
     result=$(tail -1 "$out/browser.log")
     # Chromium has a driver of its own to fall back to, silently.
     device=$(vulkaninfo --summary 2>/dev/null | sed -n 's/.*deviceName *= *\([A-Za-z]*\).*/\1/p' | head -1)

@@ -23,8 +23,9 @@ const browser = await chromium.launch({
 });
 try {
     const tab = await browser.newPage({ viewport: { width: 640, height: 480 } });
+    const wrong = new Promise((_, reject) => tab.on('pageerror', reject));
     await tab.goto(`http://127.0.0.1:${server.address().port}/${page}`);
-    await tab.waitForFunction('window.done === true', null, { timeout: 150000 });
+    await Promise.race([wrong, tab.waitForFunction('window.done === true', null, { timeout: 150000 })]);
     console.log(JSON.stringify(await tab.evaluate('window.result')));
     await tab.screenshot({ path: picture });
 } finally {
