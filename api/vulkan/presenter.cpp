@@ -95,12 +95,14 @@ void Presenter::stop() {
 }
 
 bool Presenter::awaitTurn(std::unique_lock<std::mutex>& lock) {
-    changed_.wait(lock, [&] { return stopped_ || !waiting_.empty(); });
-    if (period_ != Clock::duration::zero()) {
+    do {
+        changed_.wait(lock, [&] { return stopped_ || !waiting_.empty(); });
+        if (period_ == Clock::duration::zero()) break;
         changed_.wait_until(lock, nextRefresh_, [&] { return stopped_; });
-        const Clock::time_point now = Clock::now();
-        nextRefresh_ = (now < nextRefresh_ + period_ ? nextRefresh_ : now) + period_;
-    }
+        // What waited may not any more.
+    } while (!stopped_ && waiting_.empty());
+    const Clock::time_point now = Clock::now();
+    nextRefresh_ = (now < nextRefresh_ + period_ ? nextRefresh_ : now) + period_;
     return !stopped_;
 }
 

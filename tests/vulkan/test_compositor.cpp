@@ -13,13 +13,37 @@
 
 namespace vernier::test {
 
+/// A buffer as long as its client keeps it. Stays where it is.
+struct BufferReference {
+    BufferReference() = default;
+    BufferReference(const BufferReference&) = delete;
+    BufferReference& operator=(const BufferReference&) = delete;
+    ~BufferReference() { set(nullptr); }
+
+    void set(wl_resource* to) {
+        if (buffer != nullptr) wl_list_remove(&destroyed.link);
+        buffer = to;
+        destroyed.notify = &forget;
+        if (buffer != nullptr) wl_resource_add_destroy_listener(buffer, &destroyed);
+    }
+    wl_resource* take() {
+        wl_resource* const was = buffer;
+        set(nullptr);
+        return was;
+    }
+    static void forget(wl_listener* listener, void*) { reinterpret_cast<BufferReference*>(listener)->buffer = nullptr; }
+
+    wl_listener destroyed{};  // first: it stands for the whole
+    wl_resource* buffer = nullptr;
+};
+
 /// State is double-buffered: what is attached and asked for counts from the next commit on (wayland.xml, wl_surface).
 struct TestCompositor::Surface {
     TestCompositor* compositor = nullptr;
-    wl_resource* attached = nullptr;  // not committed yet
+    BufferReference attached;  // not committed yet
     bool isAttached = false;
-    wl_resource* committed = nullptr;  // not shown yet
-    wl_resource* shown = nullptr;
+    BufferReference committed;  // not shown yet
+    BufferReference shown;
     std::vector<wl_resource*> asked, frames;  // callbacks, before and after the commit
 };
 
@@ -30,7 +54,7 @@ struct Requests {
     static Surface& of(wl_resource* resource) { return *static_cast<Surface*>(wl_resource_get_user_data(resource)); }
     static void destroy(wl_client*, wl_resource* resource) { wl_resource_destroy(resource); }
     static void attach(wl_client*, wl_resource* resource, wl_resource* buffer, int32_t, int32_t) {
-        of(resource).attached = buffer;
+        of(resource).attached.set(buffer);
         of(resource).isAttached = true;
     }
     static void damage(wl_client*, wl_resource*, int32_t, int32_t, int32_t, int32_t) {}
@@ -54,8 +78,8 @@ struct Requests {
         surface.asked.clear();
         if (!std::exchange(surface.isAttached, false)) return;
         // What was never shown is not needed any more.
-        if (surface.committed != nullptr) wl_buffer_send_release(surface.committed);
-        surface.committed = surface.attached;
+        if (wl_resource* const buffer = surface.committed.take()) wl_buffer_send_release(buffer);
+        surface.committed.set(surface.attached.take());
         surface.compositor->committed(surface);
     }
     static void forgetSurface(wl_resource* resource) {
@@ -153,7 +177,7 @@ void TestCompositor::committed(Surface&) {
 
 void TestCompositor::show() {
     for (Surface* const surface : surfaces_) {
-        if (wl_resource* const buffer = std::exchange(surface->committed, nullptr)) {
+        if (wl_resource* const buffer = surface->committed.take()) {
             wl_shm_buffer* const pixels = wl_shm_buffer_get(buffer);
             shown_.extent = {static_cast<uint32_t>(wl_shm_buffer_get_width(pixels)),
                              static_cast<uint32_t>(wl_shm_buffer_get_height(pixels))};
@@ -164,8 +188,8 @@ void TestCompositor::show() {
             for (uint32_t y = 0; y < shown_.extent.height; ++y, row += wl_shm_buffer_get_stride(pixels))
                 std::memcpy(&shown_.texels[size_t{y} * shown_.extent.width], row, size_t{4} * shown_.extent.width);
             wl_shm_buffer_end_access(pixels);
-            if (surface->shown != nullptr) wl_buffer_send_release(surface->shown);
-            surface->shown = buffer;
+            if (wl_resource* const before = surface->shown.take()) wl_buffer_send_release(before);
+            surface->shown.set(buffer);
         }
         for (wl_resource* const callback : std::exchange(surface->frames, {})) {
             wl_callback_send_done(callback, 0);
