@@ -223,7 +223,7 @@ void Assembler::clipAndAdd(const PreparedDraw& draw, const PrimitiveInfo& info, 
 bool Assembler::route(const PreparedDraw& draw, uint32_t provoking, PrimitiveInfo& info) const {
     if (!vertices_.layers.empty()) info.layer = vertices_.layers[provoking];
     if (!vertices_.viewports.empty()) info.viewport = vertices_.viewports[provoking];
-    return info.layer < grid_.layers && info.viewport < draw.viewportCount();
+    return grid_.draws(info.layer) && info.viewport < draw.viewportCount();
 }
 
 void Assembler::assemblePrimitive(const PreparedDraw& draw, uint32_t drawIndex, const LocalPrimitive& primitive,

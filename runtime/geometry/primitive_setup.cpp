@@ -146,7 +146,7 @@ void PrimitiveSetup::addSmallTriangle(const PreparedDraw& draw, const PrimitiveI
     p.smallEdges = p.tiny = p.small = true;
     p.isPoint = false;
     if ((group.spread >> n & 1) != 0) return bin(p, index, draw);
-    addEntry(p.layer * grid_.perLayer() + static_cast<uint32_t>(group.tile[n]), index, false);
+    addEntry(grid_.firstTile(p.layer) + static_cast<uint32_t>(group.tile[n]), index, false);
 }
 
 void PrimitiveSetup::addLine(const PreparedDraw& draw, const PrimitiveInfo& info, const WindowVertex& a,
@@ -218,7 +218,7 @@ bool PrimitiveSetup::addSmallSquare(const PreparedDraw& draw, const PrimitiveInf
     const uint32_t tx0 = column(bounds[0]), tx1 = column(bounds[2]), ty0 = row(bounds[1]), ty1 = row(bounds[3]);
     for (uint32_t ty = ty0; ty <= ty1; ++ty)
         for (uint32_t tx = tx0; tx <= tx1; ++tx)
-            addEntry(p.layer * grid_.perLayer() + ty * grid_.columns + tx, index, false);
+            addEntry(grid_.firstTile(p.layer) + ty * grid_.columns + tx, index, false);
     return true;
 }
 
@@ -301,7 +301,7 @@ void PrimitiveSetup::addFilled(const PreparedDraw& draw, const PrimitiveInfo& in
 void PrimitiveSetup::bin(const Primitive& p, uint32_t index, const PreparedDraw& draw) {
     const uint32_t subPixelBits = draw.subPixelBits;
     const bool mayCoverTiles = draw.viewport(p.viewport).sampleAreas.empty();
-    const uint32_t firstTile = p.layer * grid_.perLayer();
+    const uint32_t firstTile = grid_.firstTile(p.layer);
     const uint32_t tx0 = column(p.bounds[0]), tx1 = column(p.bounds[2]);
     const uint32_t ty0 = row(p.bounds[1]), ty1 = row(p.bounds[3]);
     const bool spansTile = p.bounds[2] - p.bounds[0] == kTileSize - 1 && p.bounds[3] - p.bounds[1] == kTileSize - 1;
@@ -346,7 +346,7 @@ void PrimitiveSetup::bin(const Primitive& p, uint32_t index, const PreparedDraw&
 
 /// A line is handed to the tiles near it, a point to all that its bounds touch.
 void PrimitiveSetup::binShape(const Primitive& p, const Shape& shape, uint32_t index, uint32_t subPixelBits) {
-    const uint32_t firstTile = p.layer * grid_.perLayer();
+    const uint32_t firstTile = grid_.firstTile(p.layer);
     const double unit = static_cast<double>(1u << subPixelBits), half = 0.5 * kTileSize * unit;
     const double dx = double(shape.bx) - shape.ax, dy = double(shape.by) - shape.ay;
     // The farthest that a covered place can be from the segment's line, times the segment's length.

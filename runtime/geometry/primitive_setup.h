@@ -22,9 +22,13 @@ struct TileGrid {
     int32_t x0 = 0, y0 = 0;
     uint32_t columns = 0, rows = 0;
     uint32_t layers = 1;
+    bool anyLayer = false;  // a pass without attachments has no layers: primitives of all go to the same tiles
     uint32_t perLayer() const { return columns * rows; }
     /// Tiles are numbered row by row, and layer by layer.
     uint32_t count() const { return perLayer() * layers; }
+    uint32_t firstTile(uint32_t layer) const { return anyLayer ? 0 : layer * perLayer(); }
+    /// Whether primitives of the layer are drawn.
+    bool draws(uint32_t layer) const { return anyLayer ? layer <= UINT16_MAX : layer < layers; }
 };
 
 /// The least grid of whole tiles around an area that lies at or below coordinate 0.

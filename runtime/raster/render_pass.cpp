@@ -4,6 +4,7 @@
 #include <atomic>
 #include <bit>
 #include <deque>
+#include <span>
 #include <vector>
 
 #include "base/processor.h"
@@ -358,6 +359,12 @@ void RenderPass::begin(const PassTargets& targets) {
     self.targets = targets;
     self.grid = tileGridOf(targets.renderArea);
     self.grid.layers = targets.viewMask != 0 ? static_cast<uint32_t>(std::bit_width(targets.viewMask)) : targets.layers;
+    // Primitives of a layer that the framebuffer does not have "may still be rasterized" (specification, Layer). Where
+    // nothing can be drawn outside they are: Mesa's Zink says nothing of layers when it has no attachments.
+    self.grid.anyLayer = targets.viewMask == 0 && targets.depthStencil.format == VK_FORMAT_UNDEFINED &&
+                         std::ranges::all_of(std::span(targets.colors).first(targets.colorCount),
+                                             [](const auto& color) { return color.format == VK_FORMAT_UNDEFINED; });
+    if (self.grid.anyLayer) self.grid.layers = 1;
     self.loaded = false;
     self.stippled = self.capturesStages = false;
     self.stipple = 0;

@@ -10,6 +10,7 @@ constexpr VkExtent2D kExtent{20, 20};
 
 class PassTest : public DrawTest {
   protected:
+    std::vector<const char*> moreExtensions() override { return {VK_EXT_SHADER_VIEWPORT_INDEX_LAYER_EXTENSION_NAME}; }
     VkPipeline colorPipeline(VkRenderPass pass, const std::string& rgba, const std::string& z, uint32_t subpass,
                              VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT) {
         PipelineDesc desc;
@@ -24,6 +25,53 @@ class PassTest : public DrawTest {
     static void draw(VkCommandBuffer commands, VkPipeline pipeline) {
         vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
         vkCmdDraw(commands, 3, 1, 0, 0);
+    }
+    /// The samples that a draw covers in a pass without attachments, and with one layer.
+    uint64_t samplesWithoutAttachments(VkShaderModule vertex, uint32_t instances, VkSampleCountFlagBits perPixel) {
+        auto subpass = VkSubpassDescription{};
+        auto passInfo = make<VkRenderPassCreateInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO);
+        passInfo.subpassCount = 1;
+        passInfo.pSubpasses = &subpass;
+        Pass pass;
+        pass.extent = kExtent;
+        EXPECT_EQ(vkCreateRenderPass(device, &passInfo, nullptr, &pass.pass), VK_SUCCESS);
+        auto framebuffer = make<VkFramebufferCreateInfo>(VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO);
+        framebuffer.renderPass = pass.pass;
+        framebuffer.width = kExtent.width;
+        framebuffer.height = kExtent.height;
+        framebuffer.layers = 1;
+        EXPECT_EQ(vkCreateFramebuffer(device, &framebuffer, nullptr, &pass.framebuffer), VK_SUCCESS);
+        auto queryInfo = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
+        queryInfo.queryType = VK_QUERY_TYPE_OCCLUSION;
+        queryInfo.queryCount = 1;
+        VkQueryPool queries = VK_NULL_HANDLE;
+        EXPECT_EQ(vkCreateQueryPool(device, &queryInfo, nullptr, &queries), VK_SUCCESS);
+        defer([this, pass, queries] {
+            vkDestroyQueryPool(device, queries, nullptr);
+            vkDestroyFramebuffer(device, pass.framebuffer, nullptr);
+            vkDestroyRenderPass(device, pass.pass, nullptr);
+        });
+        PipelineDesc desc;
+        desc.extent = kExtent;
+        desc.vertex = vertex;
+        desc.fragment = constantColor("1, 0, 0, 1");
+        desc.colorCount = 0;
+        desc.samples = perPixel;
+        const VkPipeline pipeline = makePipeline(pass.pass, desc);
+        const VkCommandBuffer commands = begin();
+        vkCmdResetQueryPool(commands, queries, 0, 1);
+        beginPass(commands, pass);
+        vkCmdBeginQuery(commands, queries, 0, VK_QUERY_CONTROL_PRECISE_BIT);
+        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+        vkCmdDraw(commands, 3, instances, 0, 0);
+        vkCmdEndQuery(commands, queries, 0);
+        vkCmdEndRenderPass(commands);
+        submit(commands);
+        uint64_t samples = 0;
+        EXPECT_EQ(vkGetQueryPoolResults(device, queries, 0, 1, sizeof samples, &samples, sizeof samples,
+                                        VK_QUERY_RESULT_64_BIT),
+                  VK_SUCCESS);
+        return samples;
     }
 };
 
@@ -64,49 +112,18 @@ TEST_F(PassTest, multisampleResolves) {
 }
 
 TEST_F(PassTest, withoutAttachmentsSamplesAreThoseOfThePipeline) {
-    auto subpass = VkSubpassDescription{};
-    auto passInfo = make<VkRenderPassCreateInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO);
-    passInfo.subpassCount = 1;
-    passInfo.pSubpasses = &subpass;
-    Pass pass;
-    pass.extent = kExtent;
-    ASSERT_EQ(vkCreateRenderPass(device, &passInfo, nullptr, &pass.pass), VK_SUCCESS);
-    auto framebuffer = make<VkFramebufferCreateInfo>(VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO);
-    framebuffer.renderPass = pass.pass;
-    framebuffer.width = kExtent.width;
-    framebuffer.height = kExtent.height;
-    framebuffer.layers = 1;
-    ASSERT_EQ(vkCreateFramebuffer(device, &framebuffer, nullptr, &pass.framebuffer), VK_SUCCESS);
-    auto queryInfo = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
-    queryInfo.queryType = VK_QUERY_TYPE_OCCLUSION;
-    queryInfo.queryCount = 1;
-    VkQueryPool queries = VK_NULL_HANDLE;
-    ASSERT_EQ(vkCreateQueryPool(device, &queryInfo, nullptr, &queries), VK_SUCCESS);
-    defer([this, pass, queries] {
-        vkDestroyQueryPool(device, queries, nullptr);
-        vkDestroyFramebuffer(device, pass.framebuffer, nullptr);
-        vkDestroyRenderPass(device, pass.pass, nullptr);
-    });
-    PipelineDesc desc;
-    desc.extent = kExtent;
-    desc.vertex = fullScreen();
-    desc.fragment = constantColor("1, 0, 0, 1");
-    desc.colorCount = 0;
-    desc.samples = VK_SAMPLE_COUNT_4_BIT;
-    const VkPipeline pipeline = makePipeline(pass.pass, desc);
-    const VkCommandBuffer commands = begin();
-    vkCmdResetQueryPool(commands, queries, 0, 1);
-    beginPass(commands, pass);
-    vkCmdBeginQuery(commands, queries, 0, VK_QUERY_CONTROL_PRECISE_BIT);
-    draw(commands, pipeline);
-    vkCmdEndQuery(commands, queries, 0);
-    vkCmdEndRenderPass(commands);
-    submit(commands);
-    uint64_t samples = 0;
-    ASSERT_EQ(
-        vkGetQueryPoolResults(device, queries, 0, 1, sizeof samples, &samples, sizeof samples, VK_QUERY_RESULT_64_BIT),
-        VK_SUCCESS);
-    EXPECT_EQ(samples, 4u * kExtent.width * kExtent.height);
+    EXPECT_EQ(samplesWithoutAttachments(fullScreen(), 1, VK_SAMPLE_COUNT_4_BIT), 4u * kExtent.width * kExtent.height);
+}
+
+// Programs draw to storage alone then, and may say nothing of layers to the framebuffer.
+TEST_F(PassTest, withoutAttachmentsEveryLayerIsDrawn) {
+    const VkShaderModule vertex = makeShader(VK_SHADER_STAGE_VERTEX_BIT, R"(#version 450
+#extension GL_ARB_shader_viewport_layer_array : require
+void main() {
+    gl_Position = vec4(gl_VertexIndex == 1 ? 3 : -1, gl_VertexIndex == 2 ? 3 : -1, 0.5, 1);
+    gl_Layer = 3 * gl_InstanceIndex;
+})");
+    EXPECT_EQ(samplesWithoutAttachments(vertex, 5, VK_SAMPLE_COUNT_1_BIT), 5u * kExtent.width * kExtent.height);
 }
 
 TEST_F(PassTest, renderAreaLimitsTheClear) {
