@@ -21,10 +21,14 @@ constexpr std::array kIsas{VERNIER_ISAS(VERNIER_ISA_VALUE)};
 #undef VERNIER_ISA_VALUE
 
 #if defined(__x86_64__)
-/// F16C, which __builtin_cpu_supports() does not know in every compiler.
+/// F16C, which __builtin_cpu_supports() does not know in every compiler. Asked once: virtual machines answer CPUID
+/// slowly.
 bool convertsHalves() {
-    unsigned a = 0, b = 0, c = 0, d = 0;
-    return __get_cpuid(1, &a, &b, &c, &d) != 0 && (c & bit_F16C) != 0;
+    static const bool has = [] {
+        unsigned a = 0, b = 0, c = 0, d = 0;
+        return __get_cpuid(1, &a, &b, &c, &d) != 0 && (c & bit_F16C) != 0;
+    }();
+    return has;
 }
 #endif
 
