@@ -22,7 +22,7 @@ void runExtended(const TextureView& view, const SamplerState& sampler, const Sam
 }
 
 template <class Source>
-SampleFn byShape(VkImageViewType type) {
+SampleFn extendedByShape(VkImageViewType type) {
     switch (shapeOf(type)) {
         case Shape::volume:
             return runExtended<Source, Shape::volume>;
@@ -36,7 +36,7 @@ SampleFn byShape(VkImageViewType type) {
 
 SampleFn selectExtendedRoutine(const TextureView& view, const SamplerState& sampler) {
     const bool rgba8 = rgba8Kind(view, sampler) != Rgba8Kind::none && !isCubic(sampler);
-    return rgba8 ? byShape<Rgba8Source>(view.type) : byShape<AnySource<4>>(view.type);
+    return rgba8 ? extendedByShape<Rgba8Source>(view.type) : extendedByShape<AnySource<4>>(view.type);
 }
 
 }  // namespace HWY_NAMESPACE
