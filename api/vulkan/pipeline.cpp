@@ -11,7 +11,6 @@
 #include "api/vulkan/instance.h"
 #include "runtime/plan/check_state.h"
 #include "runtime/plan/plan.h"
-#include "spirv_interp/ir/names.h"
 #include "spirv_interp/program.h"
 #include "spirv_interp/tessellation.h"
 
@@ -22,14 +21,16 @@ struct StageKind {
     VkShaderStageFlagBits bit;
     ir::Stage stage;
     const ir::Program* ShaderProgramDesc::*program;
+    const char* name;
 };
 /// In the order in which they run.
 constexpr StageKind kStages[] = {
-    {VK_SHADER_STAGE_VERTEX_BIT, ir::Stage::vertex, &ShaderProgramDesc::vertex},
-    {VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT, ir::Stage::control, &ShaderProgramDesc::control},
-    {VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT, ir::Stage::evaluation, &ShaderProgramDesc::evaluation},
-    {VK_SHADER_STAGE_GEOMETRY_BIT, ir::Stage::geometry, &ShaderProgramDesc::geometry},
-    {VK_SHADER_STAGE_FRAGMENT_BIT, ir::Stage::fragment, &ShaderProgramDesc::fragment},
+    {VK_SHADER_STAGE_VERTEX_BIT, ir::Stage::vertex, &ShaderProgramDesc::vertex, "vertex"},
+    {VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT, ir::Stage::control, &ShaderProgramDesc::control, "tessellation control"},
+    {VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT, ir::Stage::evaluation, &ShaderProgramDesc::evaluation,
+     "tessellation evaluation"},
+    {VK_SHADER_STAGE_GEOMETRY_BIT, ir::Stage::geometry, &ShaderProgramDesc::geometry, "geometry"},
+    {VK_SHADER_STAGE_FRAGMENT_BIT, ir::Stage::fragment, &ShaderProgramDesc::fragment, "fragment"},
 };
 
 /// Of a stage, as the runtime's loader wants it. `entries` holds what the specialization points to.
@@ -118,8 +119,7 @@ Result<std::shared_ptr<const ShaderProgram>> loadProgram(const Device& device, c
         CaptureLayout& kept = kind.stage == ir::Stage::fragment ? ignored : capture = {};
         Result<ir::Program> program = loadStage(*given[n], kind.stage, kept);
         if (!program)
-            return Error{program.error().code,
-                         std::string(ir::nameOf(kind.stage)) + " shader: " + program.error().message};
+            return Error{program.error().code, std::string(kind.name) + " shader: " + program.error().message};
         programs[n] = std::move(program).value();
         desc.*kind.program = &programs[n];
         if (kind.stage != ir::Stage::control && kind.stage != ir::Stage::evaluation) continue;
