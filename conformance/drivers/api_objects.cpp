@@ -181,6 +181,7 @@ Result<ApiPipeline> ApiObjects::createPipeline(const ScenePipeline& scene) {
     ApiPipeline pipeline;
     VnProgramDesc program{};
     program.vertex = shaders_[scene.vertexShader];
+    if (scene.geometryShader != kNone) program.geometry = shaders_[scene.geometryShader];
     if (scene.fragmentShader != kNone) program.fragment = shaders_[scene.fragmentShader];
     VERNIER_TRY_API(vnCreateProgram(device_, &program, &pipeline.program));
 

@@ -125,6 +125,8 @@ Status validateScene(const Scene& scene) {
                        " entries for " + std::to_string(scene.pipelines[i].samples) + " samples");
         }
         check.index(at("pipelines", i, "vertexShader"), scene.pipelines[i].vertexShader, scene.shaders.size());
+        check.index(at("pipelines", i, "geometryShader"), scene.pipelines[i].geometryShader, scene.shaders.size(),
+                    true);
         check.index(at("pipelines", i, "fragmentShader"), scene.pipelines[i].fragmentShader, scene.shaders.size(),
                     true);
     }

@@ -66,9 +66,12 @@ Status VulkanPassBuilder::checkFeatures(const ScenePipeline& scene, const SceneD
                  "shaderBufferFloat32AtomicAdd"},
                 {"GL_EXT_shader_atomic_float2", extensions.floatAtomics2.shaderBufferFloat32AtomicMinMax,
                  "shaderBufferFloat32AtomicMinMax"}};
-    for (const uint32_t shader : {scene.vertexShader, scene.fragmentShader}) {
+    VERNIER_TRY(need(scene.geometryShader != kNone, features.geometryShader, "geometryShader"));
+    for (const uint32_t shader : {scene.vertexShader, scene.geometryShader, scene.fragmentShader}) {
         if (shader == kNone) continue;
         for (const auto& use : uses) {
+            // What geometry shaders choose comes with their feature, and so does what is read behind them.
+            if (scene.geometryShader != kNone && use.feature == extensions.viewportIndexLayer) continue;
             VERNIER_TRY(need(scene_.shaders[shader].glsl.find(use.text) != std::string::npos, use.feature, use.name));
         }
         // Version 1.0 of SPIR-V came with Vulkan 1.0, 1.3 with Vulkan 1.1.
@@ -121,8 +124,8 @@ Result<VulkanPipeline> VulkanPassBuilder::createPipeline(const SceneDraw& draw, 
     VERNIER_TRY(createLayouts(draw, pipeline));
 
     std::vector<VkPipelineShaderStageCreateInfo> stages;
-    std::array<VkSpecializationInfo, 2> specializations{};
-    for (const uint32_t index : {scene.vertexShader, scene.fragmentShader}) {
+    std::array<VkSpecializationInfo, 3> specializations{};
+    for (const uint32_t index : {scene.vertexShader, scene.geometryShader, scene.fragmentShader}) {
         if (index == kNone) continue;
         const Result<VkShaderModule> shader = shaderModule(index);
         if (!shader) return shader.error();

@@ -1,5 +1,6 @@
 #include "conformance/oracle/assembly.h"
 
+#include "conformance/oracle/geometry_stage.h"
 #include "conformance/oracle/quantise.h"
 
 #include <algorithm>
@@ -92,8 +93,8 @@ std::vector<std::optional<uint32_t>> vertexOrder(const Scene& scene, const Scene
     return order;
 }
 
-Result<ShadedVertex> shadeVertex(const Interpreter& shader, Values inputs, uint32_t vertexIndex, uint32_t instance,
-                                 const SceneDraw& draw, ShaderResources& resources, uint32_t viewIndex) {
+Result<Values> shadeVertex(const Interpreter& shader, Values inputs, uint32_t vertexIndex, uint32_t instance,
+                           const SceneDraw& draw, ShaderResources& resources, uint32_t viewIndex) {
     const auto set = [&inputs](spv::BuiltIn builtin, uint32_t value) {
         inputs.setInt(builtin, static_cast<int32_t>(value));
     };
@@ -103,15 +104,16 @@ Result<ShadedVertex> shadeVertex(const Interpreter& shader, Values inputs, uint3
     set(spv::BuiltInBaseInstance, draw.firstInstance);
     set(spv::BuiltInDrawIndex, 0);
     set(spv::BuiltInViewIndex, viewIndex);
-    resources.resetRuns();
-    resources.startRun();
-    const auto outcome = shader.run(inputs, resources);
+    const auto outcome = runAlone(shader, inputs, resources);
     if (!outcome) return outcome.error();
-    for (const WordWrite& write : combineWords(resources.wordRuns, 0, 0, resources.flags))
-        resources.wordWrites.push_back(write);
-    resources.flags = 0;
+    return outcome->outputs;
+}
+
+}  // namespace
+
+ShadedVertex shadedVertex(const Values& outputs, const ScenePipeline& pipeline) {
     ShadedVertex vertex;
-    const auto& builtins = outcome->outputs.builtins;
+    const auto& builtins = outputs.builtins;
     if (const auto position = builtins.find(spv::BuiltInPosition); position != builtins.end()) {
         for (size_t i = 0; i < 4 && i < position->second.size(); ++i) vertex.position[i] = position->second[i].number;
     }
@@ -124,13 +126,33 @@ Result<ShadedVertex> shadeVertex(const Interpreter& shader, Values inputs, uint3
     };
     if (const auto* size = first(spv::BuiltInPointSize)) vertex.pointSize = size->number;
     if (const auto* layer = first(spv::BuiltInLayer)) vertex.layer = static_cast<uint32_t>(layer->bits);
+    if (const auto* id = first(spv::BuiltInPrimitiveId)) vertex.primitiveId = static_cast<uint32_t>(id->bits);
     if (const auto* viewport = first(spv::BuiltInViewportIndex))
         vertex.viewport = static_cast<uint32_t>(viewport->bits);
-    vertex.varyings = outcome->outputs.locations;
+    vertex.varyings = outputs.locations;
+    // VK_EXT_depth_clip_control: depths from -w to w end up where (z + w) / 2 from 0 to w would.
+    if (pipeline.depthNegativeOneToOne) vertex.position[2] = (vertex.position[2] + vertex.position[3]) / 2;
     return vertex;
 }
 
-}  // namespace
+Result<reference::Outcome<double>> runAlone(const Interpreter& shader, const Values& inputs,
+                                            ShaderResources& resources) {
+    resources.resetRuns();
+    resources.startRun();
+    auto outcome = shader.run(inputs, resources);
+    if (!outcome) return outcome;
+    for (const WordWrite& write : combineWords(resources.wordRuns, 0, 0, resources.flags))
+        resources.wordWrites.push_back(write);
+    resources.flags = 0;
+    return outcome;
+}
+
+Result<reference::Interpreter<double>> createStage(const SceneShader& shader, spv::ExecutionModel model) {
+    const auto module = parseShader(shader);
+    if (!module) return module.error();
+    if (usesAtomicResults(shader.spirv)) return unsupported("oracle: what atomic operations return");
+    return Interpreter::create(*module, model);
+}
 
 Result<reference::Module> parseShader(const SceneShader& shader) {
     reference::Module::Specialization specialization;
@@ -224,22 +246,30 @@ Result<DrawGeometry> assembleDraw(const Scene& scene, const SceneDraw& draw, Sha
                                ", which is not in the oracle's table");
         }
     }
-    const auto module = parseShader(scene.shaders[pipeline.vertexShader]);
-    if (!module) return module.error();
-    const auto shader = Interpreter::create(*module, spv::ExecutionModelVertex);
+    const auto shader = createStage(scene.shaders[pipeline.vertexShader], spv::ExecutionModelVertex);
     if (!shader) return shader.error();
-    if (usesAtomicResults(scene.shaders[pipeline.vertexShader].spirv))
-        return unsupported("oracle: what atomic operations return");
+    std::optional<GeometryStage> stage;
+    if (pipeline.geometryShader != kNone) {
+        auto made = GeometryStage::create(scene.shaders[pipeline.geometryShader], pipeline, resources, viewIndex);
+        if (!made) return made.error();
+        stage = std::move(*made);
+    }
 
     const VertexFetcher fetcher{scene, draw, pipeline};
     const auto order = vertexOrder(scene, draw, pipeline);
     DrawGeometry geometry;
     for (uint32_t i = 0; i < draw.instances; ++i) {
         const uint32_t instance = draw.firstInstance + i;
-        std::map<uint32_t, uint32_t> shaded;  // vertex number -> index into geometry.vertices
+        std::map<uint32_t, uint32_t> shaded;  // vertex number -> index into geometry.vertices, or into `outputs`
+        std::vector<Values> outputs;          // of vertices for a geometry stage
         std::vector<uint32_t> run;            // vertices since the last restart
         uint32_t primitiveId = 0;
-        const auto flush = [&] {
+        const auto flush = [&]() -> Status {
+            if (stage) {
+                const Status status = stage->run(outputs, run, primitiveId, geometry);
+                run.clear();
+                return status;
+            }
             for (AssembledPrimitive primitive : primitivesOf(pipeline.topology, static_cast<uint32_t>(run.size()))) {
                 // Vulkan, Provoking Vertex: the first one in the order of the topology, or the vertex that comes last.
                 const auto end = primitive.vertices.begin() + primitive.count;
@@ -250,25 +280,28 @@ Result<DrawGeometry> assembleDraw(const Scene& scene, const SceneDraw& draw, Sha
                 geometry.primitives.push_back(primitive);
             }
             run.clear();
+            return {};
         };
         for (const std::optional<uint32_t>& number : order) {
             if (!number) {
-                flush();
+                if (Status status = flush(); !status) return status.error();
                 continue;
             }
-            const auto [entry, fresh] = shaded.try_emplace(*number, static_cast<uint32_t>(geometry.vertices.size()));
+            const size_t next = stage ? outputs.size() : geometry.vertices.size();
+            const auto [entry, fresh] = shaded.try_emplace(*number, static_cast<uint32_t>(next));
             if (fresh) {
                 auto vertex = shadeVertex(*shader, fetcher.fetch(*number, instance), *number, instance, draw, resources,
                                           viewIndex);
                 if (!vertex) return vertex.error();
-                // VK_EXT_depth_clip_control: depths from -w to w end up where (z + w) / 2 from 0 to w would.
-                if (pipeline.depthNegativeOneToOne)
-                    vertex->position[2] = (vertex->position[2] + vertex->position[3]) / 2;
-                geometry.vertices.push_back(std::move(*vertex));
+                if (stage) {
+                    outputs.push_back(std::move(*vertex));
+                } else {
+                    geometry.vertices.push_back(shadedVertex(*vertex, pipeline));
+                }
             }
             run.push_back(entry->second);
         }
-        flush();
+        if (Status status = flush(); !status) return status.error();
     }
     return geometry;
 }

@@ -9,16 +9,18 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace vernier::conformance::exact {
 
-/// What the vertex shader left for one vertex.
+/// What the last shader before the rasteriser left for one vertex.
 struct ShadedVertex {
     Clip<double> position{};
     std::vector<double> clipDistances;
     double pointSize = 1;
     uint32_t layer = 0, viewport = 0;
+    std::optional<uint32_t> primitiveId;  // of a geometry shader that writes it
     std::map<reference::Location, reference::Texel<double>> varyings;
 };
 
@@ -39,7 +41,17 @@ struct DrawGeometry {
 /// Parses a scene's shader with its specialisation.
 Result<reference::Module> parseShader(const SceneShader& shader);
 
-/// All primitives of all instances of a draw, seen by one view. Adjacency and patches are refused.
+/// What a vertex is to the rasteriser that a shader has left with these outputs.
+ShadedVertex shadedVertex(const reference::InterfaceValues<double>& outputs, const ScenePipeline& pipeline);
+
+/// A stage of a pipeline; refused where its stores cannot be foreseen.
+Result<reference::Interpreter<double>> createStage(const SceneShader& shader, spv::ExecutionModel model);
+/// One invocation; what it stores goes to `resources`.
+Result<reference::Outcome<double>> runAlone(const reference::Interpreter<double>& shader,
+                                            const reference::InterfaceValues<double>& inputs,
+                                            ShaderResources& resources);
+
+/// All primitives of all instances of a draw, seen by one view. Patches are refused.
 Result<DrawGeometry> assembleDraw(const Scene& scene, const SceneDraw& draw, ShaderResources& resources,
                                   uint32_t viewIndex = 0);
 

@@ -51,6 +51,7 @@ class SceneCheck {
     void checkPipeline(size_t i) {
         const ScenePipeline& pipeline = scene_.pipelines[i];
         index(pipeline.vertexShader, scene_.shaders.size(), "vertex shader");
+        if (pipeline.geometryShader != kNone) index(pipeline.geometryShader, scene_.shaders.size(), "geometry shader");
         if (pipeline.fragmentShader != kNone) index(pipeline.fragmentShader, scene_.shaders.size(), "fragment shader");
     }
 

@@ -73,6 +73,7 @@ struct SceneShader {
 
 struct ScenePipeline {
     uint32_t vertexShader = kNone;
+    uint32_t geometryShader = kNone;  // kNone: no such stage
     uint32_t fragmentShader = kNone;  // kNone: depth-only
     std::vector<VkVertexInputBindingDescription> vertexBindings;
     std::vector<VkVertexInputAttributeDescription> vertexAttributes;
@@ -149,7 +150,7 @@ struct SceneDraw {
     VkIndexType indexType = VK_INDEX_TYPE_UINT16;
     VkViewport viewport{};
     VkRect2D scissor{};
-    std::vector<SceneView> moreViews;  // those after the first, which the vertex shader chooses by ViewportIndex
+    std::vector<SceneView> moreViews;  // those after the first, which a shader chooses by ViewportIndex
     uint32_t count = 0;                // vertices or indices
     uint32_t instances = 1;
     uint32_t first = 0;  // first vertex or first index

@@ -386,13 +386,14 @@ struct WheelDraw {
     uint32_t target, state, buffer, count;
 };
 Result<Scene> layeredWheel(SceneRecorder& record, const char* vertexGlsl, const char* fragmentGlsl,
-                           const std::function<void(const WheelDraw&)>& draw) {
+                           const std::function<void(const WheelDraw&)>& draw, uint32_t geometry = kNone) {
     const uint32_t target = record.layeredTarget("layers", kRgba8, {80, 80}, 4);
     const uint32_t flat = record.colorTarget("side by side", kRgba8, kExtent);
     const auto fan = wheel(9, -0.2f);
     const uint32_t buffer = record.vertexBuffer("fan", fan);
-    const uint32_t state =
-        depthColorPipeline(record, vertexGlsl, fragmentGlsl).topology(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN);
+    const uint32_t state = depthColorPipeline(record, vertexGlsl, fragmentGlsl)
+                               .topology(VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN)
+                               .geometry(geometry);
     record.pass({80, 80}).color(target, kDark).layers(4);
     draw({target, state, buffer, static_cast<uint32_t>(fan.size())});
     record.pass(kExtent).color(flat, {});
@@ -428,6 +429,35 @@ void main() {
     return layeredWheel(record, vertex, kColorFragmentGlsl, [&record](const WheelDraw& wheel) {
         record.draw(wheel.state, wheel.count).vertices(wheel.buffer).instances(4);
     });
+}
+
+Result<Scene> geometry_layers() {
+    SceneRecorder record(
+        "geometry_layers",
+        "A wheel in four layers, into which a geometry shader puts each of its triangles, turned by the "
+        "number of the invocation and shrunk towards its middle.");
+    const uint32_t geometry = record.geometry(R"(#version 450
+layout(triangles, invocations = 4) in;
+layout(triangle_strip, max_vertices = 3) out;
+layout(location = 0) in vec3 vColor[];
+layout(location = 0) out vec3 gColor;
+void main() {
+    float turn = 0.4 * float(gl_InvocationID);
+    mat2 turned = mat2(cos(turn), sin(turn), -sin(turn), cos(turn));
+    vec2 middle = (gl_in[0].gl_Position.xy + gl_in[1].gl_Position.xy + gl_in[2].gl_Position.xy) / 3.0;
+    for (int v = 0; v < 3; ++v) {
+        vec2 place = mix(gl_in[v].gl_Position.xy, middle, 0.08 * float(gl_InvocationID));
+        gl_Position = vec4(turned * place, 0.5, 1.0);
+        gl_Layer = gl_InvocationID;
+        gColor = vColor[v];
+        EmitVertex();
+    }
+}
+)");
+    const auto draw = [&record](const WheelDraw& wheel) {
+        record.draw(wheel.state, wheel.count).vertices(wheel.buffer);
+    };
+    return layeredWheel(record, kDepthColorVertexGlsl, kColorFragmentGlsl, draw, geometry);
 }
 
 Result<Scene> multiview() {

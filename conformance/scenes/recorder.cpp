@@ -107,6 +107,11 @@ PipelineRecorder& PipelineRecorder::stipple(uint32_t factor, uint16_t pattern) {
     return *this;
 }
 
+PipelineRecorder& PipelineRecorder::geometry(uint32_t shader) {
+    state().geometryShader = shader;
+    return *this;
+}
+
 PipelineRecorder& PipelineRecorder::provokingVertexLast() {
     state().provokingVertexLast = true;
     return *this;
@@ -441,7 +446,9 @@ uint32_t SceneRecorder::shader(VkShaderStageFlagBits stage, std::string_view gls
     shader.stage = stage;
     shader.glsl = glsl;
     const std::string name = scene_.name + "/shader" + std::to_string(scene_.shaders.size()) +
-                             (stage == VK_SHADER_STAGE_VERTEX_BIT ? ".vert" : ".frag");
+                             (stage == VK_SHADER_STAGE_VERTEX_BIT     ? ".vert"
+                              : stage == VK_SHADER_STAGE_GEOMETRY_BIT ? ".geom"
+                                                                      : ".frag");
     Result<std::vector<uint32_t>> compiled = compileOnce(stage, shader.glsl, target, name);
     if (compiled) {
         shader.spirv = std::move(compiled).value();

@@ -49,6 +49,7 @@ class PipelineRecorder {
     PipelineRecorder& lineMode(VkLineRasterizationModeEXT mode);
     PipelineRecorder& stipple(uint32_t factor, uint16_t pattern);
     PipelineRecorder& provokingVertexLast();
+    PipelineRecorder& geometry(uint32_t shader);
     /// Clip depths from -w to w.
     PipelineRecorder& depthNegativeOneToOne();
     PipelineRecorder& depthClamp();
@@ -91,7 +92,7 @@ class PassRecorder {
     PassRecorder& resolveDepthStencil(uint32_t image, VkResolveModeFlagBits depth, VkResolveModeFlagBits stencil);
     /// Draws to this layer of the attachments added before.
     PassRecorder& layer(uint32_t layer);
-    /// Draws to so many layers of the attachments added before, which the vertex shader chooses by Layer.
+    /// Draws to so many layers of the attachments added before, which a shader chooses by Layer.
     PassRecorder& layers(uint32_t count);
     /// Draws everything to each of these layers of the attachments added before.
     PassRecorder& views(uint32_t mask);
@@ -172,6 +173,9 @@ class SceneRecorder {
     /// Compile a stage; an error is kept for finish().
     uint32_t vertex(std::string_view glsl, VnGlslTarget target = VN_GLSL_TARGET_VULKAN_1_0) {
         return shader(VK_SHADER_STAGE_VERTEX_BIT, glsl, target);
+    }
+    uint32_t geometry(std::string_view glsl, VnGlslTarget target = VN_GLSL_TARGET_VULKAN_1_0) {
+        return shader(VK_SHADER_STAGE_GEOMETRY_BIT, glsl, target);
     }
     uint32_t fragment(std::string_view glsl, VnGlslTarget target = VN_GLSL_TARGET_VULKAN_1_0) {
         return shader(VK_SHADER_STAGE_FRAGMENT_BIT, glsl, target);

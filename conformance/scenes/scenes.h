@@ -24,6 +24,9 @@
     X(stencil_winding)         \
     X(alpha_test)              \
     X(msaa_resolve)            \
+    /* geometry_stage.cpp */   \
+    X(geometry_strips)         \
+    X(geometry_adjacency)      \
     /* lines_and_points.cpp */ \
     X(lines)                   \
     X(lines_bresenham)         \
@@ -46,6 +49,7 @@
     X(depth_bounds)            \
     X(viewports_indexed)       \
     X(layers)                  \
+    X(geometry_layers)         \
     X(multiview)               \
     /* samples.cpp */          \
     X(sample_counts)           \

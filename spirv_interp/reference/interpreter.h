@@ -45,7 +45,8 @@ struct ExecutionModes {
     bool depthGreater = false, depthLess = false, depthUnchanged = false;
     std::array<uint32_t, 3> localSize{1, 1, 1};  // LocalSize; LocalSizeId's values
     uint32_t outputVertices = 0;
-    uint32_t invocations = 1;  // of a geometry stage, for each primitive
+    uint32_t invocations = 1;        // of a geometry stage, for each primitive
+    uint32_t primitiveVertices = 1;  // of a primitive that a geometry stage puts out: a point, line or triangle
 };
 
 /// Subgroups are consecutive invocations of a work-group by LocalInvocationIndex; the last may be incomplete.

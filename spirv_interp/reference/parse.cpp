@@ -258,6 +258,12 @@ class Parser {
                 case spv::ExecutionModeOutputVertices:
                     modes.outputVertices = i.operand(2);
                     break;
+                case spv::ExecutionModeOutputLineStrip:
+                    modes.primitiveVertices = 2;
+                    break;
+                case spv::ExecutionModeOutputTriangleStrip:
+                    modes.primitiveVertices = 3;
+                    break;
                 case spv::ExecutionModeInvocations:
                     modes.invocations = i.operand(2);
                     break;
