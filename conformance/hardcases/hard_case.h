@@ -88,11 +88,12 @@ class CaseInput {
     Status status_;
 };
 
-/// Something that was read in a driver's source and never run. The case's outcome on that driver decides it: wrong or
-/// crashed confirms it, anything else strikes it out.
+/// Something that was read in a driver's source and never run. The case's outcome on that driver decides it: one as bad
+/// as `seenAs` or worse confirms it, a better one strikes it out.
 struct Candidate {
     std::string_view driver;  // as on the command line: "lavapipe", "swiftshader"
     std::string_view claim;
+    Outcome seenAs = Outcome::wrong;
 };
 
 struct HardCase {

@@ -28,15 +28,9 @@ std::string padded(std::string_view text, size_t width) {
 std::string candidateVerdict(const Table& table, size_t row, const Candidate& candidate) {
     const auto column = std::ranges::find(table.columns, candidate.driver, &TableColumn::driver);
     if (column == table.columns.end()) return "not run";
-    switch (column->verdicts[row].outcome) {
-        case Outcome::wrong:
-        case Outcome::crashed:
-            return "confirmed";
-        case Outcome::unsupported:
-            return "not run: unsupported";
-        default:
-            return "struck out: not seen";
-    }
+    const Outcome outcome = column->verdicts[row].outcome;
+    if (outcome == Outcome::unsupported) return "not run: unsupported";
+    return outcome >= candidate.seenAs ? "confirmed" : "struck out: not seen";
 }
 
 void writeGroup(std::ostringstream& out, const Table& table, const CaseGroup& group) {
