@@ -23,8 +23,8 @@ struct GridLine {
 /// an implementation that draws two triangles snaps their corners too.
 Coverage classifyLine(const GridLine& line, const GridPoint& sample, int64_t slack);
 
-/// The declared rule: the rectangle itself, of its borders the left ones and the top one, as of triangles; nothing for a
-/// segment without length.
+/// The declared rule: the rectangle itself, of its borders the left ones and the top one, as of triangles; nothing for
+/// a segment without length.
 bool lineCovers(const GridLine& line, const GridPoint& sample);
 
 /// Pixels of a Bresenham line of width 1 between points in pixels, in the order of the major axis (x for a slope of
