@@ -86,6 +86,21 @@ Status VulkanResources::create(const Scene& scene) {
     return uploadImages();
 }
 
+Result<VkDeviceMemory> VulkanResources::allocate(const VkMemoryRequirements& requirements,
+                                                 VkMemoryPropertyFlags properties) {
+    const VkDevice device = context_.device();
+    const Result<uint32_t> type = context_.memoryType(requirements.memoryTypeBits, properties);
+    if (!type) return type.error();
+    VkMemoryAllocateInfo allocation{};
+    allocation.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+    allocation.allocationSize = requirements.size;
+    allocation.memoryTypeIndex = *type;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    VERNIER_TRY_VK(vkAllocateMemory(device, &allocation, nullptr, &memory));
+    cleanup_.add([device, memory] { vkFreeMemory(device, memory, nullptr); });
+    return memory;
+}
+
 Result<VulkanBuffer> VulkanResources::createHostBuffer(VkDeviceSize size, VkBufferUsageFlags usage) {
     const VkDevice device = context_.device();
     VkBufferCreateInfo info{};
@@ -97,18 +112,11 @@ Result<VulkanBuffer> VulkanResources::createHostBuffer(VkDeviceSize size, VkBuff
     cleanup_.add([device, handle = buffer.handle] { vkDestroyBuffer(device, handle, nullptr); });
     VkMemoryRequirements requirements{};
     vkGetBufferMemoryRequirements(device, buffer.handle, &requirements);
-    const Result<uint32_t> type = context_.memoryType(
-        requirements.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
-    if (!type) return type.error();
-    VkMemoryAllocateInfo allocation{};
-    allocation.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-    allocation.allocationSize = requirements.size;
-    allocation.memoryTypeIndex = *type;
-    VkDeviceMemory memory = VK_NULL_HANDLE;
-    VERNIER_TRY_VK(vkAllocateMemory(device, &allocation, nullptr, &memory));
-    cleanup_.add([device, memory] { vkFreeMemory(device, memory, nullptr); });
-    VERNIER_TRY_VK(vkBindBufferMemory(device, buffer.handle, memory, 0));
-    VERNIER_TRY_VK(vkMapMemory(device, memory, 0, VK_WHOLE_SIZE, 0, &buffer.mapped));
+    const Result<VkDeviceMemory> memory =
+        allocate(requirements, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+    if (!memory) return memory.error();
+    VERNIER_TRY_VK(vkBindBufferMemory(device, buffer.handle, *memory, 0));
+    VERNIER_TRY_VK(vkMapMemory(device, *memory, 0, VK_WHOLE_SIZE, 0, &buffer.mapped));
     return buffer;
 }
 
@@ -143,16 +151,9 @@ Status VulkanResources::createImage(const SceneImage& scene) {
     cleanup_.add([device, handle = image.handle] { vkDestroyImage(device, handle, nullptr); });
     VkMemoryRequirements requirements{};
     vkGetImageMemoryRequirements(device, image.handle, &requirements);
-    const Result<uint32_t> type = context_.memoryType(requirements.memoryTypeBits, 0);
-    if (!type) return type.error();
-    VkMemoryAllocateInfo allocation{};
-    allocation.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-    allocation.allocationSize = requirements.size;
-    allocation.memoryTypeIndex = *type;
-    VkDeviceMemory memory = VK_NULL_HANDLE;
-    VERNIER_TRY_VK(vkAllocateMemory(device, &allocation, nullptr, &memory));
-    cleanup_.add([device, memory] { vkFreeMemory(device, memory, nullptr); });
-    VERNIER_TRY_VK(vkBindImageMemory(device, image.handle, memory, 0));
+    const Result<VkDeviceMemory> memory = allocate(requirements, 0);
+    if (!memory) return memory.error();
+    VERNIER_TRY_VK(vkBindImageMemory(device, image.handle, *memory, 0));
     if ((scene.usage & (VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT)) != 0) {
         // A view to sample through has one aspect.
         const VkImageAspectFlags aspect = image.aspects & ~VkImageAspectFlags{VK_IMAGE_ASPECT_STENCIL_BIT};

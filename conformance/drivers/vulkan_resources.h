@@ -75,6 +75,7 @@ class VulkanResources {
         std::vector<ImageUse> uses;           // per mip * arrayLayers + layer
     };
 
+    Result<VkDeviceMemory> allocate(const VkMemoryRequirements& requirements, VkMemoryPropertyFlags properties);
     Status createImage(const SceneImage& scene);
     Status createSampler(const SceneSampler& scene);
     Result<VkImageView> createView(const Image& image, const VkImageSubresourceRange& range, VkImageViewType type);

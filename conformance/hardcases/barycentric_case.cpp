@@ -35,16 +35,7 @@ Result<Scene> barycentricScene(bool provokingLast) {
     for (const ClipPosition& position : kPositions)
         vertices.push_back({position, {static_cast<float>(vertices.size()) + 0.1f, 0, 0, 1}});
     PipelineRecorder state = record
-                                 .pipeline(record.vertex(R"(#version 450
-layout(location = 0) in vec4 position;
-layout(location = 1) in vec4 color;
-layout(location = 0) out vec4 vColor;
-void main() {
-    gl_Position = position;
-    vColor = color;
-}
-)"),
-                                           record.fragment(R"(#version 450
+                                 .pipeline(record.vertex(kColorVertexGlsl), record.fragment(R"(#version 450
 #extension GL_EXT_fragment_shader_barycentric : require
 layout(location = 0) pervertexEXT in vec4 vColor[];
 layout(location = 0) out vec4 weights;

@@ -317,17 +317,7 @@ void main() { color = vec4(interpolateAtOffset(vColor.xy, vec2(%.4f, %.4f)), vCo
                       static_cast<double>(dx), static_cast<double>(dy));
         const std::vector<ColorVertex> data{
             {{-1, -1, 0.5f, 1}, {0, 0, 0, 1}}, {{3, -1, 0.5f, 1}, {128, 0, 0, 1}}, {{-1, 3, 0.5f, 1}, {0, 128, 0, 1}}};
-        const uint32_t pipeline = record
-                                      .pipeline(record.vertex(R"(#version 450
-layout(location = 0) in vec4 position;
-layout(location = 1) in vec4 color;
-layout(location = 0) out vec4 vColor;
-void main() {
-    gl_Position = position;
-    vColor = color;
-}
-)"),
-                                                record.fragment(glsl))
+        const uint32_t pipeline = record.pipeline(record.vertex(kColorVertexGlsl), record.fragment(glsl))
                                       .binding(sizeof(ColorVertex))
                                       .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, 0)
                                       .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, sizeof(ClipPosition));

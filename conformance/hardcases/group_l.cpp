@@ -16,16 +16,6 @@ namespace {
 
 constexpr VkExtent2D kTarget{64, 64};
 
-const char* const kColorVertexGlsl = R"(#version 450
-layout(location = 0) in vec4 position;
-layout(location = 1) in vec4 color;
-layout(location = 0) out vec4 vColor;
-void main() {
-    gl_Position = position;
-    vColor = color;
-}
-)";
-
 Result<Scene> derivativeScene(std::string_view name, const std::vector<ColorVertex>& vertices) {
     SceneRecorder record(name, "Derivatives of an attribute.");
     const uint32_t target = record.colorTarget("derivatives", VK_FORMAT_R32G32B32A32_SFLOAT, kTarget);

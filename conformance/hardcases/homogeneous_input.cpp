@@ -10,15 +10,6 @@ namespace {
 
 using exact::Rational;
 
-const char* const kColorVertexGlsl = R"(#version 450
-layout(location = 0) in vec4 position;
-layout(location = 1) in vec4 color;
-layout(location = 0) out vec4 vColor;
-void main() {
-    gl_Position = position;
-    vColor = color;
-}
-)";
 const char* const kColorFragmentGlsl = R"(#version 450
 layout(location = 0) in vec4 vColor;
 layout(location = 0) out vec4 color;
@@ -48,6 +39,16 @@ void main() {
 )";
 
 }  // namespace
+
+const char* const kColorVertexGlsl = R"(#version 450
+layout(location = 0) in vec4 position;
+layout(location = 1) in vec4 color;
+layout(location = 0) out vec4 vColor;
+void main() {
+    gl_Position = position;
+    vColor = color;
+}
+)";
 
 exact::HomogeneousTriangle<Rational> exactTriangle(const ClipTriangle& triangle, const VkViewport& viewport) {
     std::array<exact::WindowVertex<Rational>, 3> v;

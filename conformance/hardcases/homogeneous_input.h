@@ -59,6 +59,8 @@ struct ColorVertex {
     std::array<float, 4> color;
 };
 
+extern const char* const kColorVertexGlsl;  // locations 0 and 1: vec4 to gl_Position, vec4 to location 0
+
 /// Draws vertices with their colours interpolated in perspective into one target.
 Result<Scene> colorScene(std::string_view name, const std::vector<ColorVertex>& vertices, VkExtent2D extent,
                          VkFormat format = VK_FORMAT_R8G8B8A8_UNORM,
