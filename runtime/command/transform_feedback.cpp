@@ -5,10 +5,11 @@
 namespace vernier {
 namespace {
 
-/// How many vertices fit. The last one need not have room for all of its stride.
+/// How many vertices fit, and can be counted in 32 bits, `offset` among them. The last one need not have room for all
+/// of its stride.
 uint64_t roomFor(uint64_t size, uint64_t offset, uint32_t extent, uint32_t stride) {
     if (offset > size || size - offset < extent) return 0;
-    return (size - offset - extent) / stride + 1;
+    return std::min((size - offset - extent) / stride + 1, (UINT32_MAX - offset) / stride);
 }
 
 }  // namespace

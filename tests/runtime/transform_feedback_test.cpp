@@ -75,6 +75,19 @@ TEST(TransformFeedback, DropsWhatDoesNotFit) {
     EXPECT_EQ(feedback.offset(1), ~0u);
 }
 
+TEST(TransformFeedback, GoesNoFurtherThanCountersCount) {
+    std::byte first{};
+    for (const uint32_t stride : {4u, 12u, 16u}) {
+        TransformFeedback feedback;
+        feedback.bind(0, &first, uint64_t{1} << 40);
+        feedback.begin();
+        const CapturePlan plan = planOf(0, 0, stride);
+        EXPECT_EQ(feedback.place(plan, 1, uint64_t{1} << 32).primitives, UINT32_MAX / stride);
+        EXPECT_LE(feedback.offset(0), UINT32_MAX);
+        EXPECT_EQ(feedback.place(plan, 1, 1).primitives, 0u);
+    }
+}
+
 TEST(TransformFeedback, NeedsEveryBufferOfTheProgram) {
     std::vector<std::byte> memory(64);
     TransformFeedback feedback;
