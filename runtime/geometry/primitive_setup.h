@@ -22,7 +22,7 @@ struct TileGrid {
     int32_t x0 = 0, y0 = 0;
     uint32_t columns = 0, rows = 0;
     uint32_t layers = 1;
-    bool anyLayer = false;  // a pass without attachments has no layers: primitives of all go to the same tiles
+    bool anyLayer = false;  // primitives of all layers go to the same tiles, of the one layer there is
     uint32_t perLayer() const { return columns * rows; }
     /// Tiles are numbered row by row, and layer by layer.
     uint32_t count() const { return perLayer() * layers; }

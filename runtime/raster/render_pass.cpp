@@ -359,11 +359,13 @@ void RenderPass::begin(const PassTargets& targets) {
     self.targets = targets;
     self.grid = tileGridOf(targets.renderArea);
     self.grid.layers = targets.viewMask != 0 ? static_cast<uint32_t>(std::bit_width(targets.viewMask)) : targets.layers;
-    // Primitives of a layer that the framebuffer does not have "may still be rasterized" (specification, Layer). Where
-    // nothing can be drawn outside they are: Mesa's Zink says nothing of layers when it has no attachments.
-    self.grid.anyLayer = targets.viewMask == 0 && targets.depthStencil.format == VK_FORMAT_UNDEFINED &&
-                         std::ranges::all_of(std::span(targets.colors).first(targets.colorCount),
-                                             [](const auto& color) { return color.format == VK_FORMAT_UNDEFINED; });
+    // Primitives of a layer that the framebuffer does not have "may still be rasterized" (specification, Layer). They
+    // are where that can do no harm: OpenGL's framebuffers of one layer take all, and Mesa's Zink says nothing of
+    // layers when it has no attachments.
+    const bool attached = targets.depthStencil.format != VK_FORMAT_UNDEFINED ||
+                          std::ranges::any_of(std::span(targets.colors).first(targets.colorCount),
+                                              [](const auto& color) { return color.format != VK_FORMAT_UNDEFINED; });
+    self.grid.anyLayer = targets.viewMask == 0 && (targets.layers == 1 || !attached);
     if (self.grid.anyLayer) self.grid.layers = 1;
     self.loaded = false;
     self.stippled = self.capturesStages = false;
