@@ -24,7 +24,13 @@ void Assembler::numberInputs(const PreparedDraw& draw, const PrimitiveRange& ran
         if (draw.state->topology == VK_PRIMITIVE_TOPOLOGY_PATCH_LIST) {
             std::iota(numbers.begin(), numbers.begin() + each, (primitive - run->firstPrimitive) * each);
         } else {
-            inputVertices(draw.state->topology, primitive - run->firstPrimitive, run->primitives, numbers.data());
+            const uint32_t number = primitive - run->firstPrimitive;
+            inputVertices(draw.state->topology, number, run->primitives, numbers.data());
+            if (draw.state->provokingVertexLast && each % 3 == 0) {
+                // Turned so that the provoking vertex is the last, as OpenGL orders strips and fans (4.6, table 10.1).
+                const uint32_t last = primitiveVertices(draw.state->topology, number).provokingLast;
+                std::rotate(numbers.begin(), numbers.begin() + (last + 1) % 3 * (each / 3), numbers.begin() + each);
+            }
         }
         for (uint32_t v = 0; v < each; ++v)
             inputs_.numbers.push_back(
