@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "api/mini/context_guard.h"
-#include "spirv_interp/ir/ops.h"
+#include "spirv_interp/needs_descriptor.h"
 
 using namespace vernier;
 using namespace vernier::mini;
@@ -12,10 +12,6 @@ namespace {
 std::string elementText(uint32_t set, uint32_t binding, size_t element) {
     return "the program uses set " + std::to_string(set) + ", binding " + std::to_string(binding) + ", element " +
            std::to_string(element);
-}
-
-bool needsBinding(const ir::Resource& resource) {
-    return resource.kind != ir::ResourceKind::pushConstants && !ir::isOfRunner(resource.kind);
 }
 
 /// What a program's resource needs to find at its binding.
@@ -38,7 +34,7 @@ bool isBound(const BoundResource& bound, ir::ResourceKind kind) {
 
 VnResult checkBound(VnContext context, const char* function, const ir::Program& program) {
     for (const ir::Resource& resource : program.resources) {
-        if (!needsBinding(resource)) continue;
+        if (!needsDescriptor(resource)) continue;
         const auto found = context->resources.find({resource.set, resource.binding});
         const uint32_t needed = std::max(resource.arraySize, 1u);
         uint32_t bound = 0;
@@ -148,7 +144,7 @@ VnResult vernier::mini::recordResources(VnContext context, const char* function,
         if (VnResult result = checkBound(context, function, *program)) return result;
         if (VnResult result = checkViews(context, function, *program)) return result;
         for (const ir::Resource& resource : program->resources)
-            if (needsBinding(resource)) usedSets |= 1u << resource.set;
+            if (needsDescriptor(resource)) usedSets |= 1u << resource.set;
     }
     CommandBuffer& commands = context->recording->commands;
     for (uint32_t set = 0; set < kMaxDescriptorSets; ++set) {

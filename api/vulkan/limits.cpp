@@ -9,7 +9,7 @@
 #include "runtime/resource/buffer_view.h"
 #include "runtime/resource/memory.h"
 #include "runtime/texture/texture.h"
-#include "spirv_interp/ir/geometry_modes.h"
+#include "spirv_interp/program.h"
 #include "spirv_interp/tessellation.h"
 
 namespace vernier::vulkan {

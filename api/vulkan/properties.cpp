@@ -15,7 +15,8 @@
 namespace vernier::vulkan {
 namespace {
 
-constexpr VkShaderStageFlags kShaderStages = VK_SHADER_STAGE_ALL_GRAPHICS | VK_SHADER_STAGE_COMPUTE_BIT;
+constexpr VkShaderStageFlags kSubgroupStages =
+    VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
 
 /// A name, a number and what tells apart the devices of this driver.
 void fillUuid(uint8_t (&uuid)[VK_UUID_SIZE], const char (&name)[9], uint32_t number, const PhysicalDevice& device) {
@@ -37,7 +38,7 @@ void fill(const PhysicalDevice& device, VkPhysicalDeviceIDProperties& p) {
 
 void fill(const PhysicalDevice&, VkPhysicalDeviceSubgroupProperties& p) {
     p.subgroupSize = ir::kSubgroupSize;
-    p.supportedStages = kShaderStages;
+    p.supportedStages = kSubgroupStages;
     p.supportedOperations = VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_VOTE_BIT |
                             VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT |
                             VK_SUBGROUP_FEATURE_SHUFFLE_BIT | VK_SUBGROUP_FEATURE_SHUFFLE_RELATIVE_BIT |
@@ -99,7 +100,7 @@ void fill(const PhysicalDevice& device, VkPhysicalDeviceDescriptorIndexingProper
 void fill(const PhysicalDevice&, VkPhysicalDeviceSubgroupSizeControlProperties& p) {
     p.minSubgroupSize = p.maxSubgroupSize = ir::kSubgroupSize;
     p.maxComputeWorkgroupSubgroups = kMaxWorkGroupInvocations / ir::kSubgroupSize;
-    p.requiredSubgroupSizeStages = kShaderStages;
+    p.requiredSubgroupSizeStages = kSubgroupStages;
 }
 
 /// Texels are read wherever they lie, but loads of whole texels want them aligned to themselves.

@@ -2,13 +2,13 @@
 
 #include <iterator>
 
-#include "spirv_interp/ir/ops.h"
+#include "spirv_interp/needs_descriptor.h"
 
 namespace vernier {
 
 std::string missingDescriptor(const ir::Program& program, const BoundDescriptors& bound) {
     for (const ir::Resource& resource : program.resources) {
-        if (resource.kind == ir::ResourceKind::pushConstants || ir::isOfRunner(resource.kind)) continue;
+        if (!needsDescriptor(resource)) continue;
         const std::string name =
             "set " + std::to_string(resource.set) + ", binding " + std::to_string(resource.binding);
         if (resource.set >= std::size(bound.sets) || bound.sets[resource.set] == nullptr)

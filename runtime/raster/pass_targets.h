@@ -12,7 +12,7 @@
 
 #include "base/simd.h"
 #include "runtime/limits.h"
-#include "spirv_interp/ir/geometry_modes.h"
+#include "spirv_interp/program.h"
 
 namespace vernier {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "spirv_interp/ir/ops.h"
+#include "spirv_interp/needs_descriptor.h"
 
 namespace vernier {
 namespace {
@@ -208,10 +208,9 @@ ResourceBindings resolveBindings(const ir::Program& program, const BoundDescript
         const ir::Resource& resource = program.resources[r];
         uint32_t& size = sizes[static_cast<size_t>(tableOf(resource.kind))];
         base[r] = size;
-        count[r] = resource.kind == ir::ResourceKind::pushConstants ? 1
-                   : ir::isOfRunner(resource.kind)
-                       ? 0  // the context that runs the program owns it
-                       : static_cast<uint32_t>(findDescriptors(resource, bound).slots.size());
+        count[r] = needsDescriptor(resource) ? static_cast<uint32_t>(findDescriptors(resource, bound).slots.size())
+                   : resource.kind == ir::ResourceKind::pushConstants ? 1
+                                                                      : 0;
         size += count[r];
     }
     const std::span<BufferBinding> buffers = arena.array<BufferBinding>(sizes[0]);

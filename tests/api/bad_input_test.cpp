@@ -214,7 +214,8 @@ TEST_F(BadInput, ShadersThatAreBroken) {
     EXPECT_EQ(create(good, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr), VN_SUCCESS);
     expect(create(good, VK_SHADER_STAGE_FRAGMENT_BIT, "absent"), VN_ERROR_SHADER, "absent");
     EXPECT_EQ(create(good, VK_SHADER_STAGE_VERTEX_BIT, nullptr), VN_ERROR_SHADER);
-    expect(create(good, VK_SHADER_STAGE_GEOMETRY_BIT, nullptr), VN_ERROR_UNSUPPORTED, "stage is 8");
+    expect(create(good, VK_SHADER_STAGE_RAYGEN_BIT_KHR, nullptr), VN_ERROR_UNSUPPORTED, "stage is 256");
+    expect(create(good, VK_SHADER_STAGE_GEOMETRY_BIT, nullptr), VN_ERROR_SHADER, "no geometry entry point");
     for (size_t cut = 1; cut < good.size(); ++cut) {
         const std::vector<uint32_t> broken(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(cut));
         EXPECT_EQ(create(broken, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr), VN_ERROR_SHADER) << "cut at word " << cut;

@@ -21,7 +21,7 @@ room(runtime/format base)
 room(runtime/texture base runtime/format)
 room(runtime/resource base spirv_interp runtime runtime/format runtime/texture)
 room(runtime/plan base spirv_interp spirv_interp/ir runtime runtime/format runtime/texture runtime/resource)
-room(runtime/geometry base spirv_interp runtime runtime/format runtime/plan)
+room(runtime/geometry base spirv_interp spirv_interp/ir runtime runtime/format runtime/plan)
 room(runtime/raster base spirv_interp runtime runtime/format runtime/plan runtime/geometry)
 room(runtime/transfer base runtime runtime/format runtime/resource)
 room(runtime/command base spirv_interp runtime runtime/format runtime/resource runtime/plan runtime/geometry runtime/raster

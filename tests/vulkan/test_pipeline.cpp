@@ -56,7 +56,7 @@ DrawTest::Pass DrawTest::makePass(const TestImage& color, const TestImage* depth
     framebuffer.pAttachments = views.data();
     framebuffer.width = color.extent.width;
     framebuffer.height = color.extent.height;
-    framebuffer.layers = layers;
+    framebuffer.layers = viewMask != 0 ? 1 : layers;  // views choose theirs
     EXPECT_EQ(vkCreateFramebuffer(device, &framebuffer, nullptr, &result.framebuffer), VK_SUCCESS);
     defer([this, result] {
         vkDestroyFramebuffer(device, result.framebuffer, nullptr);
