@@ -1,22 +1,30 @@
 // What a pipeline does, one picture each:
-//   --scene lines        lines in all directions by Bresenham's rule, on pixels large enough to count
-//           scan-line    a triangle as spans that this program computes with integers, over the same triangle
-//           rasterised in
-//                        red: none of it is left
-//           barycentric  weights of the three corners: by areas, by Cramer's rule, by cross products in space, as
-//           interpolated ray          the left half rasterised, the right half by a ray per pixel against each triangle
-//           frustum      boxes outside of the view are not drawn; the upper right corner looks from above, those left
-//           out red affine       what a floor looks like when texture coordinates are not divided by w
+//   --scene lines         lines in all directions by Bresenham's rule, on pixels large enough to count
+//           scan-line     a triangle as spans that this program computes with integers, over the same triangle
+//                         rasterised in red: none of it is left
+//           barycentric   weights of the three corners: by areas, by Cramer's rule, by cross products in space, as
+//                         interpolated
+//           ray           the left half rasterised, the right half by a ray per pixel against each triangle
+//           frustum       boxes outside of the view are not drawn; the upper right corner looks from above, those left
+//                         out are red
+//           affine        what a floor looks like when texture coordinates are not divided by w
+//           tessellation  patches undivided, at two levels, and by distance: notes/tessellation_page.h
+//           geometry      what a geometry stage makes of triangles and points: notes/geometry_page.h
+//   --spacing equal|even|odd   of levels of tessellation that are not whole
 //   --clip-space vulkan|gl     depth 0..1 and y down, or -1..1 and y up: the same picture
 //   --cull                     leave out back faces
+#include <optional>
+
 #include "samples/common/app.h"
 #include "samples/common/camera.h"
 #include "samples/common/random.h"
 #include "samples/common/trigonometry.h"
+#include "samples/renderers/notes/geometry_page.h"
+#include "samples/renderers/notes/tessellation_page.h"
 
 namespace {
 
-enum Scene { kLines, kScanLine, kBarycentric, kRay, kFrustum, kAffine };
+enum Scene { kLines, kScanLine, kBarycentric, kRay, kFrustum, kAffine, kTessellation, kGeometry };
 
 struct Vertex {
     glm::vec3 position, color;
@@ -176,13 +184,21 @@ std::vector<glm::ivec3> spansOf(const glm::ivec2 (&corners)[3], int width, int h
 }  // namespace
 
 int main(int argc, char** argv) {
-    int scene = kFrustum, clipSpace = 0;
+    int scene = kFrustum, clipSpace = 0, spacing = 0;
     bool cull = false;
-    samples::App app(
-        argc, argv, "Pipeline notes",
-        {{"--scene", "which picture", &scene, 's', {"lines", "scan-line", "barycentric", "ray", "frustum", "affine"}},
-         {"--clip-space", "vulkan or gl", &clipSpace, 'g', {"vulkan", "gl"}},
-         {"--cull", "leave out back faces", &cull, 'c'}});
+    samples::App app(argc, argv, "Pipeline notes",
+                     {{"--scene",
+                       "which picture",
+                       &scene,
+                       's',
+                       {"lines", "scan-line", "barycentric", "ray", "frustum", "affine", "tessellation", "geometry"}},
+                      {"--spacing",
+                       "of levels of tessellation: equal, or fractional even or odd",
+                       &spacing,
+                       'v',
+                       {"equal", "even", "odd"}},
+                      {"--clip-space", "vulkan or gl", &clipSpace, 'g', {"vulkan", "gl"}},
+                      {"--cull", "leave out back faces", &cull, 'c'}});
     VnContext context = app.context();
     const VnProgram color = app.program(kVertex, kColor), floor = app.program(kVertex, kFloor);
     const VnProgram weights = app.program(kVertex, kWeights),
@@ -277,7 +293,20 @@ int main(int argc, char** argv) {
         enlarge();
     };
 
+    // Made when they are first shown: their programs take a while to compile.
+    std::optional<samples::TessellationPage> tessellationPage;
+    std::optional<samples::GeometryPage> geometryPage;
+
     return app.run([&](const samples::Frame& frame) {
+        const samples::PageView view{frame.seconds, clipSpace != 0, cull};
+        if (scene == kTessellation) {
+            if (!tessellationPage) tessellationPage.emplace(app);
+            return tessellationPage->draw(view, spacing);
+        }
+        if (scene == kGeometry) {
+            if (!geometryPage) geometryPage.emplace(app);
+            return geometryPage->draw(view);
+        }
         if (scene == kLines) return drawLines(frame.seconds);
         if (scene == kScanLine) return drawSpans();
         const double angle = frame.seconds * 0.2;
