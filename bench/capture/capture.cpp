@@ -192,6 +192,8 @@ ScenePipeline Capture::pipelineOf() {
     ScenePipeline made;
     const VnProgramDesc& program = programs_.at(bound.program.id);
     made.vertexShader = sceneShader(program.vertex);
+    if (program.control.id) cannot("tessellation");
+    if (program.geometry.id) made.geometryShader = sceneShader(program.geometry);
     if (program.fragment.id) made.fragmentShader = sceneShader(program.fragment);
     const Layout& layout = layouts_[bound.layout.id];
     for (uint32_t i = 0; i < layout.bindings.size(); ++i)
@@ -242,8 +244,9 @@ ScenePipeline Capture::pipelineOf() {
 
 void Capture::bindResources(SceneDraw& draw, const VnProgramDesc& program) {
     std::map<std::pair<uint32_t, uint32_t>, bool> wanted = shaders_.at(program.vertex.id).bindings;
-    if (program.fragment.id)
-        for (const auto& entry : shaders_.at(program.fragment.id).bindings) wanted.insert(entry);
+    for (const VnShader stage : {program.geometry, program.fragment})
+        if (stage.id)
+            for (const auto& entry : shaders_.at(stage.id).bindings) wanted.insert(entry);
     for (const auto& entry : wanted) {
         const State::Bound& resource = bound.bindings[entry.first];
         SceneBinding made;

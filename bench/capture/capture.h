@@ -15,8 +15,8 @@
 
 namespace vernier::bench {
 
-/// One program, one device, one context, one thread. What a scene cannot say (dispatches, clears inside a pass, reading
-/// in the middle of a frame, ...) is remembered as the reason why there is none.
+/// One program, one device, one context, one thread. What a scene cannot say (dispatches, tessellation, clears inside a
+/// pass, reading in the middle of a frame, ...) is remembered as the reason why there is none.
 class Capture {
   public:
     // As the objects are made.
