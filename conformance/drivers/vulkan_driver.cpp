@@ -215,8 +215,8 @@ void SceneRun::recordDraw(const SceneDraw& scene, const VulkanDraw& draw, const 
                                 static_cast<uint32_t>(draw.sets.size()), draw.sets.data(), 0, nullptr);
     }
     if (!scene.pushConstants.empty()) {
-        vkCmdPushConstants(frame_, pipeline.layout, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                           static_cast<uint32_t>(scene.pushConstants.size()), scene.pushConstants.data());
+        vkCmdPushConstants(frame_, pipeline.layout, kDrawStages, 0, static_cast<uint32_t>(scene.pushConstants.size()),
+                           scene.pushConstants.data());
     }
     for (const SceneVertexBuffer& vertices : scene.vertexBuffers) {
         const VkBuffer buffer = resources_.buffer(vertices.buffer);

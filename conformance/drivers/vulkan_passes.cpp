@@ -9,8 +9,6 @@
 namespace vernier::conformance {
 namespace {
 
-constexpr VkShaderStageFlags kBothStages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
-
 VkAttachmentDescription attachmentDescription(const SceneImage& image, VkAttachmentLoadOp loadOp,
                                               VkImageLayout layout) {
     VkAttachmentDescription description{};
@@ -152,7 +150,7 @@ Status VulkanPassBuilder::createLayouts(const SceneDraw& draw, VulkanPipeline& p
     for (uint32_t set = 0; set < setCount; ++set) {
         std::vector<VkDescriptorSetLayoutBinding> bindings;
         for (const SceneBinding& each : draw.bindings) {
-            if (each.set == set) bindings.push_back({each.binding, each.type, 1, kBothStages, nullptr});
+            if (each.set == set) bindings.push_back({each.binding, each.type, 1, kDrawStages, nullptr});
         }
         VkDescriptorSetLayoutCreateInfo info{};
         info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
@@ -163,7 +161,7 @@ Status VulkanPassBuilder::createLayouts(const SceneDraw& draw, VulkanPipeline& p
         resources_.cleanup().add([device, layout] { vkDestroyDescriptorSetLayout(device, layout, nullptr); });
         pipeline.setLayouts.push_back(layout);
     }
-    const VkPushConstantRange range{kBothStages, 0, scene_.pipelines[draw.pipeline].pushConstantBytes};
+    const VkPushConstantRange range{kDrawStages, 0, scene_.pipelines[draw.pipeline].pushConstantBytes};
     VkPipelineLayoutCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
     info.setLayoutCount = static_cast<uint32_t>(pipeline.setLayouts.size());

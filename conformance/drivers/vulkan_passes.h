@@ -8,6 +8,9 @@
 
 namespace vernier::conformance {
 
+/// Stages that see push constants and bindings: whichever the pipeline has.
+constexpr VkShaderStageFlags kDrawStages = VK_SHADER_STAGE_ALL_GRAPHICS;
+
 struct VulkanPipeline {
     std::vector<VkDescriptorSetLayout> setLayouts;
     VkPipelineLayout layout = VK_NULL_HANDLE;
