@@ -304,6 +304,7 @@ bool shadeForStages(const PreparedDraw& draw, uint64_t token, const std::vector<
 
 void finishVertices(const PreparedDraw& draw, const StageVertices& from, ShadedVertices& vertices, Chunk& chunk) {
     makeRoom(*draw.plan, from.count(), vertices, chunk);
+    if (from.count() == 0) return;  // stages may put out nothing
     storeOutputs(*draw.plan, from, 0, from.count(), vertices, chunk);
     storeCullDistances(*draw.plan, from, 0, from.count(), vertices);
     project(draw, from.count(), vertices);

@@ -43,7 +43,7 @@ class FeedbackTest : public DrawTest {
         template <class T>
         std::vector<T> as(size_t buffer, size_t first, size_t count) const {
             std::vector<T> values(count);
-            std::memcpy(values.data(), bytes[buffer].data() + first, count * sizeof(T));
+            if (count != 0) std::memcpy(values.data(), bytes[buffer].data() + first, count * sizeof(T));
             return values;
         }
     };
