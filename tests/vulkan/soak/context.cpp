@@ -26,7 +26,13 @@ void check(Verdict& verdict, VkResult result, const char* command) {
     if (result < 0) verdict.fail(std::string(command) + " gave " + std::to_string(result));
 }
 
+std::mutex& loaderMutex() {
+    static std::mutex mutex;
+    return mutex;
+}
+
 Context::Context(Verdict& owner) : verdict(owner) {
+    const std::lock_guard lock(loaderMutex());
     auto application = make<VkApplicationInfo>(VK_STRUCTURE_TYPE_APPLICATION_INFO);
     application.apiVersion = VK_API_VERSION_1_1;
     const char* const extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_KHR_SURFACE_EXTENSION_NAME,
@@ -72,6 +78,7 @@ Context::Context(Verdict& owner) : verdict(owner) {
 }
 
 Context::~Context() {
+    const std::lock_guard lock(loaderMutex());
     if (device != VK_NULL_HANDLE) vkDestroyDevice(device, nullptr);
     if (instance == VK_NULL_HANDLE) return;
     if (messenger_ != VK_NULL_HANDLE) {

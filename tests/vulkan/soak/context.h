@@ -43,6 +43,11 @@ T make(VkStructureType type) {
     return structure;
 }
 
+/// Held where the Vulkan loader reads or changes its list of instances and their devices: creating and destroying
+/// these, surfaces and swapchains. It frees devices of one thread while another walks over them, even from an instance
+/// that has nothing to do with it (Vulkan-Loader, issue 2018).
+std::mutex& loaderMutex();
+
 struct Context {
     explicit Context(Verdict& owner);
     ~Context();

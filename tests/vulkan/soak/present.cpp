@@ -13,9 +13,12 @@ class Presentation {
   public:
     Presentation(Context& context, uint32_t seed) : context_(context), verdict_(context.verdict), random_(seed) {
         const auto info = make<VkHeadlessSurfaceCreateInfoEXT>(VK_STRUCTURE_TYPE_HEADLESS_SURFACE_CREATE_INFO_EXT);
-        const auto create = reinterpret_cast<PFN_vkCreateHeadlessSurfaceEXT>(
-            vkGetInstanceProcAddr(context.instance, "vkCreateHeadlessSurfaceEXT"));
-        SOAK_CHECK(verdict_, create, context.instance, &info, nullptr, &surface_);
+        {
+            const std::lock_guard lock(loaderMutex());
+            const auto create = reinterpret_cast<PFN_vkCreateHeadlessSurfaceEXT>(
+                vkGetInstanceProcAddr(context.instance, "vkCreateHeadlessSurfaceEXT"));
+            SOAK_CHECK(verdict_, create, context.instance, &info, nullptr, &surface_);
+        }
         auto poolInfo = make<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
         poolInfo.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
         SOAK_CHECK(verdict_, vkCreateCommandPool, context.device, &poolInfo, nullptr, &pool_);
@@ -35,7 +38,10 @@ class Presentation {
             vkQueueWaitIdle(context_.queue);
         }
         vkDestroySwapchainKHR(context_.device, swapchain_, nullptr);
-        vkDestroySurfaceKHR(context_.instance, surface_, nullptr);
+        {
+            const std::lock_guard lock(loaderMutex());
+            vkDestroySurfaceKHR(context_.instance, surface_, nullptr);
+        }
         vkDestroyFence(context_.device, fence_, nullptr);
         vkDestroySemaphore(context_.device, acquired_, nullptr);
         vkDestroySemaphore(context_.device, drawn_, nullptr);
@@ -73,7 +79,10 @@ class Presentation {
         info.presentMode = kModes[below(random_, 3)];
         info.clipped = VK_TRUE;
         info.oldSwapchain = old;
-        SOAK_CHECK(verdict_, vkCreateSwapchainKHR, context_.device, &info, nullptr, &swapchain_);
+        {
+            const std::lock_guard lock(loaderMutex());
+            SOAK_CHECK(verdict_, vkCreateSwapchainKHR, context_.device, &info, nullptr, &swapchain_);
+        }
         {
             const std::lock_guard lock(context_.queueMutex);
             SOAK_CHECK(verdict_, vkQueueWaitIdle, context_.queue);
