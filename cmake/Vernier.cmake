@@ -71,6 +71,12 @@ endif()
 
 find_package(Threads REQUIRED)
 
+# For a folder in which nothing is timed: what is under test is optimised fully all the same, being in libraries of its own,
+# and the folder takes a quarter less time to build.
+macro(vernier_build_quickly)
+    add_compile_options($<$<CONFIG:Release>:-O1>)
+endmacro()
+
 function(vernier_library name)
     cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
     add_library(${name} STATIC ${ARG_SOURCES})
