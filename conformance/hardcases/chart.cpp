@@ -6,7 +6,8 @@ namespace vernier::conformance::hardcases {
 namespace {
 
 // Colours that keep apart for the colour-blind (Okabe and Ito, "Color Universal Design", 2008), by Outcome.
-constexpr std::array<const char*, kOutcomeCount> kColors{"#009E73", "#56B4E9", "#cccccc", "#D55E00", "#000000"};
+constexpr std::array<const char*, kOutcomeCount> kColors{"#009E73", "#0072B2", "#56B4E9",
+                                                         "#cccccc", "#D55E00", "#000000"};
 
 constexpr int kWidth = 860, kNames = 120, kRow = 20, kSquare = 3;
 

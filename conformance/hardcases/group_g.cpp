@@ -265,18 +265,20 @@ void n08(CaseInput& input) {
     atomics(input, "N08_exchange", "atomicExchange", first,
             {{1.0f, -0.0f, oneOf({minus})}, {1.0f, kNan, nan}, {kNan, 2.0f, oneOf({bitsOf(2.0f)})}});
     const auto either = [](float best, float other) { return oneOf({bitsOf(best), bitsOf(other)}); };
+    // They compare equal. Ours: the operand.
+    const auto zero = [](float best, float operand) { return oneOf({bitsOf(best), bitsOf(-best)}, bitsOf(operand)); };
     atomics(input, "N08_min", "atomicMin", second,
             {{2.0f, 1.0f, oneOf({bitsOf(1.0f)})},
              {1.0f, kNan, either(1.0f, kNan)},
              {kNan, 1.0f, either(1.0f, kNan)},
-             {0.0f, -0.0f, either(-0.0f, 0.0f)},
-             {-0.0f, 0.0f, either(-0.0f, 0.0f)},
+             {0.0f, -0.0f, zero(-0.0f, -0.0f)},
+             {-0.0f, 0.0f, zero(-0.0f, 0.0f)},
              {kInf, -kInf, oneOf({bitsOf(-kInf)})}});
     atomics(input, "N08_max", "atomicMax", second,
             {{2.0f, 1.0f, oneOf({bitsOf(2.0f)})},
              {1.0f, kNan, either(1.0f, kNan)},
              {kNan, 1.0f, either(1.0f, kNan)},
-             {0.0f, -0.0f, either(0.0f, -0.0f)},
+             {0.0f, -0.0f, zero(0.0f, -0.0f)},
              {-kInf, kInf, oneOf({bitsOf(kInf)})}});
 }
 

@@ -34,43 +34,82 @@ void main() { color = vec4(dFdx(vColor.x), dFdy(vColor.x), vColor.x, 1.0); }
     return record.finish();
 }
 
-// The ramp 3 x - 2 y over triangles: its derivatives are 3 and -2 at every covered pixel, with helpers at edges.
-void judgeRamp(CaseInput& input, size_t scene) {
-    judgePixels(input, scene, 0, kTarget, [](const PixelReader& pixels, const Declared& declared) -> Verdict {
+double rampAt(double x, double y) {
+    return 3 * x - 2 * y;
+}
+
+ColorVertex ramp(double x, double y) {
+    return {clipAt({x, y}, viewportOf(kTarget)), {static_cast<float>(rampAt(x, y)), 0, 0, 1}};
+}
+
+// The derivatives of the ramp over a triangle whose vertices are snapped with their values: its plane tilts.
+std::array<double, 2> snappedSlope(const WindowTriangle& triangle, const exact::GridTriangle& grid, int bits) {
+    std::array<double, 3> x, y, value;
+    for (size_t i = 0; i < 3; ++i) {
+        x[i] = std::ldexp(static_cast<double>(grid[i].x), -bits);
+        y[i] = std::ldexp(static_cast<double>(grid[i].y), -bits);
+        value[i] = rampAt(triangle[i].x, triangle[i].y);
+    }
+    const double x1 = x[1] - x[0], y1 = y[1] - y[0], v1 = value[1] - value[0];
+    const double x2 = x[2] - x[0], y2 = y[2] - y[0], v2 = value[2] - value[0];
+    const double area = x1 * y2 - x2 * y1;
+    return {(v1 * y2 - v2 * y1) / area, (v2 * x1 - v1 * x2) / area};
+}
+
+// The ramp over triangles: its derivatives are 3 and -2 at every covered pixel, with helpers at edges; by a driver's
+// own bounds those of the snapped triangle at the pixel.
+void judgeRamp(CaseInput& input, size_t scene, const WindowTriangles& triangles) {
+    judgePixels(input, scene, 0, kTarget, [triangles](const PixelReader& pixels, const Declared& declared) -> Verdict {
         Verdict worst;
+        const int bits = declared.subPixelBits;
+        const std::vector<exact::GridTriangle> grid = snapped(triangles, bits);
+        const exact::SampleGrid samples{kTarget, bits, {int64_t{1} << (bits - 1), int64_t{1} << (bits - 1)}};
         // Snapped vertices tilt the plane of a small triangle.
-        const double snapping = 4 * std::ldexp(1.0, -declared.subPixelBits);
+        const double snapping = 4 * std::ldexp(1.0, -bits);
         for (uint32_t y = 0; y < kTarget.height; ++y) {
             for (uint32_t x = 0; x < kTarget.width; ++x) {
                 if (pixels.number(x, y, 3) != 1.0f) continue;
-                const double error =
-                    std::max(std::abs(pixels.number(x, y, 0) - 3.0), std::abs(pixels.number(x, y, 1) + 2.0));
+                const auto errorTo = [&](const std::array<double, 2>& slope) {
+                    return std::max(std::abs(pixels.number(x, y, 0) - slope[0]),
+                                    std::abs(pixels.number(x, y, 1) - slope[1]));
+                };
                 // Two values of up to 320, each a few roundings off.
-                if (error <= 320 * 8 * 0x1p-23) continue;
+                constexpr double kRoundings = 320 * 8 * 0x1p-23;
+                const double error = errorTo({3, -2});
+                if (error <= kRoundings) continue;
                 char text[100];
                 std::snprintf(text, sizeof text, ": the derivatives of 3 x - 2 y are (%.9g, %.9g)",
                               static_cast<double>(pixels.number(x, y, 0)), static_cast<double>(pixels.number(x, y, 1)));
-                worst = worst.worse(Verdict::inexact(error <= 320 * 2e-5 + snapping, pixelText(x, y) + text));
+                const std::string where = pixelText(x, y) + text;
+                const auto covers = [&](const auto& t) { return exact::covers(t, samples.sample(x, y)); };
+                // Snapping may turn a triangle over onto its neighbour: the last one is seen.
+                const auto at = std::find_if(grid.rbegin(), grid.rend(), covers);
+                const auto index = static_cast<size_t>(grid.rend() - at) - 1;
+                const bool own = declared.own && at != grid.rend() &&
+                                 errorTo(snappedSlope(triangles[index], *at, bits)) <= kRoundings;
+                worst = worst.worse(own ? Verdict::declared(where)
+                                        : Verdict::inexact(error <= 320 * 2e-5 + snapping, where));
             }
         }
         return worst;
     });
 }
 
-ColorVertex ramp(double x, double y) {
-    return {clipAt({x, y}, viewportOf(kTarget)), {static_cast<float>(3 * x - 2 * y), 0, 0, 1}};
+// Of the ramp over these triangles.
+void derivativesOf(CaseInput& input, std::string_view name, const WindowTriangles& triangles) {
+    std::vector<ColorVertex> vertices;
+    for (const WindowTriangle& t : triangles) {
+        for (const WindowPoint& p : t) vertices.push_back(ramp(p.x, p.y));
+    }
+    judgeRamp(input, input.scene(derivativeScene(name, vertices)), triangles);
 }
 
 void l01(CaseInput& input) {
-    judgeRamp(input, input.scene(derivativeScene("L01", {ramp(-64, -64), ramp(192, -64), ramp(-64, 192)})));
+    derivativesOf(input, "L01", {{{{-64, -64}, {192, -64}, {-64, 192}}}});
 }
 
 void l02(CaseInput& input) {
-    std::vector<ColorVertex> vertices;
-    for (const WindowTriangle& t : jitteredTiling(11, 5.25, 2.1, 256, 2)) {
-        for (const WindowPoint& p : t) vertices.push_back(ramp(p.x, p.y));
-    }
-    judgeRamp(input, input.scene(derivativeScene("L02", vertices)));
+    derivativesOf(input, "L02", jitteredTiling(11, 5.25, 2.1, 256, 2));
 }
 
 // A plane to the horizon: quads whose upper pixels lie beyond it.

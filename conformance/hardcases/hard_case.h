@@ -5,6 +5,7 @@
 #pragma once
 
 #include "base/result.h"
+#include "conformance/hardcases/declared.h"
 #include "conformance/scene/scene.h"
 
 #include <array>
@@ -18,11 +19,12 @@ namespace vernier::conformance::hardcases {
 
 /// How a driver stands to a case, in rising order of severity.
 /// X(name, what the table says)
-#define VERNIER_OUTCOMES(X)                                                      \
-    X(exact, "exact: the answer of the declared rule, nearest code, everywhere") \
-    X(allowed, "allowed: another answer that the specification permits")         \
-    X(unsupported, "unsupported: the driver lacks what the case needs")          \
-    X(wrong, "wrong: an answer that the specification does not permit")          \
+#define VERNIER_OUTCOMES(X)                                                                                            \
+    X(exact, "exact: the exact answer in the nearest code, everywhere")                                                \
+    X(declared, "declared: not the nearest, but within bounds of the driver's own, narrower than the specification's") \
+    X(allowed, "allowed: another answer that the specification permits")                                               \
+    X(unsupported, "unsupported: the driver lacks what the case needs")                                                \
+    X(wrong, "wrong: an answer that the specification does not permit")                                                \
     X(crashed, "crashed: the driver's process died or hung")
 
 enum class Outcome : uint8_t {
@@ -41,6 +43,7 @@ struct Verdict {
     std::string witness;
 
     static Verdict wrong(std::string witness) { return {Outcome::wrong, std::move(witness)}; }
+    static Verdict declared(std::string witness) { return {Outcome::declared, std::move(witness)}; }
     static Verdict allowed(std::string witness) { return {Outcome::allowed, std::move(witness)}; }
     static Verdict unsupported(std::string witness) { return {Outcome::unsupported, std::move(witness)}; }
 
@@ -52,15 +55,6 @@ struct Verdict {
     /// The more severe of the two; the first one when they are equal.
     Verdict worse(const Verdict& other) const { return other.outcome > outcome ? other : *this; }
 };
-
-/// What a driver declares about itself.
-struct Declared {
-    int subPixelBits = 8;
-    /// By how much elementary functions may be off beyond Vulkan's bounds: the lower positions of Vernier's accuracy
-    /// dial declare 4096 ULP.
-    double functionUlps = 0;
-};
-inline constexpr double kFastFunctionUlps = 4096;
 
 /// The outputs of one scene.
 using Drawn = std::vector<RenderedImage>;

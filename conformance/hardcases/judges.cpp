@@ -58,17 +58,31 @@ Verdict compare(const RenderedImage& image, const OracleImage& oracle) {
     return Verdict::allowed(where + "; " + std::string(pixelClassText(diff.worstClass)));
 }
 
+Verdict compareAll(const Drawn& images, const Result<std::vector<OracleImage>>& oracle) {
+    if (!oracle) return Verdict::wrong("not judged: " + oracle.error().message);
+    Verdict worst;
+    for (size_t i = 0; i < oracle->size(); ++i) {
+        if (i >= images.size()) return Verdict::wrong("an image is missing");
+        worst = worst.worse(compare(images[i], (*oracle)[i]));
+    }
+    return worst;
+}
+
 // The oracle's answer for one scene, computed once per number of sub-pixel bits.
 class OracleAnswers {
   public:
     explicit OracleAnswers(Scene scene) : scene_(std::move(scene)) {}
 
-    const Result<std::vector<OracleImage>>& of(int subPixelBits) {
-        const auto known = answers_.find(subPixelBits);
-        if (known != answers_.end()) return known->second;
-        OracleRules rules;
-        rules.subPixelBits = subPixelBits;
-        return answers_.emplace(subPixelBits, renderOracle(scene_, rules)).first->second;
+    Verdict verdictOn(const Drawn& images, const Declared& declared) {
+        auto known = answers_.find(declared.subPixelBits);
+        if (known == answers_.end()) {
+            known = answers_.emplace(declared.subPixelBits, renderOracle(scene_, declared.rules())).first;
+        }
+        const Verdict verdict = compareAll(images, known->second);
+        if (verdict.outcome != Outcome::allowed || !declared.own) return verdict;
+        const Verdict own = compareAll(images, renderOracle(scene_, declared.ownRules()));
+        if (own.outcome <= Outcome::allowed) return Verdict::declared(own.witness);
+        return Verdict::allowed(verdict.witness + "; by the driver's own bounds: " + own.witness);
     }
 
   private:
@@ -103,15 +117,8 @@ void judgeSame(CaseInput& input, size_t scene, size_t reference, std::string law
 void judgeByOracle(CaseInput& input, size_t scene) {
     if (!input.status()) return;
     auto answers = std::make_shared<OracleAnswers>(input.scenes()[scene]);
-    input.judge({scene}, [answers](std::span<const Drawn* const> images, const Declared& declared) -> Verdict {
-        const auto& oracle = answers->of(declared.subPixelBits);
-        if (!oracle) return Verdict::wrong("not judged: " + oracle.error().message);
-        Verdict worst;
-        for (size_t i = 0; i < oracle->size(); ++i) {
-            if (i >= images[0]->size()) return Verdict::wrong("an image is missing");
-            worst = worst.worse(compare((*images[0])[i], (*oracle)[i]));
-        }
-        return worst;
+    input.judge({scene}, [answers](std::span<const Drawn* const> images, const Declared& declared) {
+        return answers->verdictOn(*images[0], declared);
     });
 }
 

@@ -77,18 +77,22 @@ double ulpOf(double value) {
     return std::ldexp(1.0, std::ilogb(size) - 23);
 }
 
-ValueJudge floatNear(double exactly, double tolerance) {
+ValueJudge floatNear(double exactly, double tolerance, OwnTolerance ownTolerance) {
     return [=](uint32_t bits, const Declared& declared) -> Verdict {
         if (std::isnan(exactly)) return {};
-        const double permitted = tolerance + declared.functionUlps * ulpOf(exactly);
         const double got = std::bit_cast<float>(bits);
-        char text[80];
-        std::snprintf(text, sizeof text, "exactly %.9g, permitted within %.3g", exactly, permitted);
         if (got == static_cast<double>(static_cast<float>(exactly))) return {};
+        char text[80];
+        std::snprintf(text, sizeof text, "exactly %.9g, permitted within %.3g", exactly, tolerance);
+        if (declared.own) {
+            const double ulps = declared.own->functionUlps * ownTolerance.scale * ulpOf(exactly);
+            const double own = std::max(ulps, ownTolerance.angle ? declared.own->angleError : 0);
+            if (std::abs(got - exactly) <= own) return Verdict::declared(text);
+        }
         const bool flushed = got == 0 && std::abs(exactly) < 0x1p-126;
         const bool overflown =
-            std::isinf(got) && std::abs(exactly) + permitted > 0x1.fffffep127 && (got > 0) == (exactly > 0);
-        if (flushed || overflown || std::abs(got - exactly) <= permitted) return Verdict::allowed(text);
+            std::isinf(got) && std::abs(exactly) + tolerance > 0x1.fffffep127 && (got > 0) == (exactly > 0);
+        if (flushed || overflown || std::abs(got - exactly) <= tolerance) return Verdict::allowed(text);
         return Verdict::wrong(text);
     };
 }
@@ -97,10 +101,11 @@ ValueJudge floatWithin(double exactly, double ulps) {
     return floatNear(exactly, ulps * ulpOf(exactly));
 }
 
-ValueJudge oneOf(std::vector<uint32_t> bits) {
-    return [bits = std::move(bits)](uint32_t got, const Declared&) -> Verdict {
+ValueJudge oneOf(std::vector<uint32_t> bits, std::optional<uint32_t> own) {
+    return [bits = std::move(bits), own](uint32_t got, const Declared& declared) -> Verdict {
         if (got == bits.front()) return {};
         const std::string text = "exactly " + hex(bits.front());
+        if (declared.own && got == own) return Verdict::declared(text + "; this is the declared answer");
         return std::ranges::count(bits, got) != 0 ? Verdict::allowed(text + "; this is permitted too")
                                                   : Verdict::wrong(text);
     };

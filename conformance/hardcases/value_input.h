@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,15 +44,23 @@ inline uint32_t bitsOf(float value) {
     return std::bit_cast<uint32_t>(value);
 }
 
-/// Judges of a float result: exact when it is the float nearest to `exactly`, allowed within `tolerance` of it.
-/// Denormals may be flushed to 0. Infinities stand for themselves; where `exactly` is NaN nothing is asked.
-ValueJudge floatNear(double exactly, double tolerance);
+/// How a driver's own bounds of elementary functions apply to a result.
+struct OwnTolerance {
+    double scale = 1;    // of OwnBounds::functionUlps
+    bool angle = false;  // OwnBounds::angleError counts, too
+};
+
+/// Judges of a float result: exact when it is the float nearest to `exactly`, declared within the driver's own bounds
+/// of it, allowed within `tolerance` of it. Denormals may be flushed to 0. Infinities stand for themselves; where
+/// `exactly` is NaN nothing is asked.
+ValueJudge floatNear(double exactly, double tolerance, OwnTolerance own = {});
 
 /// The same with the tolerance in units in the last place of a float of that size.
 ValueJudge floatWithin(double exactly, double ulps);
 
-/// Exact when the bits are the first of these, allowed when they are another one.
-ValueJudge oneOf(std::vector<uint32_t> bits);
+/// Exact when the bits are the first of these, allowed when they are another one; but declared when they are `own`, the
+/// answer of drivers with bounds of their own.
+ValueJudge oneOf(std::vector<uint32_t> bits, std::optional<uint32_t> own = std::nullopt);
 
 /// Nothing is asked but that it runs.
 ValueJudge anything();

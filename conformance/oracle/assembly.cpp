@@ -141,7 +141,7 @@ Result<reference::Outcome<double>> runAlone(const Interpreter& shader, const Val
     resources.startRun();
     auto outcome = shader.run(inputs, resources);
     if (!outcome) return outcome;
-    for (const WordWrite& write : combineWords(resources.wordRuns, 0, 0, resources.flags))
+    for (const WordWrite& write : combineWords(resources.wordRuns, 0, ValueError{}, resources.flags))
         resources.wordWrites.push_back(write);
     resources.flags = 0;
     return outcome;

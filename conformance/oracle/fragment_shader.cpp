@@ -341,14 +341,15 @@ Result<std::array<FragmentResult, 4>> FragmentShader::evaluate(const FragmentSou
     if (Status s = add(runs.rounded, rounded_, inputs); !s) return s.error();
     if (!resources.refusal.empty()) return unsupported("oracle: " + resources.refusal);
 
+    const ValueError error{imprecision_, resources.rules().interpolationError};
     std::array<FragmentResult, 4> results;
     for (size_t lane = 0; lane < 4; ++lane) {
-        results[lane] = combineRuns(runs, lane, outputs_, imprecision_, output.colorCount);
+        results[lane] = combineRuns(runs, lane, outputs_, error, output.colorCount);
         for (OracleFlags& flags : results[lane].colorFlags) flags |= resources.flags;
-        results[lane].writes = combineWrites(resources.runs, static_cast<uint32_t>(lane), resources.sceneMemory(),
-                                             imprecision_, resources.flags);
+        results[lane].writes =
+            combineWrites(resources.runs, static_cast<uint32_t>(lane), resources.sceneMemory(), error, resources.flags);
         results[lane].wordWrites =
-            combineWords(resources.wordRuns, static_cast<uint32_t>(lane), imprecision_, resources.flags);
+            combineWords(resources.wordRuns, static_cast<uint32_t>(lane), error, resources.flags);
     }
     return results;
 }

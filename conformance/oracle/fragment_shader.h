@@ -10,8 +10,8 @@
 //   - every result rounded to float32; its deviation, times 8, stands for the float rounding of another
 //   implementation.
 // Per component, deviations of one kind give a range by their extremes, and the ranges of different kinds add
-// up. A relative term covers interpolation (1e-5 where the result varies with the inputs) and imprecise
-// functions (Vulkan's precision table).
+// up. A relative term covers interpolation (OracleRules::interpolationError where the result varies with the inputs)
+// and imprecise functions (Vulkan's precision table).
 //
 // Limits: a shader that is not monotone between the perturbed runs can reach values outside their range (a
 // texture read that feeds a coordinate, a test on equality); interactions between kinds of perturbation are

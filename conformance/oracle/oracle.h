@@ -51,7 +51,9 @@ enum class TieRule : uint8_t {
 
 /// What an implementation declares and the specification leaves to it.
 struct OracleRules {
-    int subPixelBits = 8;               // subPixelPrecisionBits: vertices may be snapped by up to 2^-bits pixel
+    int subPixelBits = 8;               // subPixelPrecisionBits: vertices are snapped to multiples of 2^-bits pixel
+    double vertexFreedom = 1;           // in those, by how much: to either neighbour; 1/2: to the nearest
+    double interpolationError = 1e-5;   // of what depends on inputs, relative to the larger of it and 1
     int weightBits = 8;                 // subTexelPrecisionBits: of the weights of linear filters
     double levelSlack = 0x1p-6 + 0.03;  // by how much a level of detail may be off, beyond the accepted scale factors
     // A fragment shader runs once for 2x2 pixels, at the point where they meet, where

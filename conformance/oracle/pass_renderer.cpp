@@ -69,15 +69,8 @@ class PassRenderer {
         }
         if (shader && shader->knowsVertices() && pipeline.polygonMode != VK_POLYGON_MODE_FILL)
             return unsupported("oracle: barycentric inputs of polygons drawn as lines or points");
-        const PrepareContext context{draw,
-                                     pipeline,
-                                     {width_, height_},
-                                     rules_.subPixelBits,
-                                     output.depthFormat,
-                                     view_ ? std::nullopt : std::optional(layer_),
-                                     rules_.majorAxisLines,
-                                     rules_.planesBehindEye,
-                                     rules_.ties};
+        const PrepareContext context{draw,   pipeline,           {width_, height_},
+                                     rules_, output.depthFormat, view_ ? std::nullopt : std::optional(layer_)};
         const Result<std::vector<PreparedPrimitive>> primitives = preparePrimitives(context, *geometry);
         if (!primitives) return primitives.error();
         positions_ = locations(pipeline);

@@ -79,9 +79,10 @@ class Preparer {
                               context_.pipeline.depthClip.value_or(!context_.pipeline.depthClamp),
                               {},
                               viewHash_,
-                              context_.subPixelBits,
-                              context_.planesBehindEye,
-                              context_.ties};
+                              context_.rules.subPixelBits,
+                              context_.rules.vertexFreedom,
+                              context_.rules.planesBehindEye,
+                              context_.rules.ties};
         size_t distances = ~size_t{0};
         for (size_t k = 0; k < 3; ++k) {
             setup.position[k] = vertices[k]->position;
@@ -158,7 +159,7 @@ class Preparer {
         setup.mode = pipeline.lineMode;
         setup.stippleFactor = pipeline.stippleFactor;
         setup.stipplePattern = pipeline.stipplePattern;
-        setup.subPixelBits = context_.subPixelBits;
+        setup.subPixelBits = context_.rules.subPixelBits;
         if (startsStrip) {
             stippleStart_ = 0;
             stippleFreedom_ = 0;
@@ -177,7 +178,7 @@ class Preparer {
 
     Status addPoint(const ShadedVertex& vertex, FragmentSource source, double size) {
         if (!(vertex.position[3] > 0)) return {};
-        PointShape point({windowOf(vertex), size, context_.subPixelBits});
+        PointShape point({windowOf(vertex), size, context_.rules.subPixelBits});
         source.vertices = {&vertex, &vertex, &vertex};
         if (context_.pipeline.polygonMode == VK_POLYGON_MODE_FILL) source.number(1, false);
         const PixelBounds bounds = point.bounds(limits_);
@@ -186,8 +187,8 @@ class Preparer {
 
     Status addShape(const FragmentSource& source, const PixelBounds& bounds, std::optional<LineShape> line,
                     std::optional<PointShape> point) {
-        const bool majorAxis =
-            context_.majorAxisLines && line && context_.pipeline.lineMode == VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT;
+        const bool majorAxis = context_.rules.majorAxisLines && line &&
+                               context_.pipeline.lineMode == VK_LINE_RASTERIZATION_MODE_BRESENHAM_EXT;
         auto carrier = Triangle::createCarrier(setupOf(source.vertices), majorAxis);
         if (!carrier || bounds.empty()) return {};
         const uint64_t origin = carrier->identity();

@@ -34,12 +34,9 @@ struct PrepareContext {
     const SceneDraw& draw;
     const ScenePipeline& pipeline;
     VkExtent2D extent;  // of the pass
-    int subPixelBits = 8;
+    const OracleRules& rules;
     const PixelFormat* depthFormat = nullptr;
     std::optional<uint32_t> layer;  // only primitives of this layer
-    // Of OracleRules.
-    bool majorAxisLines = false, planesBehindEye = false;
-    TieRule ties = TieRule::topLeft;
 };
 
 /// In the order of the draw. The geometry must outlive the result.

@@ -47,6 +47,7 @@ class ShaderResources : public reference::Resources<double> {
     std::set<std::pair<uint32_t, uint64_t>> loadedWords;  // of storage buffers, by buffer and offset; sticky
 
     const Memory& sceneMemory() const { return memory_; }
+    const OracleRules& rules() const { return rules_; }
 
     /// Before each run of a shader: its stores are kept apart, and it sees nothing of what others have stored.
     void startRun();

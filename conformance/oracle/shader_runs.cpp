@@ -13,9 +13,6 @@ namespace {
 using reference::InterfaceVariable;
 using Values = reference::InterfaceValues<double>;
 
-// Interpolation in the spec-legal sense: "each operation good to about 1 part in 10^5".
-constexpr double kInterpolationError = 1e-5;
-constexpr double kFloatError = 0x1p-22;
 constexpr double kRoundingFactor = 8;
 
 // The nominal number of an output component and what other runs made of it.
@@ -116,14 +113,13 @@ Color numbersOf(const reference::Texel<double>& texel, const PixelFormat* format
 }
 
 template <class Read>
-std::optional<Interval> rangeOf(const ShaderRuns& runs, size_t lane, const InterfaceVariable& v, double imprecision,
-                                Read read) {
+std::optional<Interval> rangeOf(const ShaderRuns& runs, size_t lane, const InterfaceVariable& v,
+                                const ValueError& error, Read read) {
     const auto spread = spreadOf(runs, lane, read);
     if (!spread) return std::nullopt;
     const Interval bare = spread->range(0);
     if (isIntegerVariable(v)) return bare;
-    const double magnitude = std::isfinite(bare.value) ? std::max(1.0, std::abs(bare.value)) : 1.0;
-    return spread->range((imprecision + (spread->varies() ? kInterpolationError : kFloatError)) * magnitude);
+    return spread->range(error.of(bare.value, spread->varies()));
 }
 
 }  // namespace
@@ -133,7 +129,7 @@ bool isIntegerVariable(const InterfaceVariable& variable) {
 }
 
 std::vector<TexelWrite> combineWrites(std::span<const std::vector<RunWrite>> runs, uint32_t lane, const Memory& memory,
-                                      double imprecision, OracleFlags flags) {
+                                      const ValueError& error, OracleFlags flags) {
     const auto ofLane = [lane](const std::vector<RunWrite>& run) {
         std::vector<RunWrite> result;
         std::ranges::copy_if(run, std::back_inserter(result),
@@ -166,10 +162,7 @@ std::vector<TexelWrite> combineWrites(std::span<const std::vector<RunWrite>> run
         TexelWrite& write = result[i];
         const PixelFormat* format = formatOf(*write.binding, memory);
         if (format == nullptr || format->isInteger()) continue;
-        for (Interval& c : write.color) {
-            const double magnitude = std::isfinite(c.value) ? std::max(1.0, std::abs(c.value)) : 1.0;
-            c = c.widened((imprecision + (varies[i] ? kInterpolationError : kFloatError)) * magnitude);
-        }
+        for (Interval& c : write.color) c = c.widened(error.of(c.value, varies[i]));
     }
     std::vector<TexelWrite> last;
     for (const TexelWrite& write : result) {
@@ -180,7 +173,7 @@ std::vector<TexelWrite> combineWrites(std::span<const std::vector<RunWrite>> run
 }
 
 FragmentResult combineRuns(const ShaderRuns& runs, size_t lane, std::span<const InterfaceVariable> outputs,
-                           double imprecision, size_t colorCount) {
+                           const ValueError& error, size_t colorCount) {
     FragmentResult result;
     result.discarded = runs.nominal[lane].discarded;
     forEachPerturbed(runs, [&](const ShaderRuns::Quad& quad) {
@@ -190,7 +183,7 @@ FragmentResult combineRuns(const ShaderRuns& runs, size_t lane, std::span<const 
     if (result.discarded) {
         ShaderRuns kept = withKeptOutputs(runs, lane);
         kept.nominal[lane].discarded = false;
-        FragmentResult ranges = combineRuns(kept, lane, outputs, imprecision, colorCount);
+        FragmentResult ranges = combineRuns(kept, lane, outputs, error, colorCount);
         ranges.discarded = ranges.discardOpen = true;
         return ranges;
     }
@@ -199,7 +192,7 @@ FragmentResult combineRuns(const ShaderRuns& runs, size_t lane, std::span<const 
     for (const InterfaceVariable& v : outputs) {
         if (v.isBuiltin) {
             if (v.builtin != spv::BuiltInFragDepth) continue;
-            result.depth = rangeOf(runs, lane, v, imprecision, [](const Values& values) -> std::optional<double> {
+            result.depth = rangeOf(runs, lane, v, error, [](const Values& values) -> std::optional<double> {
                 const auto found = values.builtins.find(spv::BuiltInFragDepth);
                 if (found == values.builtins.end() || found->second.empty()) return std::nullopt;
                 return found->second[0].number;
@@ -212,12 +205,11 @@ FragmentResult combineRuns(const ShaderRuns& runs, size_t lane, std::span<const 
             if (v.index == 1 && !result.source1) result.source1.emplace().fill(missing);
             Color& color = v.index == 1 ? *result.source1 : result.colors[target];
             for (size_t c = v.component; c < std::min<size_t>(4, v.component + v.components); ++c) {
-                const auto range =
-                    rangeOf(runs, lane, v, imprecision, [&](const Values& values) -> std::optional<double> {
-                        const auto found = values.locations.find({v.location + k, v.index});
-                        if (found == values.locations.end()) return std::nullopt;
-                        return numberOf(found->second[c], v);
-                    });
+                const auto range = rangeOf(runs, lane, v, error, [&](const Values& values) -> std::optional<double> {
+                    const auto found = values.locations.find({v.location + k, v.index});
+                    if (found == values.locations.end()) return std::nullopt;
+                    return numberOf(found->second[c], v);
+                });
                 if (range) color[c] = *range;
             }
         }

@@ -4,6 +4,7 @@
 
 #include "conformance/oracle/sample_states.h"
 #include "conformance/oracle/shader_resources.h"
+#include "conformance/oracle/value_error.h"
 #include "spirv_interp/reference/interpreter.h"
 
 #include <array>
@@ -27,11 +28,11 @@ bool isIntegerVariable(const reference::InterfaceVariable& variable);
 /// texel the last. The first run is the nominal one, the last run the one that rounds. Where runs store to other
 /// places, the result is unknown.
 std::vector<TexelWrite> combineWrites(std::span<const std::vector<RunWrite>> runs, uint32_t lane, const Memory& memory,
-                                      double imprecision, OracleFlags flags);
+                                      const ValueError& error, OracleFlags flags);
 
 /// One fragment's result: nominal outputs with their ranges. Components that the shader has not written are
-/// NaN. `imprecision` is the relative error of the built-in functions that the module uses.
+/// NaN.
 FragmentResult combineRuns(const ShaderRuns& runs, size_t lane, std::span<const reference::InterfaceVariable> outputs,
-                           double imprecision, size_t colorCount);
+                           const ValueError& error, size_t colorCount);
 
 }  // namespace vernier::conformance::exact

@@ -62,7 +62,8 @@ std::optional<Triangle> Triangle::create(const Setup& setup) {
     if (!t.addCuts(setup)) return std::nullopt;
     const auto& p = setup.position;
     t.subUnit_ = std::ldexp(1.0, -setup.subPixelBits);
-    t.freedom_ = t.subUnit_;
+    const double snapping = t.subUnit_ * setup.vertexFreedom;
+    t.freedom_ = snapping;
     t.snapped_ = inFront;
     t.planesBehindEye_ = setup.planesBehindEye && !inFront;
     t.ties_ = setup.ties;
@@ -70,7 +71,7 @@ std::optional<Triangle> Triangle::create(const Setup& setup) {
         t.window_[i] = {v[i].x / v[i].w, v[i].y / v[i].w};
         const double reach = std::max(std::abs(t.window_[i][0]), std::abs(t.window_[i][1]));
         t.snapped_ = reach < kFarAway;
-        t.freedom_ = std::max(t.freedom_, t.subUnit_ + kPositionRounding * reach);
+        t.freedom_ = std::max(t.freedom_, snapping + kPositionRounding * reach);
     }
     const double determinant = t.shape_.determinant;
     t.side_ = determinant < 0 ? -1 : 1;
@@ -176,10 +177,11 @@ std::optional<Triangle> Triangle::createCarrier(const Setup& setup, bool majorAx
     t.side_ = t.shape_.determinant < 0 ? -1 : 1;
     t.orientation_ = 1;
     t.subUnit_ = std::ldexp(1.0, -setup.subPixelBits);
-    t.freedom_ = t.subUnit_;
+    const double snapping = t.subUnit_ * setup.vertexFreedom;
+    t.freedom_ = snapping;
     for (size_t i = 0; i < 2; ++i) {
         const double reach = std::max(std::abs(v[i].x), std::abs(v[i].y)) / v[i].w;
-        t.freedom_ = std::max(t.freedom_, t.subUnit_ + kPositionRounding * reach);
+        t.freedom_ = std::max(t.freedom_, snapping + kPositionRounding * reach);
     }
     t.findDepths(setup);
     return t;

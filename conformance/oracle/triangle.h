@@ -2,10 +2,10 @@
 // depth.
 //
 // Nominal coverage is the declared one: vertices snapped to nearest even on the sub-pixel grid, exact integers,
-// top-left ties. What is open is decided on the unsnapped vertices, each free to move by one sub-unit (plus
-// float rounding of the viewport transform). Triangles that cross the eye plane or reach very far out are
-// tested in homogeneous coordinates, unsnapped: new vertices of a clipper would themselves be snapped within
-// the same freedom. Near, far, the sides of the viewport and user clip planes are half-space tests at the
+// top-left ties. What is open is decided on the unsnapped vertices, each free to move by one sub-unit,
+// or what the rules say (plus float rounding of the viewport transform). Triangles that cross the eye plane or reach
+// very far out are tested in homogeneous coordinates, unsnapped: new vertices of a clipper would themselves be snapped
+// within the same freedom. Near, far, the sides of the viewport and user clip planes are half-space tests at the
 // sample, open within a sub-unit of the cut.
 #pragma once
 
@@ -62,8 +62,10 @@ class Triangle {
         bool depthClip = true;
         std::vector<std::array<double, 3>> clipDistances;  // per distance: the three vertices' values
         uint64_t context = 0;  // vertices with equal clip coordinates snap alike within a context
+        // Of OracleRules.
         int subPixelBits = 8;
-        bool planesBehindEye = false;  // OracleRules::planesBehindEye
+        double vertexFreedom = 1;
+        bool planesBehindEye = false;
         TieRule ties = TieRule::topLeft;
     };
 

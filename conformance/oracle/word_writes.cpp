@@ -11,10 +11,6 @@
 namespace vernier::conformance::exact {
 namespace {
 
-// As for colours (shader_runs.cpp): interpolation to about 1 part in 10^5, arithmetic to some roundings.
-constexpr double kInterpolationError = 1e-5;
-constexpr double kFloatError = 0x1p-22;
-
 bool sameWord(const RunWord& a, const RunWord& b) {
     return a.buffer == b.buffer && a.offset == b.offset && a.kind == b.kind && a.op == b.op;
 }
@@ -136,7 +132,7 @@ Status combineWord(const Writes& writes, OpenWord& word) {
 
 }  // namespace
 
-std::vector<WordWrite> combineWords(std::span<const std::vector<RunWord>> runs, uint32_t lane, double imprecision,
+std::vector<WordWrite> combineWords(std::span<const std::vector<RunWord>> runs, uint32_t lane, const ValueError& error,
                                     OracleFlags flags) {
     const std::vector<RunWord> nominal = ofLane(runs[0], lane);
     std::vector<WordWrite> result;
@@ -159,9 +155,7 @@ std::vector<WordWrite> combineWords(std::span<const std::vector<RunWord>> runs, 
     for (size_t i = 0; i < result.size(); ++i) {
         WordWrite& write = result[i];
         if (write.kind == WordKind::floating) {
-            const double magnitude = std::isfinite(write.value.value) ? std::max(1.0, std::abs(write.value.value)) : 1;
-            write.value =
-                write.value.widened((imprecision + (varies[i] ? kInterpolationError : kFloatError)) * magnitude);
+            write.value = write.value.widened(error.of(write.value.value, varies[i]));
         }
         if (write.op == spv::OpStore) {
             std::erase_if(last, [&](const WordWrite& w) {

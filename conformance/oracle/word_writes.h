@@ -6,6 +6,7 @@
 #include "base/result.h"
 #include "conformance/oracle/interval.h"
 #include "conformance/oracle/memory.h"
+#include "conformance/oracle/value_error.h"
 #include "conformance/scene/scene.h"
 #include "spirv_interp/reference/resources.h"
 
@@ -39,7 +40,7 @@ struct WordWrite {
 
 /// What one invocation does, in the order of the shader; of several stores to a word the last. The first run is the
 /// nominal one, the last run the one that rounds. Where runs write other words, the result is unknown.
-std::vector<WordWrite> combineWords(std::span<const std::vector<RunWord>> runs, uint32_t lane, double imprecision,
+std::vector<WordWrite> combineWords(std::span<const std::vector<RunWord>> runs, uint32_t lane, const ValueError& error,
                                     OracleFlags flags);
 
 /// Lets the writes of a draw happen. Refuses operations whose order matters, and words of other sizes than 32 bits.

@@ -58,10 +58,10 @@ const Ideal& vernier(std::string_view id) {
 
 using Fault = std::function<void(std::vector<SceneOutcome>&)>;
 
-Verdict verdictOn(const Ideal& made, const Fault& fault) {
+Verdict verdictOn(const Ideal& made, const Fault& fault, const Declared& declared = {}) {
     std::vector<SceneOutcome> drawn = made.drawn;
     fault(drawn);
-    return judgeCase(made.input, drawn, {});
+    return judgeCase(made.input, drawn, declared);
 }
 
 Verdict verdictOn(std::string_view id, const Fault& fault) {
@@ -241,8 +241,30 @@ TEST(Fault, SevenBitWeights) {
             }
         };
     };
-    EXPECT_LE(verdictOn(vernier("T07"), with(8)).outcome, Outcome::allowed);
+    EXPECT_EQ(verdictOn(vernier("T07"), with(8)).outcome, Outcome::allowed);
+    EXPECT_EQ(verdictOn(vernier("T07"), with(8), vernierDeclares(8, "standard")).outcome, Outcome::allowed)
+        << "not what Vernier declares";
     expectCaught("T07", with(7), "exactly");
+}
+
+TEST(OwnBounds, AreNarrowerThanTheSpecification) {
+    const auto add = [](size_t scene, float difference) {
+        return [=](std::vector<SceneOutcome>& drawn) {
+            RenderedImage& results = drawn[scene].images[0];
+            const float sine = std::bit_cast<float>(codeAt(results, 0, 0)) + difference;
+            setCode(results, 0, 0, std::bit_cast<uint32_t>(sine));
+        };
+    };
+    const Declared standard = vernierDeclares(8, "standard"), fast = vernierDeclares(8, "fast");
+    const auto nothing = [](auto&) {};
+    for (const char* id : {"T07", "I05", "X04", "X13", "B12"}) {
+        EXPECT_EQ(verdictOn(vernier(id), nothing).outcome, Outcome::allowed) << id;
+        EXPECT_EQ(verdictOn(vernier(id), nothing, standard).outcome, Outcome::declared) << id;
+    }
+    EXPECT_EQ(verdictOn(vernier("X04"), add(0, 0x1p-13f), standard).outcome, Outcome::allowed);
+    EXPECT_EQ(verdictOn(vernier("X04"), add(0, 0x1p-13f), fast).outcome, Outcome::declared);
+    EXPECT_EQ(verdictOn(vernier("X04"), add(0, 0x1p-8f), fast).outcome, Outcome::wrong);
+    EXPECT_EQ(verdictOn(vernier("X01"), add(0, 1), standard).outcome, Outcome::wrong);
 }
 
 TEST(Fault, BresenhamFragmentsOutOfPlace) {

@@ -26,15 +26,16 @@ TEST(Catalogue, EveryCaseHasItsPlaceAndItsRule) {
 TEST(Table, SaysWhatTheVerdictsSay) {
     Table table;
     table.rows = {findCase("E01"), findCase("E10")};
-    table.columns = {{"api", "api", "Vernier", true, {8, 0}, {Verdict{}, Verdict::allowed("a tie")}},
+    table.columns = {{"api", "api", "Vernier", true, {8}, {Verdict{}, Verdict::allowed("a tie")}},
                      {"swiftshader",
                       "swiftshader",
                       "SwiftShader",
                       false,
-                      {4, 0},
+                      {4},
                       {Verdict::wrong("pixel (1, 2)"), Verdict::wrong("a | hole")}}};
     const std::string markdown = tableMarkdown(table), text = tableText(table);
-    EXPECT_NE(markdown.find("| swiftshader | 4 | 0 | 0 | 0 | 2 | 0 | SwiftShader |"), std::string::npos) << markdown;
+    EXPECT_NE(markdown.find("| swiftshader | 4 | 0 | 0 | 0 | 0 | 2 | 0 | SwiftShader |"), std::string::npos)
+        << markdown;
     EXPECT_NE(markdown.find("a \\| hole"), std::string::npos);
     EXPECT_NE(markdown.find("| confirmed |"), std::string::npos) << "the claim about E10";
     EXPECT_NE(text.find("E01 swiftshader wrong: pixel (1, 2)"), std::string::npos) << text;

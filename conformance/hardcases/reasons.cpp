@@ -1,4 +1,4 @@
-#include "conformance/hardcases/allowed.h"
+#include "conformance/hardcases/reasons.h"
 
 #include <algorithm>
 
@@ -14,7 +14,7 @@ constexpr std::string_view kFormulas[] = {"X12", "X13"};
 constexpr std::string_view kPackedFloats[] = {"B12"};
 constexpr std::string_view kSignsOfZero[] = {"N08"};
 
-constexpr AllowedReason kReasons[] = {
+constexpr DeclaredReason kReasons[] = {
     {"interpolated values, by a few units in the last place of the largest vertex value",
      "Vertices are snapped, as they must be, and values are interpolated in float from the snapped ones: what is "
      "declared is a bound (raster_interpolation_test), and the nearest float of the unsnapped plane would be another "
@@ -54,13 +54,13 @@ constexpr AllowedReason kReasons[] = {
 
 }  // namespace
 
-std::span<const AllowedReason> allowedReasons() {
+std::span<const DeclaredReason> declaredReasons() {
     return kReasons;
 }
 
-const AllowedReason* whyAllowed(std::string_view id) {
+const DeclaredReason* whyDeclared(std::string_view id) {
     const auto found = std::ranges::find_if(
-        kReasons, [&](const AllowedReason& reason) { return std::ranges::count(reason.cases, id) != 0; });
+        kReasons, [&](const DeclaredReason& reason) { return std::ranges::count(reason.cases, id) != 0; });
     return found == std::end(kReasons) ? nullptr : &*found;
 }
 
