@@ -21,6 +21,7 @@
 #ifndef VERNIER_AXIS_COST_DATA
 #define VERNIER_AXIS_COST_DATA
 namespace vernier::bench {
+namespace {
 
 constexpr size_t kPixels = 2048;
 
@@ -43,6 +44,7 @@ struct AxisKernel {
     const char* of;  // what the unit is called
 };
 
+}  // namespace
 }  // namespace vernier::bench
 #endif
 

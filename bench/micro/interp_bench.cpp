@@ -14,11 +14,13 @@
 #ifndef VERNIER_INTERP_BENCH_LIT
 #define VERNIER_INTERP_BENCH_LIT
 namespace vernier::bench {
+namespace {
 /// Uniforms: light, half vector (3 each), ambient, diffuse, specular.
 struct LitUniforms {
     float values[9] = {0.3f, 0.5f, 0.8f, 0.1f, 0.6f, 0.7f, 0.2f, 0.9f, 0.4f};
 };
 constexpr int kLitOperations = 35;
+}  // namespace
 }  // namespace vernier::bench
 #endif
 

@@ -21,20 +21,20 @@ struct Words {
 
 Words wordsOf(const ViewSettings& settings, const Dial& dial, const ViewReport& report) {
     switch (settings.kind()) {
-        case View::kError:
+        case ViewKind::kError:
             return {format("%s against reference: worst %.4g, mean %.3g, %.2f %% of the pixels differ",
                            dial.text().c_str(), report.worst, report.mean, report.differing * 100),
                     "/255"};
-        case View::kDepth:
+        case ViewKind::kDepth:
             return {"distance from the eye", " radii of the model"};
-        case View::kOverdraw:
+        case ViewKind::kOverdraw:
             return {format("surfaces over a pixel: at most %.4g, %.2f where there are any", report.most, report.usual),
                     " surfaces"};
-        case View::kRate:
+        case ViewKind::kRate:
             return {format("runs of fragment programs per pixel: at most %.4g, %.2f where there are any", report.most,
                            report.usual),
                     " runs"};
-        case View::kTiles:
+        case ViewKind::kTiles:
             return {format("cost of the fragment programs by tile: at most %.0f, %.0f where there are any", report.most,
                            report.usual),
                     " thousand additions"};
@@ -45,8 +45,8 @@ Words wordsOf(const ViewSettings& settings, const Dial& dial, const ViewReport& 
 
 }  // namespace
 
-glm::vec4 legendBar(View view, VkExtent2D size, float unit) {
-    const bool wanted = view != View::kShaded && view != View::kSplit && view != View::kWireframe;
+glm::vec4 legendBar(ViewKind view, VkExtent2D size, float unit) {
+    const bool wanted = view != ViewKind::kShaded && view != ViewKind::kSplit && view != ViewKind::kWireframe;
     if (!wanted) return glm::vec4(0);
     const float bottom = static_cast<float>(size.height) - unit * 1.7f;
     return {unit, bottom - unit, unit + glm::min(unit * 20, static_cast<float>(size.width) - unit * 2), bottom};
@@ -55,8 +55,8 @@ glm::vec4 legendBar(View view, VkExtent2D size, float unit) {
 std::vector<LegendText> legendTexts(const ViewSettings& settings, const Dial& dial, const ViewReport& report,
                                     VkExtent2D size, float unit) {
     std::vector<LegendText> texts;
-    const View view = settings.kind();
-    if (view == View::kSplit) {
+    const ViewKind view = settings.kind();
+    if (view == ViewKind::kSplit) {
         const float divide = static_cast<float>(settings.divide) * static_cast<float>(size.width);
         texts.push_back({{divide - unit * 0.6f, unit * 0.6f}, dial.text(), true});
         texts.push_back({{divide + unit * 0.6f, unit * 0.6f}, "reference"});
@@ -65,7 +65,7 @@ std::vector<LegendText> legendTexts(const ViewSettings& settings, const Dial& di
     const glm::vec4 bar = legendBar(view, size, unit);
     if (bar.z == 0) return texts;
     const Words words = wordsOf(settings, dial, report);
-    const bool isSigned = view == View::kError && settings.sign != 0;
+    const bool isSigned = view == ViewKind::kError && settings.sign != 0;
     texts.push_back({{bar.x, bar.y - unit * 1.3f}, words.title});
     const float below = bar.w + unit * 0.2f;
     texts.push_back({{bar.x, below}, isSigned ? format("-%g", report.scale) : "0"});

@@ -13,7 +13,7 @@ struct LegendText {
 
 /// Where the bar of colours lies, in pixels: left, top, right, bottom; all 0 for views that need none. `unit` is the
 /// height of a line of text.
-glm::vec4 legendBar(View view, VkExtent2D size, float unit);
+glm::vec4 legendBar(ViewKind view, VkExtent2D size, float unit);
 /// The lines of a view that was drawn; none for the plain picture.
 std::vector<LegendText> legendTexts(const ViewSettings& settings, const Dial& dial, const ViewReport& report,
                                     VkExtent2D size, float unit);

@@ -132,7 +132,7 @@ class Viewer {
         const bool over = std::abs(double{input.mouse.x - input.mouseMove.x} - line) < double{ui_->unit()};
         const bool begins = input.dragging && !dragged_;
         dragged_ = input.dragging;
-        if (begins) holdsDivide_ = settings_.view.kind() == samples::View::kSplit && over;
+        if (begins) holdsDivide_ = settings_.view.kind() == samples::ViewKind::kSplit && over;
         holdsDivide_ = holdsDivide_ && input.dragging;
         if (holdsDivide_) settings_.view.divide = glm::clamp(double{input.mouse.x} / width, 0.0, 1.0);
         return holdsDivide_;

@@ -40,7 +40,7 @@ void dialSection(Dial& dial) {
 void viewSection(ViewSettings& view, CameraSettings& camera, const ViewReport& report) {
     for (const Option& option : viewOptions(view))
         if (!option.choices.empty()) combo(option.name.c_str() + 2, *std::get<int*>(option.target), option.choices);
-    if (view.kind() == View::kSplit) {
+    if (view.kind() == ViewKind::kSplit) {
         auto divide = static_cast<float>(view.divide);
         if (ImGui::SliderFloat("divide", &divide, 0, 1)) view.divide = double{divide};
     }

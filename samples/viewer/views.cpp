@@ -10,17 +10,17 @@ constexpr glm::vec4 kBackground(0.012f, 0.016f, 0.024f, 1);
 constexpr uint32_t kTile = 64;  // pixels on a side, as the renderer has them
 
 /// The right end of the legend where nothing else is asked for.
-double ownScale(View view) {
+double ownScale(ViewKind view) {
     switch (view) {
-        case View::kError:
+        case ViewKind::kError:
             return 16;  // of 255
-        case View::kDepth:
+        case ViewKind::kDepth:
             return 5;  // radii of the model
-        case View::kOverdraw:
+        case ViewKind::kOverdraw:
             return 10;  // surfaces
-        case View::kRate:
+        case ViewKind::kRate:
             return 5;  // runs
-        case View::kTiles:
+        case ViewKind::kTiles:
             return 2000;  // thousand additions
         default:
             return 0;
@@ -134,10 +134,10 @@ void Views::judgeCounts(const Target& target, double unit, std::vector<float>& v
 
 void Views::draw(ModelRenderer& model, const ModelLook& look, const Planes& planes, const Dial& dial,
                  const ViewSettings& settings, const glm::vec4& bar) {
-    const View view = settings.kind();
+    const ViewKind view = settings.kind();
     const DialPosition here = dial.position(), exact{VN_PROFILE_REFERENCE, ""};
     ViewSettings plain = settings;  // no edges where they would be judged
-    plain.edges = settings.edges && view == View::kSplit;
+    plain.edges = settings.edges && view == ViewKind::kSplit;
     report_ = {};
     report_.scale = settings.scale > 0 ? settings.scale : ownScale(view);
     push_ = {bar,
@@ -149,41 +149,41 @@ void Views::draw(ModelRenderer& model, const ModelLook& look, const Planes& plan
     std::vector<float> values;
     must(vnResetStatistics(app_.context()));
     switch (view) {
-        case View::kShaded:
+        case ViewKind::kShaded:
             drawPicture(model, look, here, settings, app_.color());
             must(vnGetStatistics(app_.context(), &report_.statistics));
             break;
-        case View::kSplit:
-        case View::kError:
+        case ViewKind::kSplit:
+        case ViewKind::kError:
             drawPicture(model, look, here, plain, seen_);
             must(vnGetStatistics(app_.context(), &report_.statistics));
             plain.explain = false;
             drawPicture(model, look, exact, plain, reference_);
-            show(view == View::kSplit ? split_ : error_, &seen_, &reference_);
-            if (view == View::kError) judgeErrors();
+            show(view == ViewKind::kSplit ? split_ : error_, &seen_, &reference_);
+            if (view == ViewKind::kError) judgeErrors();
             break;
-        case View::kWireframe:
+        case ViewKind::kWireframe:
             app_.beginPass({app_.color()}, app_.depth(), kBackground);
             model.drawPlain(look, here, {0.02f, 0.025f, 0.035f});
             model.drawEdges(look, here, {0.55f, 0.85f, 1});
             app_.endPass();
             must(vnGetStatistics(app_.context(), &report_.statistics));
             break;
-        case View::kDepth:
+        case ViewKind::kDepth:
             drawPicture(model, look, here, plain, seen_);
             must(vnGetStatistics(app_.context(), &report_.statistics));
             show(depth_, &app_.depth(), nullptr);
             break;
-        case View::kOverdraw:
-        case View::kRate:
+        case ViewKind::kOverdraw:
+        case ViewKind::kRate:
             drawPicture(model, look, here, plain, seen_);
             must(vnGetStatistics(app_.context(), &report_.statistics));
             drawCounts(model, look, here,
-                       view == View::kRate ? ModelRenderer::Count::kRuns : ModelRenderer::Count::kSurfaces);
+                       view == ViewKind::kRate ? ModelRenderer::Count::kRuns : ModelRenderer::Count::kSurfaces);
             show(count_, &counts_, nullptr);
             judgeCounts(counts_, 1, values);
             break;
-        case View::kTiles:
+        case ViewKind::kTiles:
             drawPicture(model, look, here, plain, seen_);
             must(vnGetStatistics(app_.context(), &report_.statistics));
             drawCounts(model, look, here, ModelRenderer::Count::kCost);

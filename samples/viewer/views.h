@@ -5,17 +5,17 @@
 
 namespace samples {
 
-enum class View { kShaded, kSplit, kError, kWireframe, kDepth, kOverdraw, kRate, kTiles };
+enum class ViewKind { kShaded, kSplit, kError, kWireframe, kDepth, kOverdraw, kRate, kTiles };
 
 struct ViewSettings {
-    int view = 0;         // a View
+    int view = 0;         // a ViewKind
     int sign = 0;         // errors: 0 their size, 1 with their sign
     double scale = 0;     // what the right end of the legend stands for; 0: the view's own
     double divide = 0.5;  // where the split screen is parted, 0..1
     bool edges = false;   // triangles' edges over the picture
     bool explain = false;
 
-    View kind() const { return static_cast<View>(view); }
+    ViewKind kind() const { return static_cast<ViewKind>(view); }
 };
 
 /// --view, --error, --scale, --divide, --edges, --explain and their keys.

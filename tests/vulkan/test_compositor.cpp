@@ -12,6 +12,7 @@
 #include <utility>
 
 namespace vernier::test {
+namespace {
 
 /// A buffer as long as its client keeps it. Stays where it is.
 struct BufferReference {
@@ -36,6 +37,8 @@ struct BufferReference {
     wl_listener destroyed{};  // first: it stands for the whole
     wl_resource* buffer = nullptr;
 };
+
+}  // namespace
 
 /// State is double-buffered: what is attached and asked for counts from the next commit on (wayland.xml, wl_surface).
 struct TestCompositor::Surface {
