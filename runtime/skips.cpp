@@ -11,8 +11,8 @@ namespace {
 
 constexpr SkipRule kRules[] = {
     {"unread_outputs", "vertex outputs that no fragment program reads, colours that no attachment keeps"},
-    {"per_vertex_work", "work on flat inputs is done per vertex, not per pixel"},
-    {"shared_samples", "what all samples of a pixel share is computed once"},
+    {"per_vertex_work", "doing per pixel what flat inputs alone decide"},
+    {"shared_samples", "doing per sample what all samples of a pixel share"},
     {"idle_state", "tests, blending and logic operations that change nothing"},
     {"unkept_fragments", "fragment programs whose results nobody keeps"},
     {"helper_invocations", "helper invocations of programs that take no derivatives"},

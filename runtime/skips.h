@@ -23,7 +23,7 @@ enum class Skip : uint8_t {
 
 struct SkipRule {
     const char* name;     // "hidden_work"
-    const char* meaning;  // a sentence
+    const char* meaning;  // what it leaves out
 };
 /// In the order of Skip.
 std::span<const SkipRule> skipRules();

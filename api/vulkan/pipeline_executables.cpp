@@ -34,7 +34,8 @@ Executable executableOf(const StageProgram& stage) {
             return {"geometry", "The geometry program, once per primitive and invocation", VK_SHADER_STAGE_GEOMETRY_BIT,
                     program};
         default:
-            return {"vertex", "The vertex program, once per vertex and chunk", VK_SHADER_STAGE_VERTEX_BIT, program};
+            return {"vertex", "The vertex program, once per vertex in each chunk of primitives",
+                    VK_SHADER_STAGE_VERTEX_BIT, program};
     }
 }
 

@@ -22,8 +22,6 @@ class FactWriter {
     Plan& plan_;
 };
 
-constexpr const char* kSwitchedOff = "leaving them out is switched off";
-
 std::string count(size_t n, const std::string& thing) {
     return std::to_string(n) + " " + thing + (n == 1 ? "" : "s");
 }
@@ -48,7 +46,7 @@ std::string lastProgram(const ShaderProgram& program) {
 
 void geometryFacts(const GraphicsState& state, const ShaderProgram& program, const Plan& plan, FactWriter& facts) {
     const Accuracy& accuracy = program.accuracy();
-    facts.runs("vertex program, once per vertex and chunk",
+    facts.runs("vertex program, once per vertex in each chunk of primitives",
                count(plan.attributes.size(), "attribute") + " fetched; " + tierName(accuracy.math) + " maths");
     if (program.stage(ir::Stage::control) != nullptr) {
         facts.runs("control program, " + std::to_string(plan.tessellation.outputVertices) + " times per patch",
@@ -71,14 +69,20 @@ void geometryFacts(const GraphicsState& state, const ShaderProgram& program, con
     facts.runs(
         "coverage, exact on a grid of 1/" + std::to_string(1u << accuracy.subPixelBits) + " pixel",
         std::to_string(accuracy.subPixelBits) + " sub-pixel bits; " + count(plan.samples, "sample") + " per pixel");
-    if (plan.clipDistanceSlots.empty()) facts.leftOut("user clip planes", "no clip distance is written");
+    if (plan.clipDistanceSlots.empty())
+        facts.leftOut("user clip planes", "no clip distance is written");
+    else
+        facts.runs("clipping to user planes", count(plan.clipDistanceSlots.size(), "clip distance") + " written");
     if (plan.layerSlot != kNoSlot)
         facts.runs("a layer for each primitive", "the " + lastProgram(program) + " program chooses it");
     if (plan.viewportIndexSlot != kNoSlot)
         facts.runs("a viewport for each primitive", "the " + lastProgram(program) + " program chooses it");
     if (plan.smoothLines) facts.runs("the area that a line covers of each pixel, into alpha", "lines are smooth");
     if (!state.depthClipEnable) facts.leftOut("clipping to near and far", "depth clipping is off");
-    if (state.cullMode == VK_CULL_MODE_NONE) facts.leftOut("culling", "cull mode is none");
+    if (state.cullMode == VK_CULL_MODE_NONE)
+        facts.leftOut("culling", "cull mode is none");
+    else
+        facts.runs("culling", "the cull mode asks for it");
     if (!state.depthBiasEnable) facts.leftOut("depth bias", "it is off");
 }
 
@@ -96,13 +100,13 @@ void depthFacts(const GraphicsState& state, const Plan& plan, FactWriter& facts)
          {std::pair{depth.test, "depth"}, {depth.bounds, "depth bounds"}, {depth.stencil, "stencil"}})
         if (on) tests += (tests.empty() ? "" : ", ") + std::string(name);
     const bool runs = plan.runsFragments;
-    facts.runs(tests + " test, once per sample, " +
-                   (!runs         ? "alone"
-                    : depth.early ? "before"
-                                  : "after") +
-                   (runs ? " the fragment program" : ""),
-               depth.early ? "nothing the program does can change the outcome"
-                           : "the program may drop fragments, change their depth, or have side effects");
+    facts.runs(tests + " test, once per sample" +
+                   (!runs         ? ""
+                    : depth.early ? ", before the fragment program"
+                                  : ", after the fragment program"),
+               !runs         ? "no fragment program runs"
+               : depth.early ? "nothing the program does can change the outcome"
+                             : "the program may drop fragments, change their depth, or have side effects");
     if (depth.test && !depth.write) facts.leftOut("depth writes", "they are off");
 }
 
@@ -114,8 +118,17 @@ void fragmentRateFacts(const Plan& plan, const Accuracy& accuracy, FactWriter& f
                                                                               : "pixel"),
                plan.coarse      ? "the accuracy asks for it"
                : plan.perSample ? "it asks for samples"
-               : askedCoarse    ? "it knows single pixels or decides about them, or there are several samples"
+               : askedCoarse    ? "2x2 is asked for, but it depends on single pixels, or they have several samples"
                                 : "nothing in it varies between samples");
+}
+
+/// Why a fragment program runs for whole quads of 2x2 pixels.
+const char* quadsReason(const ir::Program& fragment, const Plan& plan) {
+    if (!fragment.usesQuads) return "rule helper_invocations is off";
+    if (plan.quadsForLevels)
+        return "an image's level of detail comes from neighbouring pixels; draws whose images and samplers leave no "
+               "choice of levels run none";
+    return fragment.usesSubgroups ? "the program looks at neighbouring pixels" : "the program takes derivatives";
 }
 
 void fragmentFacts(const ir::Program* fragment, const Plan& plan, const Accuracy& accuracy, FactWriter& facts) {
@@ -131,12 +144,9 @@ void fragmentFacts(const ir::Program* fragment, const Plan& plan, const Accuracy
         facts.runs("a part of it once per pixel, " + count(plan.carried.size(), "value") + " handed on",
                    "it is the same for all samples");
     if (plan.usesQuads) {
-        facts.runs("helper invocations, to whole 2x2 quads",
-                   plan.quadsForLevels                       ? "for levels of detail; not for images of one level"
-                   : plan.skips.has(Skip::helperInvocations) ? "the program takes derivatives"
-                                                             : kSwitchedOff);
+        facts.runs("helper invocations, where 2x2 pixels are covered in part", quadsReason(*fragment, plan));
     } else {
-        facts.leftOut("helper invocations", "the program takes no derivatives");
+        facts.leftOut("helper invocations", "nothing in the program depends on neighbouring pixels");
     }
     const std::string arithmetic = plan.preciseInterpolation ? "double" : "float";
     if (plan.smoothCount > 0)
@@ -159,13 +169,19 @@ void rateFacts(const std::string& stage, const std::string& item, const BatchPro
             "their values are the same for every " + item);
 }
 
+const char* unwrittenReason(const GraphicsState& state, uint32_t attachment) {
+    if (state.colorFormats[attachment] == VK_FORMAT_UNDEFINED) return "there is no attachment";
+    if (state.blend[attachment].colorWriteMask == 0) return "its write mask is empty";
+    return state.logicOpEnable ? "the program does not write it, or the logic operation keeps it"
+                               : "the program does not write it";
+}
+
 void colorFacts(const GraphicsState& state, const Plan& plan, FactWriter& facts) {
     uint32_t next = 0;
     for (uint32_t n = 0; n < state.colorCount; ++n) {
         const std::string name = "colour " + std::to_string(n);
         if (next == plan.colors.size() || plan.colors[next].attachment != n) {
-            facts.leftOut("writes to " + name,
-                          "its write mask is empty, it has no format, or the program does not write it");
+            facts.leftOut("writes to " + name, unwrittenReason(state, n));
             continue;
         }
         const ColorPlan& color = plan.colors[next++];
@@ -204,15 +220,15 @@ void collectFacts(const GraphicsState& state, const ShaderProgram& program, Plan
         rateFacts(std::string(ir::nameOf(stage.stage)) + " program",
                   stage.stage == ir::Stage::vertex ? "vertex" : "invocation", *stage.program, facts);
     if (program.lifted().flat > 0)
-        facts.runs(count(program.lifted().flat, "operation") + " of the fragment shader, once per vertex",
+        facts.runs(count(program.lifted().flat, "operation") + " of the fragment program, once per vertex",
                    "they depend on flat inputs alone");
     if (program.lifted().linear > 0)
-        facts.runs(count(program.lifted().linear, "operation") + " of the fragment shader, once per vertex",
+        facts.runs(count(program.lifted().linear, "operation") + " of the fragment program, once per vertex",
                    "they are linear across a primitive; fast maths allows what interpolation then rounds otherwise");
     if (!program.capture().empty())
         facts.runs("transform feedback of " + count(program.capture().outputs.size(), "word") +
                        " per vertex, in draws between its begin and its end",
-                   "the " + lastProgram(program) + " shader declares it");
+                   "the " + lastProgram(program) + " program declares it");
     if (program.removedVaryings() > 0)
         facts.leftOut(count(program.removedVaryings(), "vertex output"), "nobody reads them");
     if (state.rasterizerDiscard) return;

@@ -24,10 +24,10 @@ std::optional<Fact> rateFact(const std::string& stage, const BatchProgram& progr
                 std::to_string(share.cost) + ")";
     fact.instructions = program.statistics().instructions;
     fact.lanes = program.statistics().lanes;
-    fact.what = "operations of the " + stage + " by rate: " + text;
-    fact.why =
-        "how often their values can change, and what they cost, in additions; " + std::to_string(fact.instructions) +
-        (fact.instructions == 1 ? " instruction per " : " instructions per ") + std::to_string(fact.lanes) + " lanes";
+    fact.what = "operations of the " + stage + " by rate, " + text;
+    fact.why = "a rate is how often values can change, costs are in additions; " + std::to_string(fact.instructions) +
+               (fact.instructions == 1 ? " instruction per " : " instructions per ") + std::to_string(fact.lanes) +
+               " lanes";
     return fact;
 }
 

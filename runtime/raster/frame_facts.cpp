@@ -24,14 +24,21 @@ Fact factOf(const Counter& counter) {
 std::vector<Fact> frameFacts(const FrameCommands& commands, const PassStatistics& s) {
     std::vector<Fact> facts;
     const auto add = [&](const Counter& counter) { facts.push_back(factOf(counter)); };
-    add({commands.draws, "draws", "times", "they were recorded", "there were none"});
-    add({commands.dispatches, "dispatches", "times", "they were recorded", "there were none"});
+    add({commands.draws, "draws", "times", "they were recorded", "none was recorded"});
+    add({commands.dispatches, "dispatches", "times", "they were recorded", "none was recorded"});
     add({s.computeInvocations, "compute programs", "invocations", "of the dispatches", "nothing was dispatched"});
     if (commands.draws == 0) return facts;
-    add({s.vertexInvocations, "vertex programs", "vertices", "once per vertex and chunk", "no vertex was drawn"});
+    add({s.vertexInvocations, "vertex programs", "vertices", "once per vertex in each chunk of primitives",
+         "no vertex was drawn"});
+    // Of stages that few draws have, nothing is said where they are not there.
+    if (s.controlPatches != 0) add({s.controlPatches, "control programs", "patches", "draws have tessellation", ""});
+    if (s.evaluationInvocations != 0)
+        add({s.evaluationInvocations, "evaluation programs", "points", "once per point that the tessellator makes",
+             ""});
     if (s.geometryInvocations != 0)
         add({s.geometryInvocations, "geometry programs", "invocations", "once per primitive and invocation", ""});
-    add({s.clippedPrimitives, "cutting primitives", "of them", "they cross a clip plane", "none crosses a clip plane"});
+    add({s.clippedPrimitives, "clipping primitives", "of them", "they cross a clip plane",
+         "none crosses a clip plane"});
     add({s.rasterPrimitives, "rasterising", "primitives", "they are neither culled nor outside",
          "all are culled or outside"});
     add({s.clearedPixels, "clearing attachments", "pixels", "load operations ask for it",
@@ -42,15 +49,16 @@ std::vector<Fact> frameFacts(const FrameCommands& commands, const PassStatistics
          "no test is on, or bounds of whole blocks decide it"});
     add({s.fragmentInvocations, "fragment programs", "pixels or samples", "what they write is kept",
          "nothing they write is kept, or nothing is covered"});
-    add({s.batches, "batches of fragments", "runs", "many pixels at a time, of any primitive and draw of one state",
+    add({s.batches, "batches of fragments", "of them", "each has pixels of any primitives and draws of one state",
          "no fragment program runs"});
-    add({s.helperInvocations, "helper invocations", "lanes", "programs take derivatives",
-         "no program takes derivatives"});
-    add({s.perspectiveDivides, "dividing by w", "pixels", "vertices of a primitive differ in w",
+    add({s.helperInvocations, "helper invocations", "lanes", "neighbours matter where 2x2 pixels are covered in part",
+         "no program looks at neighbours, or 2x2 pixels are always covered together"});
+    add({s.perspectiveDivides, "perspective division", "pixels", "vertices of a primitive differ in w",
          "no input needs it, or the vertices have equal w"});
     add({s.destinationReads, "reading colours back", "pixels", "blending, logic operations or partial write masks",
          "all colours are replaced"});
-    add({s.samplesPassed, "samples that passed all tests", "samples", "they were covered", "none did"});
+    add({s.samplesPassed, "samples that passed all tests", "of them", "they are covered, and no test fails",
+         "none is covered, or a test fails for each"});
     return facts;
 }
 
