@@ -174,14 +174,7 @@ void TextureLab::bind(Texture& texture, const VkImageCreateInfo& info) {
 
 TextureLab::Texture TextureLab::makeTarget(VkFormat format, VkExtent2D extent) {
     Texture texture;
-    auto info = make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
-    info.imageType = VK_IMAGE_TYPE_2D;
-    info.format = format;
-    info.extent = {extent.width, extent.height, 1};
-    info.mipLevels = info.arrayLayers = 1;
-    info.samples = VK_SAMPLE_COUNT_1_BIT;
-    info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-    bind(texture, info);
+    bind(texture, flatImage(format, extent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT));
     auto view = make<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
     view.image = texture.image;
     view.viewType = VK_IMAGE_VIEW_TYPE_2D;

@@ -24,6 +24,32 @@ class FeedbackLab : public FeedbackTest {
     const char* manifest_;
 };
 
+/// Captures on both drivers, and what was seen of them.
+class TwoLabs {
+  public:
+    void expectSame(const FeedbackLab::Feedback& feedback, uint32_t seed) {
+        const FeedbackLab::Captured ours = vernier_.capture(feedback), theirs = lavapipe_.capture(feedback);
+        const std::string what = "seed " + std::to_string(seed) + ", topology " + std::to_string(feedback.topology) +
+                                 (feedback.lastProvokes ? ", last" : ", first") + ", stream " +
+                                 std::to_string(feedback.stream) + (feedback.indices.empty() ? "" : ", indexed") +
+                                 (feedback.restart ? ", restart" : "") + "\n" + feedback.geometry;
+        EXPECT_EQ(ours.primitives, theirs.primitives) << what;
+        EXPECT_EQ(ours.generated, theirs.generated) << what;
+        EXPECT_EQ(ours.counters, theirs.counters) << what;
+        EXPECT_TRUE(ours.bytes == theirs.bytes) << what;
+        written_ += ours.primitives[0];
+        dropped_ += ours.primitives[1] - ours.primitives[0];
+    }
+    void expectMuch() const {
+        EXPECT_GT(written_, 1000u);
+        EXPECT_GT(dropped_, 1000u);
+    }
+
+  private:
+    FeedbackLab vernier_{VERNIER_ICD_JSON}, lavapipe_{VERNIER_LAVAPIPE_JSON};
+    uint64_t written_ = 0, dropped_ = 0;
+};
+
 constexpr VkPrimitiveTopology kTopologies[] = {
     VK_PRIMITIVE_TOPOLOGY_POINT_LIST,    VK_PRIMITIVE_TOPOLOGY_LINE_LIST,      VK_PRIMITIVE_TOPOLOGY_LINE_STRIP,
     VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST, VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP, VK_PRIMITIVE_TOPOLOGY_TRIANGLE_FAN,
@@ -87,25 +113,10 @@ FeedbackLab::Feedback randomFeedback(uint32_t seed) {
 
 TEST(TransformFeedbackPeers, randomDraws) {
     if (!std::filesystem::exists(VERNIER_LAVAPIPE_JSON)) GTEST_SKIP() << "no lavapipe here";
-    FeedbackLab vernier(VERNIER_ICD_JSON), lavapipe(VERNIER_LAVAPIPE_JSON);
+    TwoLabs labs;
     if (testing::Test::HasFatalFailure()) return;
-    uint64_t written = 0, dropped = 0;
-    for (uint32_t seed = 0; seed < 300; ++seed) {
-        const FeedbackLab::Feedback feedback = randomFeedback(seed);
-        const FeedbackLab::Captured ours = vernier.capture(feedback), theirs = lavapipe.capture(feedback);
-        const std::string what = "seed " + std::to_string(seed) + ", topology " + std::to_string(feedback.topology) +
-                                 (feedback.lastProvokes ? ", last" : ", first") +
-                                 (feedback.indices.empty() ? "" : ", indexed") + (feedback.restart ? ", restart" : "");
-        EXPECT_EQ(ours.primitives, theirs.primitives) << what;
-        EXPECT_EQ(ours.generated, theirs.generated) << what;
-        EXPECT_EQ(ours.counters, theirs.counters) << what;
-        EXPECT_TRUE(ours.bytes == theirs.bytes) << what;
-        written += ours.primitives[0];
-        dropped += ours.primitives[1] - ours.primitives[0];
-    }
-    // What the comparison saw.
-    EXPECT_GT(written, 1000u);
-    EXPECT_GT(dropped, 1000u);
+    for (uint32_t seed = 0; seed < 300; ++seed) labs.expectSame(randomFeedback(seed), seed);
+    labs.expectMuch();
 }
 
 /// What geometry shaders get and put out. Of adjacent vertices the topologies are in the order of the stage's inputs.
@@ -176,9 +187,8 @@ void main() {
 
 TEST(TransformFeedbackPeers, randomGeometryShaders) {
     if (!std::filesystem::exists(VERNIER_LAVAPIPE_JSON)) GTEST_SKIP() << "no lavapipe here";
-    FeedbackLab vernier(VERNIER_ICD_JSON), lavapipe(VERNIER_LAVAPIPE_JSON);
+    TwoLabs labs;
     if (testing::Test::HasFatalFailure()) return;
-    uint64_t written = 0, dropped = 0;
     for (uint32_t seed = 0; seed < 120; ++seed) {
         std::mt19937 random(seed + 7000);
         const GeometryKind& kind = kGeometryKinds[random() % std::size(kGeometryKinds)];
@@ -195,20 +205,9 @@ TEST(TransformFeedbackPeers, randomGeometryShaders) {
         feedback.vertex = kVertexBefore;
         feedback.geometry = randomGeometry(random, kind, streams);
         feedback.stream = streams && random() % 2 == 0 ? 2 : 0;
-        const FeedbackLab::Captured ours = vernier.capture(feedback), theirs = lavapipe.capture(feedback);
-        const std::string what = "seed " + std::to_string(seed) + ", topology " + std::to_string(feedback.topology) +
-                                 (feedback.lastProvokes ? ", last" : ", first") + ", stream " +
-                                 std::to_string(feedback.stream) + (feedback.indices.empty() ? "" : ", indexed") +
-                                 (feedback.restart ? ", restart" : "") + "\n" + feedback.geometry;
-        EXPECT_EQ(ours.primitives, theirs.primitives) << what;
-        EXPECT_EQ(ours.generated, theirs.generated) << what;
-        EXPECT_EQ(ours.counters, theirs.counters) << what;
-        EXPECT_TRUE(ours.bytes == theirs.bytes) << what;
-        written += ours.primitives[0];
-        dropped += ours.primitives[1] - ours.primitives[0];
+        labs.expectSame(feedback, seed);
     }
-    EXPECT_GT(written, 1000u);
-    EXPECT_GT(dropped, 1000u);
+    labs.expectMuch();
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "tests/spirv_interp/atomic_model.h"
+
 namespace vernier::proof {
 namespace {
 
@@ -125,57 +127,8 @@ std::array<uint32_t, 4> TestImage::storage(const ImageAccess& a) {
     const std::array<uint32_t, 4> old = texel;
     if (a.kind == ir::ImageKind::store) texel = a.value;
     if (a.kind != ir::ImageKind::atomic) return old;
-    const uint32_t v = a.value[0];
-    const auto sv = static_cast<int32_t>(v), so = static_cast<int32_t>(old[0]);
-    const auto fv = std::bit_cast<float>(v), fo = std::bit_cast<float>(old[0]);
-    switch (a.atomic) {
-        case ir::AtomicOp::add:
-            texel[0] += v;
-            break;
-        case ir::AtomicOp::sub:
-            texel[0] -= v;
-            break;
-        case ir::AtomicOp::smin:
-            texel[0] = sv < so ? v : old[0];
-            break;
-        case ir::AtomicOp::smax:
-            texel[0] = sv > so ? v : old[0];
-            break;
-        case ir::AtomicOp::umin:
-            texel[0] = std::min(v, old[0]);
-            break;
-        case ir::AtomicOp::umax:
-            texel[0] = std::max(v, old[0]);
-            break;
-        case ir::AtomicOp::iand:
-            texel[0] &= v;
-            break;
-        case ir::AtomicOp::ior:
-            texel[0] |= v;
-            break;
-        case ir::AtomicOp::ixor:
-            texel[0] ^= v;
-            break;
-        case ir::AtomicOp::fadd:
-            texel[0] = std::bit_cast<uint32_t>(fo + fv);
-            break;
-        case ir::AtomicOp::fmin:
-            texel[0] = fv != fv || fo < fv ? old[0] : v;
-            break;
-        case ir::AtomicOp::fmax:
-            texel[0] = fv != fv || fo > fv ? old[0] : v;
-            break;
-        case ir::AtomicOp::exchange:
-        case ir::AtomicOp::store:
-            texel[0] = v;
-            break;
-        case ir::AtomicOp::compareExchange:
-            if (old[0] == a.comparator) texel[0] = v;
-            break;
-        default:
-            return {old[0], 0, 0, 0};
-    }
-    texel = {texel[0], 0, 0, 0};  // the formats that have atomics have one component
+    const uint32_t left = test::atomicResult(a.atomic, old[0], a.value[0], a.comparator);
+    if (a.atomic != ir::AtomicOp::load) texel = {left, 0, 0, 0};  // the formats that have atomics have one component
     return {old[0], 0, 0, 0};
 }
 

@@ -79,6 +79,13 @@ uint32_t Surface::stencil(uint32_t x, uint32_t y, uint32_t sample) {
     return unpackTexel(info_->stencil, texel(x, y, sample)).uint32[0];
 }
 
+int Surface::otherThan(float cleared) {
+    int count = 0;
+    for (uint32_t y = 0; y < height_; ++y)
+        for (uint32_t x = 0; x < width_; ++x) count += red(x, y) != cleared;
+    return count;
+}
+
 uint64_t Surface::hash() {
     uint64_t hash = 14695981039346656037u;  // FNV-1a
     for (uint32_t s = 0; s < samples_; ++s)

@@ -31,6 +31,8 @@ class Surface {
     float red(uint32_t x, uint32_t y, uint32_t sample = 0) { return color(x, y, sample).float32[0]; }
     float depth(uint32_t x, uint32_t y, uint32_t sample = 0);
     uint32_t stencil(uint32_t x, uint32_t y, uint32_t sample = 0);
+    /// How many pixels have another red, as those do that were drawn to where it was cleared to this.
+    int otherThan(float cleared);
     /// Of everything inside the extent.
     uint64_t hash();
 

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/spirv_interp/atomic_model.h"
 #include "tests/spirv_interp/batch_harness.h"
-#include "tests/spirv_interp/ir_evaluator.h"
 
 namespace vernier {
 namespace {

@@ -11,6 +11,7 @@
 #include <spirv-tools/optimizer.hpp>
 
 #include "spirv_interp/ir/ops.h"
+#include "tests/spirv_interp/atomic_model.h"
 #include "tests/spirv_interp/ir_evaluator.h"
 
 namespace vernier::test {

@@ -319,44 +319,6 @@ uint64_t conversion(Op op, Type result, Type operand, const std::vector<uint64_t
 
 }  // namespace
 
-uint32_t atomicResult(ir::AtomicOp op, uint32_t old, uint32_t value, uint32_t comparator) {
-    const auto s = [](uint32_t x) { return static_cast<int32_t>(x); };
-    switch (op) {
-        case ir::AtomicOp::add:
-            return old + value;
-        case ir::AtomicOp::sub:
-            return old - value;
-        case ir::AtomicOp::smin:
-            return s(old) < s(value) ? old : value;
-        case ir::AtomicOp::smax:
-            return s(old) > s(value) ? old : value;
-        case ir::AtomicOp::umin:
-            return std::min(old, value);
-        case ir::AtomicOp::umax:
-            return std::max(old, value);
-        case ir::AtomicOp::iand:
-            return old & value;
-        case ir::AtomicOp::ior:
-            return old | value;
-        case ir::AtomicOp::ixor:
-            return old ^ value;
-        case ir::AtomicOp::exchange:
-        case ir::AtomicOp::store:
-            return value;
-        case ir::AtomicOp::compareExchange:
-            return old == comparator ? value : old;
-        case ir::AtomicOp::load:
-            return old;
-        case ir::AtomicOp::fadd:
-            return std::bit_cast<uint32_t>(floatOf<float>(old) + floatOf<float>(value));
-        case ir::AtomicOp::fmin:
-            return std::bit_cast<uint32_t>(std::fmin(floatOf<float>(old), floatOf<float>(value)));
-        case ir::AtomicOp::fmax:
-            return std::bit_cast<uint32_t>(std::fmax(floatOf<float>(old), floatOf<float>(value)));
-    }
-    return old;
-}
-
 bool isEvaluated(Op op) {
     if (op >= Op::fsin && op <= Op::fpow) return false;
     return (op >= Op::fadd && op <= Op::highWord) || op == Op::copy;

@@ -22,9 +22,6 @@ Evaluation evaluateInvocation(const ir::Program& program, const std::vector<uint
 /// One pure operation on bits.
 uint64_t evaluateOp(ir::Op op, ir::Type result, ir::Type operand, const std::vector<uint64_t>& a, uint64_t imm);
 
-/// What an atomic operation on 32 bits leaves in memory. `comparator`: of compareExchange alone.
-uint32_t atomicResult(ir::AtomicOp op, uint32_t old, uint32_t value, uint32_t comparator);
-
 /// Whether evaluateOp knows the operation.
 bool isEvaluated(ir::Op op);
 

@@ -40,43 +40,15 @@ class AspectsTest : public DrawTest {
     TestImage makeSeparate(VkImageUsageFlags usage, VkImageUsageFlags stencilUsage) {
         auto stencil = make<VkImageStencilUsageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_STENCIL_USAGE_CREATE_INFO);
         stencil.stencilUsage = stencilUsage;
-        auto info = make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
+        auto info = flatImage(kFormat, kExtent, usage);
         info.pNext = &stencil;
-        info.imageType = VK_IMAGE_TYPE_2D;
-        info.format = kFormat;
-        info.extent = {kExtent.width, kExtent.height, 1};
-        info.mipLevels = info.arrayLayers = 1;
-        info.samples = VK_SAMPLE_COUNT_1_BIT;
-        info.tiling = VK_IMAGE_TILING_OPTIMAL;
-        info.usage = usage;
-        TestImage result;
-        result.format = kFormat;
-        result.extent = kExtent;
-        EXPECT_EQ(vkCreateImage(device, &info, nullptr, &result.image), VK_SUCCESS);
-        VkMemoryRequirements needs{};
-        vkGetImageMemoryRequirements(device, result.image, &needs);
-        auto allocation = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-        allocation.allocationSize = needs.size;
-        EXPECT_EQ(vkAllocateMemory(device, &allocation, nullptr, &result.memory), VK_SUCCESS);
-        EXPECT_EQ(vkBindImageMemory(device, result.image, result.memory, 0), VK_SUCCESS);
-        defer([this, result] {
-            vkDestroyImage(device, result.image, nullptr);
-            vkFreeMemory(device, result.memory, nullptr);
-        });
+        TestImage result = makeImage(info);
         result.view = makeView(result.image, VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT);
         return result;
     }
 
     VkImageView makeView(VkImage image, VkImageAspectFlags aspects) {
-        auto info = make<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
-        info.image = image;
-        info.viewType = VK_IMAGE_VIEW_TYPE_2D;
-        info.format = kFormat;
-        info.subresourceRange = {aspects, 0, 1, 0, 1};
-        VkImageView view = VK_NULL_HANDLE;
-        EXPECT_EQ(vkCreateImageView(device, &info, nullptr, &view), VK_SUCCESS);
-        defer([this, view] { vkDestroyImageView(device, view, nullptr); });
-        return view;
+        return DrawTest::makeView(image, VK_IMAGE_VIEW_TYPE_2D, kFormat, {aspects, 0, 1, 0, 1});
     }
 
     struct Aspect {
@@ -117,18 +89,7 @@ class AspectsTest : public DrawTest {
         pass.clears[0].depthStencil = {1, 3};
         EXPECT_EQ(command<PFN_vkCreateRenderPass2KHR>("vkCreateRenderPass2KHR")(device, &info, nullptr, &pass.pass),
                   VK_SUCCESS);
-        auto framebuffer = make<VkFramebufferCreateInfo>(VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO);
-        framebuffer.renderPass = pass.pass;
-        framebuffer.attachmentCount = 1;
-        framebuffer.pAttachments = &image.view;
-        framebuffer.width = kExtent.width;
-        framebuffer.height = kExtent.height;
-        framebuffer.layers = 1;
-        EXPECT_EQ(vkCreateFramebuffer(device, &framebuffer, nullptr, &pass.framebuffer), VK_SUCCESS);
-        defer([this, pass] {
-            vkDestroyFramebuffer(device, pass.framebuffer, nullptr);
-            vkDestroyRenderPass(device, pass.pass, nullptr);
-        });
+        makeFramebuffer(pass, {image.view});
         return pass;
     }
 

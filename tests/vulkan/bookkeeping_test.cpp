@@ -134,14 +134,9 @@ TEST_F(BookkeepingTest, requirementsOfWhatDoesNotExistYet) {
     EXPECT_EQ(told.memoryRequirements.size, made.size);
     EXPECT_EQ(told.memoryRequirements.alignment, made.alignment);
 
-    auto imageInfo = make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
-    imageInfo.imageType = VK_IMAGE_TYPE_2D;
-    imageInfo.format = VK_FORMAT_R8G8B8A8_UNORM;
-    imageInfo.extent = {100, 50, 1};
+    auto imageInfo = flatImage(VK_FORMAT_R8G8B8A8_UNORM, {100, 50}, VK_IMAGE_USAGE_SAMPLED_BIT);
     imageInfo.mipLevels = 3;
     imageInfo.arrayLayers = 2;
-    imageInfo.samples = VK_SAMPLE_COUNT_1_BIT;
-    imageInfo.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
     VkImage image = VK_NULL_HANDLE;
     ASSERT_EQ(vkCreateImage(device, &imageInfo, nullptr, &image), VK_SUCCESS);
     vkGetImageMemoryRequirements(device, image, &made);
@@ -278,12 +273,7 @@ TEST_F(BookkeepingTest, clocksOfHostAndDevice) {
         EXPECT_LE(times[1] - times[0], deviation);
         return times[0];
     };
-    auto poolInfo = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
-    poolInfo.queryType = VK_QUERY_TYPE_TIMESTAMP;
-    poolInfo.queryCount = 1;
-    VkQueryPool stamps = VK_NULL_HANDLE;
-    ASSERT_EQ(vkCreateQueryPool(device, &poolInfo, nullptr, &stamps), VK_SUCCESS);
-    defer([=, this] { vkDestroyQueryPool(device, stamps, nullptr); });
+    const VkQueryPool stamps = makeQueries(VK_QUERY_TYPE_TIMESTAMP);
     const uint64_t before = now();
     const VkCommandBuffer commands = begin();
     vkCmdResetQueryPool(commands, stamps, 0, 1);
@@ -382,15 +372,10 @@ void main() { v = v * 3 + 1; })",
     const auto eventInfo = make<VkEventCreateInfo>(VK_STRUCTURE_TYPE_EVENT_CREATE_INFO);
     VkEvent event = VK_NULL_HANDLE;
     ASSERT_EQ(vkCreateEvent(device, &eventInfo, nullptr, &event), VK_SUCCESS);
-    auto poolInfo = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
-    poolInfo.queryType = VK_QUERY_TYPE_TIMESTAMP;
-    poolInfo.queryCount = 1;
-    VkQueryPool stamps = VK_NULL_HANDLE;
-    ASSERT_EQ(vkCreateQueryPool(device, &poolInfo, nullptr, &stamps), VK_SUCCESS);
+    const VkQueryPool stamps = makeQueries(VK_QUERY_TYPE_TIMESTAMP);
     defer([=, this] {
         vkDestroySemaphore(device, timeline, nullptr);
         vkDestroyEvent(device, event, nullptr);
-        vkDestroyQueryPool(device, stamps, nullptr);
     });
 
     auto barrier = make<VkMemoryBarrier2>(VK_STRUCTURE_TYPE_MEMORY_BARRIER_2);

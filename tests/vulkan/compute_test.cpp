@@ -268,14 +268,9 @@ void main() {
 }
 
 TEST_F(ComputeTest, invocationsAreCounted) {
-    auto info = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
-    info.queryType = VK_QUERY_TYPE_PIPELINE_STATISTICS;
-    info.queryCount = 1;
-    info.pipelineStatistics = VK_QUERY_PIPELINE_STATISTIC_VERTEX_SHADER_INVOCATIONS_BIT |
-                              VK_QUERY_PIPELINE_STATISTIC_COMPUTE_SHADER_INVOCATIONS_BIT;
-    VkQueryPool queries = VK_NULL_HANDLE;
-    ASSERT_EQ(vkCreateQueryPool(device, &info, nullptr, &queries), VK_SUCCESS);
-    defer([this, queries] { vkDestroyQueryPool(device, queries, nullptr); });
+    const VkQueryPool queries = makeQueries(VK_QUERY_TYPE_PIPELINE_STATISTICS, 1,
+                                            VK_QUERY_PIPELINE_STATISTIC_VERTEX_SHADER_INVOCATIONS_BIT |
+                                                VK_QUERY_PIPELINE_STATISTIC_COMPUTE_SHADER_INVOCATIONS_BIT);
     const TestBuffer out = makeStorage(64);
     const Compute compute = makeCompute(kAddPushed, {storageBuffer(out)}, 8);
     const uint32_t pushed[2] = {};

@@ -81,50 +81,17 @@ class DescriptorIndexingTest : public ComputeTest {
         return set;
     }
     Compute makePipelineOf(const std::string& glsl, VkDescriptorSetLayout layout, VkDescriptorSet set) {
-        auto layoutInfo = make<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
-        layoutInfo.setLayoutCount = 1;
-        layoutInfo.pSetLayouts = &layout;
-        Compute compute;
-        compute.set = set;
-        EXPECT_EQ(vkCreatePipelineLayout(device, &layoutInfo, nullptr, &compute.layout), VK_SUCCESS);
-        auto info = make<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
-        info.stage = make<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
-        info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-        info.stage.module = makeShader(VK_SHADER_STAGE_COMPUTE_BIT, glsl);
-        info.stage.pName = "main";
-        info.layout = compute.layout;
-        EXPECT_EQ(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &compute.pipeline), VK_SUCCESS);
-        defer([this, compute] {
-            vkDestroyPipeline(device, compute.pipeline, nullptr);
-            vkDestroyPipelineLayout(device, compute.layout, nullptr);
-        });
-        return compute;
+        const VkPipelineLayout pipelineLayout = makeLayout({layout}, 0);
+        return {pipelineLayout, makeComputePipeline(pipelineLayout, glsl), set};
     }
     /// An image of two planes; its view is the caller's. None where the validation layer stands between.
     void makePlanar(TestImage& made) {
         if (validated()) return;
-        auto info = make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
-        info.imageType = VK_IMAGE_TYPE_2D;
-        info.format = VK_FORMAT_G8_B8R8_2PLANE_420_UNORM;
-        info.extent = {4, 4, 1};
-        info.mipLevels = info.arrayLayers = 1;
-        info.samples = VK_SAMPLE_COUNT_1_BIT;
-        info.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
-        ASSERT_EQ(vkCreateImage(device, &info, nullptr, &made.image), VK_SUCCESS);
-        VkMemoryRequirements needs{};
-        vkGetImageMemoryRequirements(device, made.image, &needs);
-        auto allocation = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-        allocation.allocationSize = needs.size;
-        ASSERT_EQ(vkAllocateMemory(device, &allocation, nullptr, &made.memory), VK_SUCCESS);
-        ASSERT_EQ(vkBindImageMemory(device, made.image, made.memory, 0), VK_SUCCESS);
-        defer([this, made] {
-            vkDestroyImage(device, made.image, nullptr);
-            vkFreeMemory(device, made.memory, nullptr);
-        });
+        made = makeImage(flatImage(VK_FORMAT_G8_B8R8_2PLANE_420_UNORM, {4, 4}, VK_IMAGE_USAGE_SAMPLED_BIT));
         auto view = make<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
         view.image = made.image;
         view.viewType = VK_IMAGE_VIEW_TYPE_2D;
-        view.format = info.format;
+        view.format = made.format;
         view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
         ASSERT_EQ(vkCreateImageView(device, &view, nullptr, &made.view), VK_SUCCESS);
     }

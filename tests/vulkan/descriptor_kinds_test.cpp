@@ -40,22 +40,8 @@ class DescriptorKindsTest : public ComputeTest {
         return layout;
     }
     VkDescriptorSet makeArraySet(VkDescriptorType type, VkDescriptorSetLayout layout) {
-        const std::array<VkDescriptorPoolSize, 2> sizes{{{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 8}, {type, 8}}};
-        auto poolInfo = make<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
-        poolInfo.flags = VK_DESCRIPTOR_POOL_CREATE_UPDATE_AFTER_BIND_BIT;
-        poolInfo.maxSets = 1;
-        poolInfo.poolSizeCount = 2;
-        poolInfo.pPoolSizes = sizes.data();
-        VkDescriptorPool from = VK_NULL_HANDLE;
-        EXPECT_EQ(vkCreateDescriptorPool(device, &poolInfo, nullptr, &from), VK_SUCCESS);
-        defer([this, from] { vkDestroyDescriptorPool(device, from, nullptr); });
-        auto allocate = make<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
-        allocate.descriptorPool = from;
-        allocate.descriptorSetCount = 1;
-        allocate.pSetLayouts = &layout;
-        VkDescriptorSet set = VK_NULL_HANDLE;
-        EXPECT_EQ(vkAllocateDescriptorSets(device, &allocate, &set), VK_SUCCESS);
-        return set;
+        return makeEmptySet(layout, {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 8}, {type, 8}},
+                            VK_DESCRIPTOR_POOL_CREATE_UPDATE_AFTER_BIND_BIT);
     }
     void write(VkDescriptorSet set, uint32_t binding, uint32_t element, VkDescriptorType type,
                const TestDescriptor& descriptor, VkSampler sampler, VkImageLayout layout = VK_IMAGE_LAYOUT_GENERAL) {
@@ -200,18 +186,7 @@ TEST_F(DescriptorKindsTest, inputAttachmentsByAnyIndex) {
     pass.extent = kExtent;
     pass.clears.resize(3);
     ASSERT_EQ(vkCreateRenderPass(device, &passInfo, nullptr, &pass.pass), VK_SUCCESS);
-    auto framebuffer = make<VkFramebufferCreateInfo>(VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO);
-    framebuffer.renderPass = pass.pass;
-    framebuffer.attachmentCount = static_cast<uint32_t>(views.size());
-    framebuffer.pAttachments = views.data();
-    framebuffer.width = kExtent.width;
-    framebuffer.height = kExtent.height;
-    framebuffer.layers = 1;
-    ASSERT_EQ(vkCreateFramebuffer(device, &framebuffer, nullptr, &pass.framebuffer), VK_SUCCESS);
-    defer([=, this] {
-        vkDestroyFramebuffer(device, pass.framebuffer, nullptr);
-        vkDestroyRenderPass(device, pass.pass, nullptr);
-    });
+    makeFramebuffer(pass, views);
     PipelineDesc desc;
     desc.extent = kExtent;
     desc.vertex = fullScreen();
@@ -221,14 +196,7 @@ layout(input_attachment_index = 0, set = 0, binding = 1) uniform subpassInput in
 layout(location = 0) out vec4 color;
 void main() { color = subpassLoad(inputs[nonuniformEXT((int(gl_FragCoord.x) + int(gl_FragCoord.y)) & 1)]); })");
     desc.layout = makeLayout({setLayout}, 0);
-    const VkPipeline pipeline = makePipeline(pass.pass, desc);
-    const VkCommandBuffer commands = begin();
-    beginPass(commands, pass);
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, desc.layout, 0, 1, &set, 0, nullptr);
-    vkCmdDraw(commands, 3, 1, 0, 0);
-    vkCmdEndRenderPass(commands);
-    submit(commands);
+    drawTriangle(pass, makePipeline(pass.pass, desc), desc.layout, set);
     const auto texels = readImage(color, VK_IMAGE_ASPECT_COLOR_BIT, 4);
     for (uint32_t y = 0; y < 4; ++y)
         for (uint32_t x = 0; x < 4; ++x)

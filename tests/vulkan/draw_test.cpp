@@ -259,21 +259,11 @@ TEST_F(PictureTest, secondaryCommandBuffersAndClears) {
 }
 
 TEST_F(PictureTest, queriesCountSamplesAndInvocations) {
-    auto info = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
-    info.queryType = VK_QUERY_TYPE_OCCLUSION;
-    info.queryCount = 2;
-    VkQueryPool occlusion = VK_NULL_HANDLE, statistics = VK_NULL_HANDLE;
-    ASSERT_EQ(vkCreateQueryPool(device, &info, nullptr, &occlusion), VK_SUCCESS);
-    info.queryType = VK_QUERY_TYPE_PIPELINE_STATISTICS;
-    info.queryCount = 1;
-    info.pipelineStatistics = VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_VERTICES_BIT |
-                              VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_PRIMITIVES_BIT |
-                              VK_QUERY_PIPELINE_STATISTIC_FRAGMENT_SHADER_INVOCATIONS_BIT;
-    ASSERT_EQ(vkCreateQueryPool(device, &info, nullptr, &statistics), VK_SUCCESS);
-    defer([=, this] {
-        vkDestroyQueryPool(device, occlusion, nullptr);
-        vkDestroyQueryPool(device, statistics, nullptr);
-    });
+    const VkQueryPool occlusion = makeQueries(VK_QUERY_TYPE_OCCLUSION, 2);
+    const VkQueryPool statistics = makeQueries(VK_QUERY_TYPE_PIPELINE_STATISTICS, 1,
+                                               VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_VERTICES_BIT |
+                                                   VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_PRIMITIVES_BIT |
+                                                   VK_QUERY_PIPELINE_STATISTIC_FRAGMENT_SHADER_INVOCATIONS_BIT);
     PipelineDesc desc = defaults();
     desc.fragment = constantColor("gl_FragCoord.x / 32, 0, 0, 1");
     const VkPipeline pipeline = makePipeline(pass.pass, desc);

@@ -218,12 +218,7 @@ TEST_F(ExtensionsTest, severalDrawsInOneCommand) {
 }
 
 TEST_F(ExtensionsTest, theHostResetsQueries) {
-    auto info = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
-    info.queryType = VK_QUERY_TYPE_TIMESTAMP;
-    info.queryCount = 2;
-    VkQueryPool queries = VK_NULL_HANDLE;
-    ASSERT_EQ(vkCreateQueryPool(device, &info, nullptr, &queries), VK_SUCCESS);
-    defer([=, this] { vkDestroyQueryPool(device, queries, nullptr); });
+    const VkQueryPool queries = makeQueries(VK_QUERY_TYPE_TIMESTAMP, 2);
     const auto reset = command<PFN_vkResetQueryPoolEXT>("vkResetQueryPoolEXT");
     reset(device, queries, 0, 2);
     const VkCommandBuffer commands = begin();

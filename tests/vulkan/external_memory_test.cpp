@@ -48,14 +48,9 @@ TEST_F(ExternalMemoryTest, theExporterMayGoFirst) {
 TEST_F(ExternalMemoryTest, imagesLieInSharedMemory) {
     auto external = make<VkExternalMemoryImageCreateInfo>(VK_STRUCTURE_TYPE_EXTERNAL_MEMORY_IMAGE_CREATE_INFO);
     external.handleTypes = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
-    auto info = make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
+    auto info =
+        flatImage(VK_FORMAT_R8G8B8A8_UNORM, {19, 7}, VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
     info.pNext = &external;
-    info.imageType = VK_IMAGE_TYPE_2D;
-    info.format = VK_FORMAT_R8G8B8A8_UNORM;
-    info.extent = {19, 7, 1};
-    info.mipLevels = info.arrayLayers = 1;
-    info.samples = VK_SAMPLE_COUNT_1_BIT;
-    info.usage = VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     TestImage images[2];
     for (TestImage& image : images) {
         image.format = info.format;
@@ -115,7 +110,7 @@ TEST_F(ExternalMemoryTest, wrongDescriptorsAreRefused) {
     for (const int open : {fd, semaphoreFd, file, unsealed}) EXPECT_EQ(close(open), 0);
     // What was not made to be exported is not.
     auto info = make<VkMemoryGetFdInfoKHR>(VK_STRUCTURE_TYPE_MEMORY_GET_FD_INFO_KHR);
-    info.memory = allocate(kBytes, nullptr);
+    info.memory = allocate(kBytes);
     info.handleType = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
     int none = 0;
     EXPECT_NE(command<PFN_vkGetMemoryFdKHR>("vkGetMemoryFdKHR")(device, &info, &none), VK_SUCCESS);

@@ -28,18 +28,8 @@ TEST_F(FeaturesTest, queriesCountInSecondaryCommandBuffers) {
     desc.extent = image.extent;
     const VkPipeline pipeline = makePipeline(pass.pass, desc);
     constexpr VkQueryPipelineStatisticFlags kStatistics = VK_QUERY_PIPELINE_STATISTIC_VERTEX_SHADER_INVOCATIONS_BIT;
-    VkQueryPool pools[2] = {};
-    for (const bool statistics : {false, true}) {
-        auto info = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
-        info.queryType = statistics ? VK_QUERY_TYPE_PIPELINE_STATISTICS : VK_QUERY_TYPE_OCCLUSION;
-        info.queryCount = 1;
-        info.pipelineStatistics = statistics ? kStatistics : 0;
-        ASSERT_EQ(vkCreateQueryPool(device, &info, nullptr, &pools[statistics ? 1 : 0]), VK_SUCCESS);
-    }
-    defer([this, first = pools[0], second = pools[1]] {
-        vkDestroyQueryPool(device, first, nullptr);
-        vkDestroyQueryPool(device, second, nullptr);
-    });
+    const VkQueryPool pools[] = {makeQueries(VK_QUERY_TYPE_OCCLUSION),
+                                 makeQueries(VK_QUERY_TYPE_PIPELINE_STATISTICS, 1, kStatistics)};
     auto allocation = make<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
     allocation.commandPool = pool;
     allocation.level = VK_COMMAND_BUFFER_LEVEL_SECONDARY;
@@ -101,18 +91,7 @@ TEST_F(FeaturesTest, attachmentsBlendApart) {
     pass.clears.resize(2);
     for (VkClearValue& clear : pass.clears) clear.color = {.float32 = {0.2f, 0.2f, 0.2f, 0.2f}};
     ASSERT_EQ(vkCreateRenderPass(device, &info, nullptr, &pass.pass), VK_SUCCESS);
-    const VkImageView views[] = {images[0].view, images[1].view};
-    auto framebuffer = make<VkFramebufferCreateInfo>(VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO);
-    framebuffer.renderPass = pass.pass;
-    framebuffer.attachmentCount = 2;
-    framebuffer.pAttachments = views;
-    framebuffer.width = framebuffer.height = 4;
-    framebuffer.layers = 1;
-    ASSERT_EQ(vkCreateFramebuffer(device, &framebuffer, nullptr, &pass.framebuffer), VK_SUCCESS);
-    defer([this, pass] {
-        vkDestroyFramebuffer(device, pass.framebuffer, nullptr);
-        vkDestroyRenderPass(device, pass.pass, nullptr);
-    });
+    makeFramebuffer(pass, {images[0].view, images[1].view});
     PipelineDesc desc;
     desc.vertex = fullScreen();
     desc.fragment = makeShader(VK_SHADER_STAGE_FRAGMENT_BIT, R"(#version 450
@@ -135,33 +114,12 @@ TEST_F(FeaturesTest, attachmentsBlendApart) {
 
 // image2DViewOf3D: one slice of a volume as a storage image.
 TEST_F(FeaturesTest, slicesAreStorageImages) {
-    auto info = make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
+    auto info = flatImage(VK_FORMAT_R32_UINT, {4, 4}, VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
     info.flags = VK_IMAGE_CREATE_2D_VIEW_COMPATIBLE_BIT_EXT;
     info.imageType = VK_IMAGE_TYPE_3D;
-    info.format = VK_FORMAT_R32_UINT;
-    info.extent = {4, 4, 4};
-    info.mipLevels = info.arrayLayers = 1;
-    info.samples = VK_SAMPLE_COUNT_1_BIT;
-    info.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-    TestImage image;
-    ASSERT_EQ(vkCreateImage(device, &info, nullptr, &image.image), VK_SUCCESS);
-    VkMemoryRequirements needs{};
-    vkGetImageMemoryRequirements(device, image.image, &needs);
-    auto allocation = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-    allocation.allocationSize = needs.size;
-    ASSERT_EQ(vkAllocateMemory(device, &allocation, nullptr, &image.memory), VK_SUCCESS);
-    ASSERT_EQ(vkBindImageMemory(device, image.image, image.memory, 0), VK_SUCCESS);
-    auto view = make<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
-    view.image = image.image;
-    view.viewType = VK_IMAGE_VIEW_TYPE_2D;
-    view.format = info.format;
-    view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 2, 1};
-    ASSERT_EQ(vkCreateImageView(device, &view, nullptr, &image.view), VK_SUCCESS);
-    defer([this, image] {
-        vkDestroyImageView(device, image.view, nullptr);
-        vkDestroyImage(device, image.image, nullptr);
-        vkFreeMemory(device, image.memory, nullptr);
-    });
+    info.extent.depth = 4;
+    TestImage image = makeImage(info);
+    image.view = makeView(image.image, VK_IMAGE_VIEW_TYPE_2D, info.format, {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 2, 1});
     const TestBuffer out = makeBuffer(4 * 4 * 4 * 4, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
     const Compute compute = makeCompute(R"(#version 450
         layout(set = 0, binding = 0, r32ui) uniform uimage2D slice;

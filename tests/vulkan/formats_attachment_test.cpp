@@ -89,13 +89,8 @@ TEST_F(FormatAttachments, depthAndStencilAreTestedAndStored) {
     forEachImageCase(VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT, [&](const Case& of) {
         // The attachment has all aspects, one of which is looked at.
         const TestImage target = makeImage(of, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT);
-        auto viewInfo = make<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
-        viewInfo.viewType = VK_IMAGE_VIEW_TYPE_2D;
-        viewInfo.format = target.format;
-        viewInfo.subresourceRange = {of.info->aspects, 0, 1, 0, 1};
-        viewInfo.image = target.image;
-        VkImageView view = VK_NULL_HANDLE;
-        ASSERT_EQ(vkCreateImageView(device, &viewInfo, nullptr, &view), VK_SUCCESS);
+        const VkImageView view =
+            makeView(target.image, VK_IMAGE_VIEW_TYPE_2D, target.format, {of.info->aspects, 0, 1, 0, 1});
         const VkAttachmentDescription attachment{0,
                                                  target.format,
                                                  VK_SAMPLE_COUNT_1_BIT,
@@ -118,18 +113,7 @@ TEST_F(FormatAttachments, depthAndStencilAreTestedAndStored) {
         pass.clears.resize(1);
         pass.clears[0].depthStencil = {0.7f, 0x21};
         ASSERT_EQ(vkCreateRenderPass(device, &passInfo, nullptr, &pass.pass), VK_SUCCESS);
-        auto framebuffer = make<VkFramebufferCreateInfo>(VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO);
-        framebuffer.renderPass = pass.pass;
-        framebuffer.attachmentCount = 1;
-        framebuffer.pAttachments = &view;
-        framebuffer.width = framebuffer.height = kFormatSize;
-        framebuffer.layers = 1;
-        ASSERT_EQ(vkCreateFramebuffer(device, &framebuffer, nullptr, &pass.framebuffer), VK_SUCCESS);
-        defer([this, pass, view] {
-            vkDestroyFramebuffer(device, pass.framebuffer, nullptr);
-            vkDestroyRenderPass(device, pass.pass, nullptr);
-            vkDestroyImageView(device, view, nullptr);
-        });
+        makeFramebuffer(pass, {view});
         PipelineDesc desc;
         desc.vertex = triangle();
         desc.colorCount = 0;

@@ -5,37 +5,11 @@
 namespace vernier::test {
 
 TestImage FormatsTest::makeImage(const Case& of, VkImageUsageFlags usage, uint32_t size) {
-    TestImage result;
-    result.format = of.info->format;
-    result.extent = {size, size};
-    auto info = make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
-    info.imageType = VK_IMAGE_TYPE_2D;
-    info.format = result.format;
-    info.extent = {size, size, 1};
-    info.mipLevels = info.arrayLayers = 1;
-    info.samples = VK_SAMPLE_COUNT_1_BIT;
+    auto info = flatImage(of.info->format, {size, size},
+                          usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
     info.tiling = of.tiling;
-    info.usage = usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    EXPECT_EQ(vkCreateImage(device, &info, nullptr, &result.image), VK_SUCCESS);
-    VkMemoryRequirements needs{};
-    vkGetImageMemoryRequirements(device, result.image, &needs);
-    auto allocation = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-    allocation.allocationSize = needs.size;
-    EXPECT_EQ(vkAllocateMemory(device, &allocation, nullptr, &result.memory), VK_SUCCESS);
-    EXPECT_EQ(vkBindImageMemory(device, result.image, result.memory, 0), VK_SUCCESS);
-    if (usage != 0) {
-        auto view = make<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
-        view.image = result.image;
-        view.viewType = VK_IMAGE_VIEW_TYPE_2D;
-        view.format = result.format;
-        view.subresourceRange = {of.aspect, 0, 1, 0, 1};
-        EXPECT_EQ(vkCreateImageView(device, &view, nullptr, &result.view), VK_SUCCESS);
-    }
-    defer([this, result] {
-        vkDestroyImageView(device, result.view, nullptr);
-        vkDestroyImage(device, result.image, nullptr);
-        vkFreeMemory(device, result.memory, nullptr);
-    });
+    TestImage result = ComputeTest::makeImage(info);
+    if (usage != 0) result.view = makeView(result.image, VK_IMAGE_VIEW_TYPE_2D, result.format, {of.aspect, 0, 1, 0, 1});
     return result;
 }
 

@@ -43,14 +43,7 @@ class GeometryTest : public ComputeTest {
         return makeShader(VK_SHADER_STAGE_FRAGMENT_BIT, "#version 450\nlayout(location = 0) out vec4 color;\n" + glsl);
     }
     VkQueryPool statistics(VkQueryPipelineStatisticFlags bits) {
-        auto info = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
-        info.queryType = VK_QUERY_TYPE_PIPELINE_STATISTICS;
-        info.queryCount = 1;
-        info.pipelineStatistics = bits;
-        VkQueryPool queries = VK_NULL_HANDLE;
-        EXPECT_EQ(vkCreateQueryPool(device, &info, nullptr, &queries), VK_SUCCESS);
-        defer([this, queries] { vkDestroyQueryPool(device, queries, nullptr); });
-        return queries;
+        return makeQueries(VK_QUERY_TYPE_PIPELINE_STATISTICS, 1, bits);
     }
     struct Draw {
         uint32_t vertices = 1, instances = 1;

@@ -33,41 +33,28 @@ class HostileTest : public ComputeTest {
     Guarded guarded(VkImageType type, VkFormat format, VkExtent3D extent, uint32_t mips, uint32_t layers,
                     VkImageViewType viewType, VkImageUsageFlags usage) {
         Guarded made;
-        auto info = make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
+        auto info = flatImage(format, {extent.width, extent.height},
+                              usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
         info.flags = viewType == VK_IMAGE_VIEW_TYPE_CUBE ? VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT : 0;
         info.imageType = type;
-        info.format = format;
-        info.extent = extent;
+        info.extent.depth = extent.depth;
         info.mipLevels = mips;
         info.arrayLayers = layers;
-        info.samples = VK_SAMPLE_COUNT_1_BIT;
-        info.usage = usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
         EXPECT_EQ(vkCreateImage(device, &info, nullptr, &made.image), VK_SUCCESS);
         VkMemoryRequirements needs{};
         vkGetImageMemoryRequirements(device, made.image, &needs);
         made.used = needs.size;
         made.size = needs.size + 65536;
-        auto allocation = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-        allocation.allocationSize = made.size;
-        VkDeviceMemory memory = VK_NULL_HANDLE;
-        EXPECT_EQ(vkAllocateMemory(device, &allocation, nullptr, &memory), VK_SUCCESS);
+        const VkDeviceMemory memory = allocate(made.size);
         EXPECT_EQ(vkBindImageMemory(device, made.image, memory, 0), VK_SUCCESS);
         void* data = nullptr;
         EXPECT_EQ(vkMapMemory(device, memory, 0, VK_WHOLE_SIZE, 0, &data), VK_SUCCESS);
         std::memset(static_cast<uint8_t*>(data) + made.used, kCanary, made.size - made.used);
         made.memory = static_cast<const uint8_t*>(data);
-        auto view = make<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
-        view.image = made.image;
-        view.viewType = viewType;
-        view.format = format;
-        view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
-        if (type == VK_IMAGE_TYPE_3D) view.subresourceRange.layerCount = 1;
-        EXPECT_EQ(vkCreateImageView(device, &view, nullptr, &made.view), VK_SUCCESS);
-        defer([this, made, memory] {
-            vkDestroyImageView(device, made.view, nullptr);
-            vkDestroyImage(device, made.image, nullptr);
-            vkFreeMemory(device, memory, nullptr);
-        });
+        defer([this, made] { vkDestroyImage(device, made.image, nullptr); });
+        made.view = makeView(made.image, viewType, format,
+                             {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0,
+                              type == VK_IMAGE_TYPE_3D ? 1 : VK_REMAINING_ARRAY_LAYERS});
         return made;
     }
     Guarded guardedFlat(VkImageUsageFlags usage, uint32_t mips = 1, uint32_t layers = 1) {
@@ -146,13 +133,8 @@ TEST_F(HostileTest, resourcesWithoutMemoryAreRefused) {
     VkBuffer empty = VK_NULL_HANDLE;
     ASSERT_EQ(vkCreateBuffer(device, &bufferInfo, nullptr, &empty), VK_SUCCESS);
     defer([this, empty] { vkDestroyBuffer(device, empty, nullptr); });
-    auto imageInfo = make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
-    imageInfo.imageType = VK_IMAGE_TYPE_2D;
-    imageInfo.format = VK_FORMAT_R8G8B8A8_UNORM;
-    imageInfo.extent = {4, 4, 1};
-    imageInfo.mipLevels = imageInfo.arrayLayers = 1;
-    imageInfo.samples = VK_SAMPLE_COUNT_1_BIT;
-    imageInfo.usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+    const auto imageInfo =
+        flatImage(VK_FORMAT_R8G8B8A8_UNORM, {4, 4}, VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
     VkImage bare = VK_NULL_HANDLE;
     ASSERT_EQ(vkCreateImage(device, &imageInfo, nullptr, &bare), VK_SUCCESS);
     defer([this, bare] { vkDestroyImage(device, bare, nullptr); });
@@ -170,12 +152,7 @@ TEST_F(HostileTest, resourcesWithoutMemoryAreRefused) {
     copy.imageExtent = {4, 4, 1};
     const VkBufferCopy bytes{0, 0, 16};
     const VkClearColorValue black{};
-    VkQueryPool queries = VK_NULL_HANDLE;
-    auto queryInfo = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
-    queryInfo.queryType = VK_QUERY_TYPE_OCCLUSION;
-    queryInfo.queryCount = 1;
-    ASSERT_EQ(vkCreateQueryPool(device, &queryInfo, nullptr, &queries), VK_SUCCESS);
-    defer([this, queries] { vkDestroyQueryPool(device, queries, nullptr); });
+    const VkQueryPool queries = makeQueries(VK_QUERY_TYPE_OCCLUSION);
     refused([&](VkCommandBuffer c) { vkCmdFillBuffer(c, empty, 0, 64, 1); });
     refused([&](VkCommandBuffer c) { vkCmdUpdateBuffer(c, empty, 0, 16, full.data); });
     refused([&](VkCommandBuffer c) { vkCmdCopyBuffer(c, empty, full.buffer, 1, &bytes); });

@@ -54,18 +54,7 @@ class InputAttachmentTest : public DrawTest {
         info.dependencyCount = 1;
         info.pDependencies = &dependency;
         EXPECT_EQ(vkCreateRenderPass(device, &info, nullptr, &pass.pass), VK_SUCCESS);
-        auto framebuffer = make<VkFramebufferCreateInfo>(VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO);
-        framebuffer.renderPass = pass.pass;
-        framebuffer.attachmentCount = 3;
-        framebuffer.pAttachments = views.data();
-        framebuffer.width = kExtent.width;
-        framebuffer.height = kExtent.height;
-        framebuffer.layers = 1;
-        EXPECT_EQ(vkCreateFramebuffer(device, &framebuffer, nullptr, &pass.framebuffer), VK_SUCCESS);
-        defer([this, pass] {
-            vkDestroyFramebuffer(device, pass.framebuffer, nullptr);
-            vkDestroyRenderPass(device, pass.pass, nullptr);
-        });
+        makeFramebuffer(pass, views);
         return pass;
     }
 
@@ -75,27 +64,8 @@ class InputAttachmentTest : public DrawTest {
         std::vector<VkDescriptorSetLayoutBinding> bindings;
         for (uint32_t i = 0; i < count; ++i)
             bindings.push_back({i, VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr});
-        auto info = make<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
-        info.bindingCount = count;
-        info.pBindings = bindings.data();
-        EXPECT_EQ(vkCreateDescriptorSetLayout(device, &info, nullptr, layout), VK_SUCCESS);
-        const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT, count};
-        auto poolInfo = make<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
-        poolInfo.maxSets = 1;
-        poolInfo.poolSizeCount = 1;
-        poolInfo.pPoolSizes = &size;
-        VkDescriptorPool descriptors = VK_NULL_HANDLE;
-        EXPECT_EQ(vkCreateDescriptorPool(device, &poolInfo, nullptr, &descriptors), VK_SUCCESS);
-        defer([this, made = *layout, descriptors] {
-            vkDestroyDescriptorPool(device, descriptors, nullptr);
-            vkDestroyDescriptorSetLayout(device, made, nullptr);
-        });
-        auto allocate = make<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
-        allocate.descriptorPool = descriptors;
-        allocate.descriptorSetCount = 1;
-        allocate.pSetLayouts = layout;
-        VkDescriptorSet set = VK_NULL_HANDLE;
-        EXPECT_EQ(vkAllocateDescriptorSets(device, &allocate, &set), VK_SUCCESS);
+        *layout = makeSetLayout(bindings);
+        const VkDescriptorSet set = makeEmptySet(*layout, {{VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT, count}});
         for (uint32_t i = 0; i < count; ++i) {
             const bool depth = images[i].format == VK_FORMAT_D32_SFLOAT;
             const VkDescriptorImageInfo image{

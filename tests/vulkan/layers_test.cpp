@@ -140,12 +140,7 @@ layout(location = 0) flat in int instance;
 layout(location = 0) out vec4 color;
 void main() { color = vec4((instance + gl_ViewIndex + 1) / 255.0); })");
     const VkPipeline pipeline = makePipeline(pass.pass, desc);
-    auto poolInfo = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
-    poolInfo.queryType = VK_QUERY_TYPE_OCCLUSION;
-    poolInfo.queryCount = 2;
-    VkQueryPool queries = VK_NULL_HANDLE;
-    ASSERT_EQ(vkCreateQueryPool(device, &poolInfo, nullptr, &queries), VK_SUCCESS);
-    defer([=, this] { vkDestroyQueryPool(device, queries, nullptr); });
+    const VkQueryPool queries = makeQueries(VK_QUERY_TYPE_OCCLUSION, 2);
 
     const VkCommandBuffer commands = begin();
     vkCmdResetQueryPool(commands, queries, 0, 2);

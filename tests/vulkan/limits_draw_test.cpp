@@ -184,17 +184,7 @@ TEST_F(DrawLimitsTest, attachmentsOfAllNumbers) {
     pass.extent = {8, 8};
     pass.clears.resize(count + 1);
     ASSERT_EQ(vkCreateRenderPass(device, &info, nullptr, &pass.pass), VK_SUCCESS);
-    auto framebuffer = make<VkFramebufferCreateInfo>(VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO);
-    framebuffer.renderPass = pass.pass;
-    framebuffer.attachmentCount = count + 1;
-    framebuffer.pAttachments = views.data();
-    framebuffer.width = framebuffer.height = 8;
-    framebuffer.layers = 1;
-    ASSERT_EQ(vkCreateFramebuffer(device, &framebuffer, nullptr, &pass.framebuffer), VK_SUCCESS);
-    defer([this, pass] {
-        vkDestroyFramebuffer(device, pass.framebuffer, nullptr);
-        vkDestroyRenderPass(device, pass.pass, nullptr);
-    });
+    makeFramebuffer(pass, views);
     VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
     const VkDescriptorSet set = makeSet(descriptors, &setLayout);
     PipelineDesc desc;
@@ -228,29 +218,9 @@ TEST_F(DrawLimitsTest, fragmentsWriteToBuffersByTheThousand) {
     constexpr uint32_t kBuffers = 4096;
     ASSERT_GE(limits_.maxFragmentCombinedOutputResources, kBuffers + 1);
     const TestBuffer few = makeStorage(1), last = makeStorage(1);
-    const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kBuffers,
-                                               VK_SHADER_STAGE_FRAGMENT_BIT, nullptr};
-    auto layoutInfo = make<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
-    layoutInfo.bindingCount = 1;
-    layoutInfo.pBindings = &binding;
-    VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
-    ASSERT_EQ(vkCreateDescriptorSetLayout(device, &layoutInfo, nullptr, &setLayout), VK_SUCCESS);
-    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kBuffers};
-    auto poolInfo = make<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
-    poolInfo.maxSets = poolInfo.poolSizeCount = 1;
-    poolInfo.pPoolSizes = &size;
-    VkDescriptorPool descriptorPool = VK_NULL_HANDLE;
-    ASSERT_EQ(vkCreateDescriptorPool(device, &poolInfo, nullptr, &descriptorPool), VK_SUCCESS);
-    defer([this, setLayout, descriptorPool] {
-        vkDestroyDescriptorSetLayout(device, setLayout, nullptr);
-        vkDestroyDescriptorPool(device, descriptorPool, nullptr);
-    });
-    auto allocation = make<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
-    allocation.descriptorPool = descriptorPool;
-    allocation.descriptorSetCount = 1;
-    allocation.pSetLayouts = &setLayout;
-    VkDescriptorSet set = VK_NULL_HANDLE;
-    ASSERT_EQ(vkAllocateDescriptorSets(device, &allocation, &set), VK_SUCCESS);
+    const VkDescriptorSetLayout setLayout =
+        makeSetLayout({{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kBuffers, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr}});
+    const VkDescriptorSet set = makeEmptySet(setLayout, {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kBuffers}});
     std::vector<VkDescriptorBufferInfo> buffers(kBuffers, {few.buffer, 0, VK_WHOLE_SIZE});
     buffers.back().buffer = last.buffer;
     auto write = make<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);

@@ -15,25 +15,14 @@ class LimitsTest : public ComputeTest {
         limits_ = properties.limits;
     }
 
-    VkDeviceMemory allocate(VkDeviceSize size) {
-        auto info = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-        info.allocationSize = size;
-        VkDeviceMemory memory = VK_NULL_HANDLE;
-        EXPECT_EQ(vkAllocateMemory(device, &info, nullptr, &memory), VK_SUCCESS);
-        defer([this, memory] { vkFreeMemory(device, memory, nullptr); });
-        return memory;
-    }
     /// Writes the last texel of the last layer of an R8 image and reads it back.
     void useFarCorner(VkImageType type, VkExtent3D extent, uint32_t layers, VkImageCreateFlags flags) {
-        auto info = make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
+        auto info = flatImage(VK_FORMAT_R8_UNORM, {extent.width, extent.height},
+                              VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
         info.flags = flags;
         info.imageType = type;
-        info.format = VK_FORMAT_R8_UNORM;
-        info.extent = extent;
-        info.mipLevels = 1;
+        info.extent.depth = extent.depth;
         info.arrayLayers = layers;
-        info.samples = VK_SAMPLE_COUNT_1_BIT;
-        info.usage = VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
         TestImage image;
         ASSERT_EQ(vkCreateImage(device, &info, nullptr, &image.image), VK_SUCCESS);
         VkMemoryRequirements needs{};
@@ -66,45 +55,15 @@ class LimitsTest : public ComputeTest {
     void runWith(const std::string& glsl, const std::vector<VkDescriptorSetLayoutBinding>& bindings,
                  const std::function<std::vector<VkWriteDescriptorSet>(VkDescriptorSet)>& write,
                  const std::vector<uint32_t>& dynamicOffsets = {}) {
-        auto layoutInfo = make<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
-        layoutInfo.bindingCount = static_cast<uint32_t>(bindings.size());
-        layoutInfo.pBindings = bindings.data();
-        VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
-        ASSERT_EQ(vkCreateDescriptorSetLayout(device, &layoutInfo, nullptr, &setLayout), VK_SUCCESS);
-        defer([this, setLayout] { vkDestroyDescriptorSetLayout(device, setLayout, nullptr); });
+        const VkDescriptorSetLayout setLayout = makeSetLayout(bindings);
         std::vector<VkDescriptorPoolSize> sizes;
         for (const auto& binding : bindings) sizes.push_back({binding.descriptorType, binding.descriptorCount});
-        auto poolInfo = make<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
-        poolInfo.maxSets = 1;
-        poolInfo.poolSizeCount = static_cast<uint32_t>(sizes.size());
-        poolInfo.pPoolSizes = sizes.data();
-        VkDescriptorPool descriptorPool = VK_NULL_HANDLE;
-        ASSERT_EQ(vkCreateDescriptorPool(device, &poolInfo, nullptr, &descriptorPool), VK_SUCCESS);
-        defer([this, descriptorPool] { vkDestroyDescriptorPool(device, descriptorPool, nullptr); });
-        auto allocation = make<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
-        allocation.descriptorPool = descriptorPool;
-        allocation.descriptorSetCount = 1;
-        allocation.pSetLayouts = &setLayout;
-        VkDescriptorSet set = VK_NULL_HANDLE;
-        ASSERT_EQ(vkAllocateDescriptorSets(device, &allocation, &set), VK_SUCCESS);
+        const VkDescriptorSet set = makeEmptySet(setLayout, sizes);
         const std::vector<VkWriteDescriptorSet> writes = write(set);
         vkUpdateDescriptorSets(device, static_cast<uint32_t>(writes.size()), writes.data(), 0, nullptr);
 
-        auto pipelineLayout = make<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
-        pipelineLayout.setLayoutCount = 1;
-        pipelineLayout.pSetLayouts = &setLayout;
-        VkPipelineLayout layout = VK_NULL_HANDLE;
-        ASSERT_EQ(vkCreatePipelineLayout(device, &pipelineLayout, nullptr, &layout), VK_SUCCESS);
-        defer([this, layout] { vkDestroyPipelineLayout(device, layout, nullptr); });
-        auto info = make<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
-        info.stage = make<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
-        info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-        info.stage.module = makeShader(VK_SHADER_STAGE_COMPUTE_BIT, glsl);
-        info.stage.pName = "main";
-        info.layout = layout;
-        VkPipeline pipeline = VK_NULL_HANDLE;
-        ASSERT_EQ(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline), VK_SUCCESS);
-        defer([this, pipeline] { vkDestroyPipeline(device, pipeline, nullptr); });
+        const VkPipelineLayout layout = makeLayout({setLayout}, 0);
+        const VkPipeline pipeline = makeComputePipeline(layout, glsl);
         const VkCommandBuffer commands = begin();
         vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
         vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1, &set,
@@ -296,21 +255,8 @@ TEST_F(LimitsTest, descriptorSetsOfAllNumbers) {
         glsl += "layout(set = " + n + ", binding = 0) buffer B" + n + " { uint value" + n + "; };\n";
         sum += " + value" + n;
     }
-    auto layoutInfo = make<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
-    layoutInfo.setLayoutCount = sets;
-    layoutInfo.pSetLayouts = layouts.data();
-    VkPipelineLayout layout = VK_NULL_HANDLE;
-    ASSERT_EQ(vkCreatePipelineLayout(device, &layoutInfo, nullptr, &layout), VK_SUCCESS);
-    defer([this, layout] { vkDestroyPipelineLayout(device, layout, nullptr); });
-    auto info = make<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
-    info.stage = make<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
-    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-    info.stage.module = makeShader(VK_SHADER_STAGE_COMPUTE_BIT, glsl + "void main() { value0 = " + sum + "; }");
-    info.stage.pName = "main";
-    info.layout = layout;
-    VkPipeline pipeline = VK_NULL_HANDLE;
-    ASSERT_EQ(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline), VK_SUCCESS);
-    defer([this, pipeline] { vkDestroyPipeline(device, pipeline, nullptr); });
+    const VkPipelineLayout layout = makeLayout(layouts, 0);
+    const VkPipeline pipeline = makeComputePipeline(layout, glsl + "void main() { value0 = " + sum + "; }");
     const VkCommandBuffer commands = begin();
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, sets, bound.data(), 0, nullptr);
@@ -371,13 +317,8 @@ TEST_F(LimitsTest, buffersAndImagesAreNeighbours) {
     bufferInfo.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     VkBuffer buffer = VK_NULL_HANDLE;
     ASSERT_EQ(vkCreateBuffer(device, &bufferInfo, nullptr, &buffer), VK_SUCCESS);
-    auto imageInfo = make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
-    imageInfo.imageType = VK_IMAGE_TYPE_2D;
-    imageInfo.format = VK_FORMAT_R8_UINT;
-    imageInfo.extent = {5, 5, 1};
-    imageInfo.mipLevels = imageInfo.arrayLayers = 1;
-    imageInfo.samples = VK_SAMPLE_COUNT_1_BIT;
-    imageInfo.usage = VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    const auto imageInfo =
+        flatImage(VK_FORMAT_R8_UINT, {5, 5}, VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
     TestImage image;
     image.extent = {5, 5};
     ASSERT_EQ(vkCreateImage(device, &imageInfo, nullptr, &image.image), VK_SUCCESS);

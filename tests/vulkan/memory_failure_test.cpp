@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "tests/vulkan/failing_malloc.h"
-#include "tests/vulkan/structures.h"
+#include "tests/vulkan/pipeline_states.h"
 
 namespace vernier::test {
 namespace {
@@ -131,6 +131,12 @@ class SmallProgram {
         return present(physical);
     }
 
+    VkResult allocate(const VkMemoryRequirements& needs, VkDeviceMemory* memory) {
+        auto info = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
+        info.allocationSize = needs.size;
+        return api_.AllocateMemory(device_, &info, nullptr, memory);
+    }
+
     VkResult makeBuffer(VkDeviceSize size, VkBufferUsageFlags usage, VkBuffer* buffer, VkDeviceMemory* memory,
                         void** data) {
         auto info = make<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
@@ -139,9 +145,7 @@ class SmallProgram {
         TRY(api_.CreateBuffer(device_, &info, nullptr, buffer));
         VkMemoryRequirements needs{};
         api_.GetBufferMemoryRequirements(device_, *buffer, &needs);
-        auto allocation = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-        allocation.allocationSize = needs.size;
-        TRY(api_.AllocateMemory(device_, &allocation, nullptr, memory));
+        TRY(allocate(needs, memory));
         TRY(api_.BindBufferMemory(device_, *buffer, *memory, 0));
         return api_.MapMemory(device_, *memory, 0, VK_WHOLE_SIZE, 0, data);
     }
@@ -152,19 +156,12 @@ class SmallProgram {
         TRY(makeBuffer(16, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, &tint_, &tintMemory_, &tint));
         const float white[4] = {1, 1, 1, 1};
         std::memcpy(tint, white, sizeof white);
-        auto info = make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
-        info.imageType = VK_IMAGE_TYPE_2D;
-        info.format = VK_FORMAT_R8G8B8A8_UNORM;
-        info.extent = {kSize, kSize, 1};
-        info.mipLevels = info.arrayLayers = 1;
-        info.samples = VK_SAMPLE_COUNT_1_BIT;
-        info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+        const auto info = flatImage(VK_FORMAT_R8G8B8A8_UNORM, {kSize, kSize},
+                                    VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
         TRY(api_.CreateImage(device_, &info, nullptr, &image_));
         VkMemoryRequirements needs{};
         api_.GetImageMemoryRequirements(device_, image_, &needs);
-        auto allocation = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-        allocation.allocationSize = needs.size;
-        TRY(api_.AllocateMemory(device_, &allocation, nullptr, &imageMemory_));
+        TRY(allocate(needs, &imageMemory_));
         TRY(api_.BindImageMemory(device_, image_, imageMemory_, 0));
         auto view = make<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
         view.image = image_;
@@ -242,47 +239,10 @@ class SmallProgram {
         TRY(makeLayouts());
         TRY(makeModule(parts_.vertex, &vertex_));
         TRY(makeModule(parts_.fragment, &fragment_));
-        auto stage = make<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
-        stage.pName = "main";
-        VkPipelineShaderStageCreateInfo stages[2] = {stage, stage};
-        stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
-        stages[0].module = vertex_;
-        stages[1].stage = VK_SHADER_STAGE_FRAGMENT_BIT;
-        stages[1].module = fragment_;
-        const auto input =
-            make<VkPipelineVertexInputStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
-        auto assembly =
-            make<VkPipelineInputAssemblyStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
-        assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-        const VkViewport viewport{0, 0, kSize, kSize, 0, 1};
-        const VkRect2D scissor{{0, 0}, {kSize, kSize}};
-        auto viewports = make<VkPipelineViewportStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
-        viewports.viewportCount = viewports.scissorCount = 1;
-        viewports.pViewports = &viewport;
-        viewports.pScissors = &scissor;
-        auto raster =
-            make<VkPipelineRasterizationStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
-        raster.lineWidth = 1;
-        auto multisample =
-            make<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
-        multisample.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-        VkPipelineColorBlendAttachmentState blend{};
-        blend.colorWriteMask = 0xF;
-        auto colors =
-            make<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
-        colors.attachmentCount = 1;
-        colors.pAttachments = &blend;
-        auto info = make<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
-        info.stageCount = 2;
-        info.pStages = stages;
-        info.pVertexInputState = &input;
-        info.pInputAssemblyState = &assembly;
-        info.pViewportState = &viewports;
-        info.pRasterizationState = &raster;
-        info.pMultisampleState = &multisample;
-        info.pColorBlendState = &colors;
-        info.layout = layout_;
-        info.renderPass = pass_;
+        const VkPipelineShaderStageCreateInfo stages[] = {stageOf(VK_SHADER_STAGE_VERTEX_BIT, vertex_),
+                                                          stageOf(VK_SHADER_STAGE_FRAGMENT_BIT, fragment_)};
+        const PlainStates states({kSize, kSize});
+        const auto info = states.with(stages, layout_, pass_);
         return api_.CreateGraphicsPipelines(device_, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline_);
     }
 

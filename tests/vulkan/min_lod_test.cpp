@@ -21,34 +21,12 @@ class MinLodTest : public DrawTest {
 
     /// As large as the target, so that a full-screen draw samples level 0; level n is n / 4 throughout.
     void makeTexture() {
-        auto info = make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
-        info.imageType = VK_IMAGE_TYPE_2D;
-        info.format = VK_FORMAT_R8G8B8A8_UNORM;
-        info.extent = {kExtent.width, kExtent.height, 1};
+        auto info =
+            flatImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
         info.mipLevels = kLevels;
-        info.arrayLayers = 1;
-        info.samples = VK_SAMPLE_COUNT_1_BIT;
-        info.tiling = VK_IMAGE_TILING_OPTIMAL;
-        info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-        ASSERT_EQ(vkCreateImage(device, &info, nullptr, &texture_), VK_SUCCESS);
-        VkMemoryRequirements needs{};
-        vkGetImageMemoryRequirements(device, texture_, &needs);
-        auto allocation = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-        allocation.allocationSize = needs.size;
-        VkDeviceMemory memory = VK_NULL_HANDLE;
-        ASSERT_EQ(vkAllocateMemory(device, &allocation, nullptr, &memory), VK_SUCCESS);
-        ASSERT_EQ(vkBindImageMemory(device, texture_, memory, 0), VK_SUCCESS);
-        auto viewInfo = make<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
-        viewInfo.image = texture_;
-        viewInfo.viewType = VK_IMAGE_VIEW_TYPE_2D;
-        viewInfo.format = info.format;
-        viewInfo.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, kLevels, 0, 1};
-        ASSERT_EQ(vkCreateImageView(device, &viewInfo, nullptr, &view_), VK_SUCCESS);
-        defer([this, memory] {
-            vkDestroyImageView(device, view_, nullptr);
-            vkDestroyImage(device, texture_, nullptr);
-            vkFreeMemory(device, memory, nullptr);
-        });
+        const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, kLevels, 0, 1};
+        texture_ = makeImage(info).image;
+        view_ = makeView(texture_, VK_IMAGE_VIEW_TYPE_2D, info.format, all);
         const VkCommandBuffer commands = begin();
         const auto move = [&](VkImageLayout from, VkImageLayout to) {
             auto barrier = make<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
@@ -57,7 +35,7 @@ class MinLodTest : public DrawTest {
             barrier.newLayout = to;
             barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
             barrier.image = texture_;
-            barrier.subresourceRange = viewInfo.subresourceRange;
+            barrier.subresourceRange = all;
             vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0,
                                  nullptr, 0, nullptr, 1, &barrier);
         };
@@ -77,35 +55,15 @@ class MinLodTest : public DrawTest {
         samplerInfo.maxLod = VK_LOD_CLAMP_NONE;
         VkSampler sampler = VK_NULL_HANDLE;
         ASSERT_EQ(vkCreateSampler(device, &samplerInfo, nullptr, &sampler), VK_SUCCESS);
-        const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1,
-                                                   VK_SHADER_STAGE_FRAGMENT_BIT, nullptr};
-        auto setInfo = make<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
-        setInfo.bindingCount = 1;
-        setInfo.pBindings = &binding;
-        VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
-        ASSERT_EQ(vkCreateDescriptorSetLayout(device, &setInfo, nullptr, &setLayout), VK_SUCCESS);
-        const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1};
-        auto poolInfo = make<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
-        poolInfo.maxSets = 1;
-        poolInfo.poolSizeCount = 1;
-        poolInfo.pPoolSizes = &size;
-        VkDescriptorPool descriptors = VK_NULL_HANDLE;
-        ASSERT_EQ(vkCreateDescriptorPool(device, &poolInfo, nullptr, &descriptors), VK_SUCCESS);
-        defer([this, sampler, setLayout, descriptors] {
-            vkDestroyDescriptorPool(device, descriptors, nullptr);
-            vkDestroyDescriptorSetLayout(device, setLayout, nullptr);
-            vkDestroySampler(device, sampler, nullptr);
-        });
-        auto allocation = make<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
-        allocation.descriptorPool = descriptors;
-        allocation.descriptorSetCount = 1;
-        allocation.pSetLayouts = &setLayout;
-        ASSERT_EQ(vkAllocateDescriptorSets(device, &allocation, &set_), VK_SUCCESS);
+        defer([this, sampler] { vkDestroySampler(device, sampler, nullptr); });
+        const VkDescriptorSetLayout setLayout =
+            makeSetLayout({{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr}});
+        set_ = makeEmptySet(setLayout, {{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1}});
         const VkDescriptorImageInfo image{sampler, view_, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
         auto write = make<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
         write.dstSet = set_;
         write.descriptorCount = 1;
-        write.descriptorType = size.type;
+        write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
         write.pImageInfo = &image;
         vkUpdateDescriptorSets(device, 1, &write, 0, nullptr);
         layout_ = makeLayout({setLayout}, 0);

@@ -133,27 +133,9 @@ TEST_F(SampleCountTest, combinedDescriptorOfAMultisampledImage) {
     VkSampler sampler = VK_NULL_HANDLE;
     ASSERT_EQ(vkCreateSampler(device, &samplerInfo, nullptr, &sampler), VK_SUCCESS);
     defer([this, sampler] { vkDestroySampler(device, sampler, nullptr); });
-    const VkDescriptorSetLayoutBinding binding{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1,
-                                               VK_SHADER_STAGE_FRAGMENT_BIT, nullptr};
-    auto layoutInfo = make<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
-    layoutInfo.bindingCount = 1;
-    layoutInfo.pBindings = &binding;
-    VkDescriptorSetLayout layout = VK_NULL_HANDLE;
-    ASSERT_EQ(vkCreateDescriptorSetLayout(device, &layoutInfo, nullptr, &layout), VK_SUCCESS);
-    defer([this, layout] { vkDestroyDescriptorSetLayout(device, layout, nullptr); });
-    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1};
-    auto poolInfo = make<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
-    poolInfo.maxSets = poolInfo.poolSizeCount = 1;
-    poolInfo.pPoolSizes = &size;
-    VkDescriptorPool sets = VK_NULL_HANDLE;
-    ASSERT_EQ(vkCreateDescriptorPool(device, &poolInfo, nullptr, &sets), VK_SUCCESS);
-    defer([this, sets] { vkDestroyDescriptorPool(device, sets, nullptr); });
-    auto setInfo = make<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
-    setInfo.descriptorPool = sets;
-    setInfo.descriptorSetCount = 1;
-    setInfo.pSetLayouts = &layout;
-    VkDescriptorSet set = VK_NULL_HANDLE;
-    ASSERT_EQ(vkAllocateDescriptorSets(device, &setInfo, &set), VK_SUCCESS);
+    const VkDescriptorSetLayout layout =
+        makeSetLayout({{0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr}});
+    const VkDescriptorSet set = makeEmptySet(layout, {{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1}});
     const VkDescriptorImageInfo image{sampler, samples.view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
     auto write = make<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
     write.dstSet = set;

@@ -151,19 +151,7 @@ TEST_F(OutputTest, depthAndStencilResolve) {
         pass.clears[0].depthStencil = {1, 5};
         ASSERT_EQ(command<PFN_vkCreateRenderPass2KHR>("vkCreateRenderPass2KHR")(device, &info, nullptr, &pass.pass),
                   VK_SUCCESS);
-        const VkImageView views[] = {image.view, resolved.view};
-        auto framebuffer = make<VkFramebufferCreateInfo>(VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO);
-        framebuffer.renderPass = pass.pass;
-        framebuffer.attachmentCount = 2;
-        framebuffer.pAttachments = views;
-        framebuffer.width = kExtent.width;
-        framebuffer.height = kExtent.height;
-        framebuffer.layers = 1;
-        ASSERT_EQ(vkCreateFramebuffer(device, &framebuffer, nullptr, &pass.framebuffer), VK_SUCCESS);
-        defer([this, pass] {
-            vkDestroyFramebuffer(device, pass.framebuffer, nullptr);
-            vkDestroyRenderPass(device, pass.pass, nullptr);
-        });
+        makeFramebuffer(pass, {image.view, resolved.view});
         PipelineDesc desc = defaults("0.25");
         desc.samples = VK_SAMPLE_COUNT_4_BIT;
         desc.depthTest = true;
@@ -218,31 +206,12 @@ TEST_F(OutputTest, descriptorArraysAreIndexedAtRunTime) {
         bindings.push_back({b, types[b], 3, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr});
         sizes.push_back({types[b], 3});
     }
-    auto layoutInfo = make<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
-    layoutInfo.bindingCount = 4;
-    layoutInfo.pBindings = bindings.data();
-    VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
-    ASSERT_EQ(vkCreateDescriptorSetLayout(device, &layoutInfo, nullptr, &setLayout), VK_SUCCESS);
-    auto poolInfo = make<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
-    poolInfo.maxSets = 1;
-    poolInfo.poolSizeCount = 4;
-    poolInfo.pPoolSizes = sizes.data();
-    VkDescriptorPool descriptors = VK_NULL_HANDLE;
-    ASSERT_EQ(vkCreateDescriptorPool(device, &poolInfo, nullptr, &descriptors), VK_SUCCESS);
-    auto allocation = make<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
-    allocation.descriptorPool = descriptors;
-    allocation.descriptorSetCount = 1;
-    allocation.pSetLayouts = &setLayout;
-    VkDescriptorSet set = VK_NULL_HANDLE;
-    ASSERT_EQ(vkAllocateDescriptorSets(device, &allocation, &set), VK_SUCCESS);
+    const VkDescriptorSetLayout setLayout = makeSetLayout(bindings);
+    const VkDescriptorSet set = makeEmptySet(setLayout, sizes);
     const auto samplerInfo = make<VkSamplerCreateInfo>(VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO);
     VkSampler sampler = VK_NULL_HANDLE;
     ASSERT_EQ(vkCreateSampler(device, &samplerInfo, nullptr, &sampler), VK_SUCCESS);
-    defer([=, this] {
-        vkDestroySampler(device, sampler, nullptr);
-        vkDestroyDescriptorPool(device, descriptors, nullptr);
-        vkDestroyDescriptorSetLayout(device, setLayout, nullptr);
-    });
+    defer([=, this] { vkDestroySampler(device, sampler, nullptr); });
 
     // Element n of each array holds n + 1 in its own channel, times 20.
     const VkCommandBuffer setUp = begin();

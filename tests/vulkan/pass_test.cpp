@@ -35,22 +35,8 @@ class PassTest : public DrawTest {
         Pass pass;
         pass.extent = kExtent;
         EXPECT_EQ(vkCreateRenderPass(device, &passInfo, nullptr, &pass.pass), VK_SUCCESS);
-        auto framebuffer = make<VkFramebufferCreateInfo>(VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO);
-        framebuffer.renderPass = pass.pass;
-        framebuffer.width = kExtent.width;
-        framebuffer.height = kExtent.height;
-        framebuffer.layers = 1;
-        EXPECT_EQ(vkCreateFramebuffer(device, &framebuffer, nullptr, &pass.framebuffer), VK_SUCCESS);
-        auto queryInfo = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
-        queryInfo.queryType = VK_QUERY_TYPE_OCCLUSION;
-        queryInfo.queryCount = 1;
-        VkQueryPool queries = VK_NULL_HANDLE;
-        EXPECT_EQ(vkCreateQueryPool(device, &queryInfo, nullptr, &queries), VK_SUCCESS);
-        defer([this, pass, queries] {
-            vkDestroyQueryPool(device, queries, nullptr);
-            vkDestroyFramebuffer(device, pass.framebuffer, nullptr);
-            vkDestroyRenderPass(device, pass.pass, nullptr);
-        });
+        makeFramebuffer(pass, {});
+        const VkQueryPool queries = makeQueries(VK_QUERY_TYPE_OCCLUSION);
         PipelineDesc desc;
         desc.extent = kExtent;
         desc.vertex = vertex;
@@ -197,18 +183,7 @@ TEST_F(PassTest, secondSubpassKeepsDepthAndDrawsToAnotherImage) {
     pass.clears[1].color = {{0, 0, 1, 1}};
     pass.clears[2].depthStencil.depth = 1;
     ASSERT_EQ(vkCreateRenderPass(device, &info, nullptr, &pass.pass), VK_SUCCESS);
-    const VkImageView views[] = {first.view, second.view, depth.view};
-    auto framebuffer = make<VkFramebufferCreateInfo>(VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO);
-    framebuffer.renderPass = pass.pass;
-    framebuffer.attachmentCount = 3;
-    framebuffer.pAttachments = views;
-    framebuffer.width = framebuffer.height = 20;
-    framebuffer.layers = 1;
-    ASSERT_EQ(vkCreateFramebuffer(device, &framebuffer, nullptr, &pass.framebuffer), VK_SUCCESS);
-    defer([=, this] {
-        vkDestroyFramebuffer(device, pass.framebuffer, nullptr);
-        vkDestroyRenderPass(device, pass.pass, nullptr);
-    });
+    makeFramebuffer(pass, {first.view, second.view, depth.view});
     const VkPipeline near = colorPipeline(pass.pass, "1, 0, 0, 1", "0.25", 0);
     const VkPipeline hidden = colorPipeline(pass.pass, "0, 1, 0, 1", "0.5", 1);
     const VkCommandBuffer commands = begin();
@@ -225,36 +200,13 @@ TEST_F(PassTest, secondSubpassKeepsDepthAndDrawsToAnotherImage) {
 
 /// VK_KHR_maintenance1: a slice of a 3D image as the layer of a 2D view.
 TEST_F(PassTest, slicesOfVolumesCanBeDrawnTo) {
-    TestImage slice;
-    slice.format = VK_FORMAT_R8G8B8A8_UNORM;
-    slice.extent = {8, 4};
-    auto info = make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
+    auto info = flatImage(VK_FORMAT_R8G8B8A8_UNORM, {8, 4},
+                          VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
     info.flags = VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT;
     info.imageType = VK_IMAGE_TYPE_3D;
-    info.format = slice.format;
-    info.extent = {8, 4, 3};
-    info.mipLevels = 1;
-    info.arrayLayers = 1;
-    info.samples = VK_SAMPLE_COUNT_1_BIT;
-    info.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-    ASSERT_EQ(vkCreateImage(device, &info, nullptr, &slice.image), VK_SUCCESS);
-    VkMemoryRequirements needs{};
-    vkGetImageMemoryRequirements(device, slice.image, &needs);
-    auto allocation = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-    allocation.allocationSize = needs.size;
-    ASSERT_EQ(vkAllocateMemory(device, &allocation, nullptr, &slice.memory), VK_SUCCESS);
-    ASSERT_EQ(vkBindImageMemory(device, slice.image, slice.memory, 0), VK_SUCCESS);
-    auto view = make<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
-    view.image = slice.image;
-    view.viewType = VK_IMAGE_VIEW_TYPE_2D;
-    view.format = slice.format;
-    view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 1, 1};
-    ASSERT_EQ(vkCreateImageView(device, &view, nullptr, &slice.view), VK_SUCCESS);
-    defer([=, this] {
-        vkDestroyImageView(device, slice.view, nullptr);
-        vkDestroyImage(device, slice.image, nullptr);
-        vkFreeMemory(device, slice.memory, nullptr);
-    });
+    info.extent.depth = 3;
+    TestImage slice = makeImage(info);
+    slice.view = makeView(slice.image, VK_IMAGE_VIEW_TYPE_2D, slice.format, {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 1, 1});
     Pass pass = makePass(slice);
     pass.clears[0].color = {{0, 1, 0, 1}};
     const TestBuffer all = makeBuffer(8 * 4 * 3 * 4, VK_BUFFER_USAGE_TRANSFER_DST_BIT);

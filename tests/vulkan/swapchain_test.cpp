@@ -242,13 +242,8 @@ TEST_F(SwapchainTest, anImageIsAnotherNameOfOneOfTheSwapchain) {
     const VkSwapchainKHR swapchain = makeSwapchain(info);
     auto ofSwapchain = make<VkImageSwapchainCreateInfoKHR>(VK_STRUCTURE_TYPE_IMAGE_SWAPCHAIN_CREATE_INFO_KHR);
     ofSwapchain.swapchain = swapchain;
-    auto imageInfo = make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO, &ofSwapchain);
-    imageInfo.imageType = VK_IMAGE_TYPE_2D;
-    imageInfo.format = info.imageFormat;
-    imageInfo.extent = {kSwapchainExtent.width, kSwapchainExtent.height, 1};
-    imageInfo.mipLevels = imageInfo.arrayLayers = 1;
-    imageInfo.samples = VK_SAMPLE_COUNT_1_BIT;
-    imageInfo.usage = info.imageUsage;
+    auto imageInfo = flatImage(info.imageFormat, kSwapchainExtent, info.imageUsage);
+    imageInfo.pNext = &ofSwapchain;
     TestImage image;
     image.extent = kSwapchainExtent;
     ASSERT_EQ(vkCreateImage(device, &imageInfo, nullptr, &image.image), VK_SUCCESS);

@@ -129,12 +129,7 @@ TEST_F(SyncTest, timelineSemaphoresCount) {
 }
 
 TEST_F(SyncTest, timestampsRiseAndResultsCanBeCopied) {
-    auto info = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
-    info.queryType = VK_QUERY_TYPE_TIMESTAMP;
-    info.queryCount = 2;
-    VkQueryPool queries = VK_NULL_HANDLE;
-    ASSERT_EQ(vkCreateQueryPool(device, &info, nullptr, &queries), VK_SUCCESS);
-    defer([=, this] { vkDestroyQueryPool(device, queries, nullptr); });
+    const VkQueryPool queries = makeQueries(VK_QUERY_TYPE_TIMESTAMP, 2);
     const TestBuffer copy = makeBuffer(32, VK_BUFFER_USAGE_TRANSFER_DST_BIT);
     const VkCommandBuffer commands = begin();
     vkCmdResetQueryPool(commands, queries, 0, 2);
@@ -159,13 +154,7 @@ TEST_F(SyncTest, timestampsRiseAndResultsCanBeCopied) {
 
 TEST_F(SyncTest, statisticsThatDoNotExistAreNotCounted) {
     VERNIER_SKIP_WHEN_VALIDATED();
-    auto info = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
-    info.queryType = VK_QUERY_TYPE_PIPELINE_STATISTICS;
-    info.queryCount = 1;
-    info.pipelineStatistics = ~0u;
-    VkQueryPool queries = VK_NULL_HANDLE;
-    ASSERT_EQ(vkCreateQueryPool(device, &info, nullptr, &queries), VK_SUCCESS);
-    defer([this, queries] { vkDestroyQueryPool(device, queries, nullptr); });
+    const VkQueryPool queries = makeQueries(VK_QUERY_TYPE_PIPELINE_STATISTICS, 1, ~0u);
     const VkCommandBuffer commands = begin();
     vkCmdResetQueryPool(commands, queries, 0, 1);
     vkCmdBeginQuery(commands, queries, 0, 0);

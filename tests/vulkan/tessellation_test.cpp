@@ -219,15 +219,11 @@ void main() { outColor = vec4(0, gl_ViewIndex / 255.0, 0, 1); gl_Position = vec4
 }
 
 TEST_F(TessellationTest, statistics) {
-    auto info = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
-    info.queryType = VK_QUERY_TYPE_PIPELINE_STATISTICS;
-    info.queryCount = 1;
-    info.pipelineStatistics = VK_QUERY_PIPELINE_STATISTIC_TESSELLATION_CONTROL_SHADER_PATCHES_BIT |
-                              VK_QUERY_PIPELINE_STATISTIC_TESSELLATION_EVALUATION_SHADER_INVOCATIONS_BIT |
-                              VK_QUERY_PIPELINE_STATISTIC_CLIPPING_INVOCATIONS_BIT;
-    VkQueryPool queries = VK_NULL_HANDLE;
-    ASSERT_EQ(vkCreateQueryPool(device, &info, nullptr, &queries), VK_SUCCESS);
-    defer([this, queries] { vkDestroyQueryPool(device, queries, nullptr); });
+    const VkQueryPool queries =
+        makeQueries(VK_QUERY_TYPE_PIPELINE_STATISTICS, 1,
+                    VK_QUERY_PIPELINE_STATISTIC_TESSELLATION_CONTROL_SHADER_PATCHES_BIT |
+                        VK_QUERY_PIPELINE_STATISTIC_TESSELLATION_EVALUATION_SHADER_INVOCATIONS_BIT |
+                        VK_QUERY_PIPELINE_STATISTIC_CLIPPING_INVOCATIONS_BIT);
     PipelineDesc desc = plain(3);
     desc.control = control("gl_TessLevelOuter = float[4](2, 3, 4, 5); gl_TessLevelInner = float[2](4, 6);");
     const VkCommandBuffer reset = begin();

@@ -1,5 +1,7 @@
 #include "tests/vulkan/test_compute.h"
 
+#include "tests/vulkan/pipeline_states.h"
+
 namespace vernier::test {
 
 VkDescriptorSet ComputeTest::makeSet(const std::vector<TestDescriptor>& descriptors, VkDescriptorSetLayout* layout) {
@@ -10,25 +12,8 @@ VkDescriptorSet ComputeTest::makeSet(const std::vector<TestDescriptor>& descript
                             descriptor.sampler != VK_NULL_HANDLE ? &descriptor.sampler : nullptr});
         sizes.push_back({descriptor.type, 1});
     }
-    auto info = make<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
-    info.bindingCount = static_cast<uint32_t>(bindings.size());
-    info.pBindings = bindings.data();
-    EXPECT_EQ(vkCreateDescriptorSetLayout(device, &info, nullptr, layout), VK_SUCCESS);
-    defer([this, made = *layout] { vkDestroyDescriptorSetLayout(device, made, nullptr); });
-
-    auto poolInfo = make<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
-    poolInfo.maxSets = 1;
-    poolInfo.poolSizeCount = static_cast<uint32_t>(sizes.size());
-    poolInfo.pPoolSizes = sizes.data();
-    VkDescriptorPool descriptorPool = VK_NULL_HANDLE;
-    EXPECT_EQ(vkCreateDescriptorPool(device, &poolInfo, nullptr, &descriptorPool), VK_SUCCESS);
-    defer([this, descriptorPool] { vkDestroyDescriptorPool(device, descriptorPool, nullptr); });
-    auto allocate = make<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
-    allocate.descriptorPool = descriptorPool;
-    allocate.descriptorSetCount = 1;
-    allocate.pSetLayouts = layout;
-    VkDescriptorSet set = VK_NULL_HANDLE;
-    EXPECT_EQ(vkAllocateDescriptorSets(device, &allocate, &set), VK_SUCCESS);
+    *layout = makeSetLayout(bindings);
+    const VkDescriptorSet set = makeEmptySet(*layout, sizes);
 
     for (uint32_t i = 0; i < descriptors.size(); ++i) {
         const TestDescriptor& descriptor = descriptors[i];
@@ -53,26 +38,23 @@ ComputeTest::Compute ComputeTest::makeCompute(const std::string& glsl, const std
     Compute compute;
     VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
     compute.set = makeSet(descriptors, &setLayout);
-    const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, pushBytes};
-    auto layoutInfo = make<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
-    layoutInfo.setLayoutCount = 1;
-    layoutInfo.pSetLayouts = &setLayout;
-    layoutInfo.pushConstantRangeCount = pushBytes != 0 ? 1 : 0;
-    layoutInfo.pPushConstantRanges = &range;
-    EXPECT_EQ(vkCreatePipelineLayout(device, &layoutInfo, nullptr, &compute.layout), VK_SUCCESS);
-    defer([this, layout = compute.layout] { vkDestroyPipelineLayout(device, layout, nullptr); });
+    compute.layout = makeLayout({setLayout}, pushBytes, VK_SHADER_STAGE_COMPUTE_BIT);
 
+    compute.pipeline = makeComputePipeline(compute.layout, glsl, specialization, expected, flags);
+    return compute;
+}
+
+VkPipeline ComputeTest::makeComputePipeline(VkPipelineLayout layout, const std::string& glsl,
+                                            const VkSpecializationInfo* specialization, VkResult expected,
+                                            VkPipelineCreateFlags flags) {
     auto info = make<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
     info.flags = flags;
-    info.stage = make<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
-    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-    info.stage.module = makeShader(VK_SHADER_STAGE_COMPUTE_BIT, glsl);
-    info.stage.pName = "main";
-    info.stage.pSpecializationInfo = specialization;
-    info.layout = compute.layout;
-    EXPECT_EQ(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &compute.pipeline), expected);
-    defer([this, pipeline = compute.pipeline] { vkDestroyPipeline(device, pipeline, nullptr); });
-    return compute;
+    info.stage = stageOf(VK_SHADER_STAGE_COMPUTE_BIT, makeShader(VK_SHADER_STAGE_COMPUTE_BIT, glsl), specialization);
+    info.layout = layout;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    EXPECT_EQ(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline), expected);
+    defer([this, pipeline] { vkDestroyPipeline(device, pipeline, nullptr); });
+    return pipeline;
 }
 
 VkBufferView ComputeTest::makeTexels(const TestBuffer& buffer, VkFormat format, VkDeviceSize offset,

@@ -64,6 +64,9 @@ class ComputeTest : public DrawTest {
     Compute makeCompute(const std::string& glsl, const std::vector<TestDescriptor>& descriptors, uint32_t pushBytes = 0,
                         const VkSpecializationInfo* specialization = nullptr, VkResult expected = VK_SUCCESS,
                         VkPipelineCreateFlags flags = 0);
+    VkPipeline makeComputePipeline(VkPipelineLayout layout, const std::string& glsl,
+                                   const VkSpecializationInfo* specialization = nullptr, VkResult expected = VK_SUCCESS,
+                                   VkPipelineCreateFlags flags = 0);
     /// A set for all stages, and its layout.
     VkDescriptorSet makeSet(const std::vector<TestDescriptor>& descriptors, VkDescriptorSetLayout* layout);
     VkBufferView makeTexels(const TestBuffer& buffer, VkFormat format, VkDeviceSize offset = 0,

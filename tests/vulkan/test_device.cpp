@@ -145,58 +145,63 @@ TestBuffer VulkanTest::makeBuffer(VkDeviceSize size, VkBufferUsageFlags usage) {
     vkGetBufferMemoryRequirements(device, result.buffer, &needs);
     EXPECT_EQ(needs.memoryTypeBits, 1u);
     EXPECT_GE(needs.size, size);
-    auto allocation = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-    allocation.allocationSize = needs.size;
     auto flags = make<VkMemoryAllocateFlagsInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO);
     flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
-    if ((usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT) != 0) allocation.pNext = &flags;
-    EXPECT_EQ(vkAllocateMemory(device, &allocation, nullptr, &result.memory), VK_SUCCESS);
+    result.memory = allocate(needs.size, (usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT) != 0 ? &flags : nullptr);
     EXPECT_EQ(vkBindBufferMemory(device, result.buffer, result.memory, 0), VK_SUCCESS);
     EXPECT_EQ(vkMapMemory(device, result.memory, 0, VK_WHOLE_SIZE, 0, &result.data), VK_SUCCESS);
-    defer([this, result] {
-        vkDestroyBuffer(device, result.buffer, nullptr);
-        vkFreeMemory(device, result.memory, nullptr);
-    });
+    defer([this, buffer = result.buffer] { vkDestroyBuffer(device, buffer, nullptr); });
     return result;
+}
+
+VkDeviceMemory VulkanTest::allocate(VkDeviceSize size, const void* chain, VkResult expected) {
+    auto info = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, chain);
+    info.allocationSize = size;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    EXPECT_EQ(vkAllocateMemory(device, &info, nullptr, &memory), expected);
+    defer([this, memory] { vkFreeMemory(device, memory, nullptr); });
+    return memory;
+}
+
+TestImage VulkanTest::makeImage(const VkImageCreateInfo& info) {
+    TestImage result;
+    result.format = info.format;
+    result.extent = {info.extent.width, info.extent.height};
+    EXPECT_EQ(vkCreateImage(device, &info, nullptr, &result.image), VK_SUCCESS);
+    VkMemoryRequirements needs{};
+    vkGetImageMemoryRequirements(device, result.image, &needs);
+    result.memory = allocate(needs.size);
+    EXPECT_EQ(vkBindImageMemory(device, result.image, result.memory, 0), VK_SUCCESS);
+    defer([this, image = result.image] { vkDestroyImage(device, image, nullptr); });
+    return result;
+}
+
+VkImageView VulkanTest::makeView(VkImage image, VkImageViewType type, VkFormat format,
+                                 const VkImageSubresourceRange& range, const void* chain) {
+    auto info = make<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO, chain);
+    info.image = image;
+    info.viewType = type;
+    info.format = format;
+    info.subresourceRange = range;
+    VkImageView view = VK_NULL_HANDLE;
+    EXPECT_EQ(vkCreateImageView(device, &info, nullptr, &view), VK_SUCCESS);
+    defer([this, view] { vkDestroyImageView(device, view, nullptr); });
+    return view;
 }
 
 TestImage VulkanTest::makeImage(VkFormat format, VkExtent2D extent, VkImageUsageFlags usage,
                                 VkSampleCountFlagBits samples, uint32_t layers) {
-    TestImage result;
-    result.format = format;
-    result.extent = extent;
-    auto info = make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
-    info.imageType = VK_IMAGE_TYPE_2D;
-    info.format = format;
-    info.extent = {extent.width, extent.height, 1};
-    info.mipLevels = 1;
+    auto info = flatImage(format, extent, usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
     info.arrayLayers = layers;
     info.samples = samples;
-    info.tiling = VK_IMAGE_TILING_OPTIMAL;
-    info.usage = usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    EXPECT_EQ(vkCreateImage(device, &info, nullptr, &result.image), VK_SUCCESS);
-    VkMemoryRequirements needs{};
-    vkGetImageMemoryRequirements(device, result.image, &needs);
-    auto allocation = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-    allocation.allocationSize = needs.size;
-    EXPECT_EQ(vkAllocateMemory(device, &allocation, nullptr, &result.memory), VK_SUCCESS);
-    EXPECT_EQ(vkBindImageMemory(device, result.image, result.memory, 0), VK_SUCCESS);
-    auto view = make<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
-    view.image = result.image;
-    view.viewType = layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
-    view.format = format;
+    TestImage result = makeImage(info);
     const bool both = format == VK_FORMAT_D32_SFLOAT_S8_UINT;
     const bool depth = both || format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM;
     VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT;
     if (depth) aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
     if (both) aspect |= VK_IMAGE_ASPECT_STENCIL_BIT;
-    view.subresourceRange = {aspect, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
-    EXPECT_EQ(vkCreateImageView(device, &view, nullptr, &result.view), VK_SUCCESS);
-    defer([this, result] {
-        vkDestroyImageView(device, result.view, nullptr);
-        vkDestroyImage(device, result.image, nullptr);
-        vkFreeMemory(device, result.memory, nullptr);
-    });
+    result.view = makeView(result.image, layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D, format,
+                           {aspect, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS});
     return result;
 }
 
@@ -209,6 +214,17 @@ VkShaderModule VulkanTest::makeShader(VkShaderStageFlagBits stage, const std::st
     EXPECT_EQ(vkCreateShaderModule(device, &info, nullptr, &module), VK_SUCCESS);
     defer([this, module] { vkDestroyShaderModule(device, module, nullptr); });
     return module;
+}
+
+VkQueryPool VulkanTest::makeQueries(VkQueryType type, uint32_t count, VkQueryPipelineStatisticFlags statistics) {
+    auto info = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
+    info.queryType = type;
+    info.queryCount = count;
+    info.pipelineStatistics = statistics;
+    VkQueryPool queries = VK_NULL_HANDLE;
+    EXPECT_EQ(vkCreateQueryPool(device, &info, nullptr, &queries), VK_SUCCESS);
+    defer([this, queries] { vkDestroyQueryPool(device, queries, nullptr); });
+    return queries;
 }
 
 VkCommandBuffer VulkanTest::begin() {

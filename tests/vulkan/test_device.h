@@ -61,7 +61,15 @@ class VulkanTest : public testing::Test {
     TestBuffer makeBuffer(VkDeviceSize size, VkBufferUsageFlags usage);
     TestImage makeImage(VkFormat format, VkExtent2D extent, VkImageUsageFlags usage,
                         VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT, uint32_t layers = 1);
+    /// As described, with memory of its own; it has no view.
+    TestImage makeImage(const VkImageCreateInfo& info);
+    VkImageView makeView(VkImage image, VkImageViewType type, VkFormat format, const VkImageSubresourceRange& range,
+                         const void* chain = nullptr);
+    /// Memory that is freed at the end, where it is `expected` to be had.
+    VkDeviceMemory allocate(VkDeviceSize size, const void* chain = nullptr, VkResult expected = VK_SUCCESS);
     VkShaderModule makeShader(VkShaderStageFlagBits stage, const std::string& glsl);
+    /// `statistics`: of queries that count those.
+    VkQueryPool makeQueries(VkQueryType type, uint32_t count = 1, VkQueryPipelineStatisticFlags statistics = 0);
     VkCommandBuffer begin();
     /// Ends, submits and waits.
     void submit(VkCommandBuffer commands);

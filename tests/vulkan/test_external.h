@@ -18,15 +18,6 @@ class ExternalTest : public VulkanTest {
 
     // --- Memory
 
-    VkDeviceMemory allocate(VkDeviceSize size, const void* chain, VkResult expected = VK_SUCCESS) {
-        auto info = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-        info.pNext = chain;
-        info.allocationSize = size;
-        VkDeviceMemory memory = VK_NULL_HANDLE;
-        EXPECT_EQ(vkAllocateMemory(device, &info, nullptr, &memory), expected);
-        if (memory != VK_NULL_HANDLE) defer([this, memory] { vkFreeMemory(device, memory, nullptr); });
-        return memory;
-    }
     VkDeviceMemory exportable(VkDeviceSize size) {
         auto info = make<VkExportMemoryAllocateInfo>(VK_STRUCTURE_TYPE_EXPORT_MEMORY_ALLOCATE_INFO);
         info.handleTypes = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;

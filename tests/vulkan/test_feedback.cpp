@@ -45,16 +45,6 @@ TestBuffer FeedbackTest::makeFeedbackBuffer(VkDeviceSize size, VkBufferUsageFlag
     return buffer;
 }
 
-VkQueryPool FeedbackTest::makeQueries(VkQueryType type, uint32_t count) {
-    auto info = make<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
-    info.queryType = type;
-    info.queryCount = count;
-    VkQueryPool queries = VK_NULL_HANDLE;
-    EXPECT_EQ(vkCreateQueryPool(device, &info, nullptr, &queries), VK_SUCCESS);
-    defer([this, queries] { vkDestroyQueryPool(device, queries, nullptr); });
-    return queries;
-}
-
 FeedbackTest::Captured FeedbackTest::capture(const Feedback& feedback) {
     const Commands vk = feedbackCommands();
     const TestImage color = makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);

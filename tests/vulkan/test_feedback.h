@@ -51,7 +51,6 @@ class FeedbackTest : public DrawTest {
     /// Every pause ends the render pass, so that barriers can stand between.
     Captured capture(const Feedback& feedback);
     TestBuffer makeFeedbackBuffer(VkDeviceSize size, VkBufferUsageFlags more = 0);
-    VkQueryPool makeQueries(VkQueryType type, uint32_t count = 1);
 
     struct Commands {
         PFN_vkCmdBindTransformFeedbackBuffersEXT bind;

@@ -1,5 +1,7 @@
 #include "tests/vulkan/test_pipeline.h"
 
+#include "tests/vulkan/pipeline_states.h"
+
 namespace vernier::test {
 
 uint32_t pixelAt(const std::vector<uint8_t>& texels, const TestImage& image, uint32_t x, uint32_t y) {
@@ -50,19 +52,52 @@ DrawTest::Pass DrawTest::makePass(const TestImage& color, const TestImage* depth
     multiview.pViewMasks = &viewMask;
     if (viewMask != 0) info.pNext = &multiview;
     EXPECT_EQ(vkCreateRenderPass(device, &info, nullptr, &result.pass), VK_SUCCESS);
-    auto framebuffer = make<VkFramebufferCreateInfo>(VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO);
-    framebuffer.renderPass = result.pass;
-    framebuffer.attachmentCount = static_cast<uint32_t>(views.size());
-    framebuffer.pAttachments = views.data();
-    framebuffer.width = color.extent.width;
-    framebuffer.height = color.extent.height;
-    framebuffer.layers = viewMask != 0 ? 1 : layers;  // views choose theirs
-    EXPECT_EQ(vkCreateFramebuffer(device, &framebuffer, nullptr, &result.framebuffer), VK_SUCCESS);
-    defer([this, result] {
-        vkDestroyFramebuffer(device, result.framebuffer, nullptr);
-        vkDestroyRenderPass(device, result.pass, nullptr);
-    });
+    makeFramebuffer(result, views, viewMask != 0 ? 1 : layers);  // views choose theirs
     return result;
+}
+
+void DrawTest::makeFramebuffer(Pass& pass, const std::vector<VkImageView>& views, uint32_t layers) {
+    auto info = make<VkFramebufferCreateInfo>(VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO);
+    info.renderPass = pass.pass;
+    info.attachmentCount = static_cast<uint32_t>(views.size());
+    info.pAttachments = views.data();
+    info.width = pass.extent.width;
+    info.height = pass.extent.height;
+    info.layers = layers;
+    EXPECT_EQ(vkCreateFramebuffer(device, &info, nullptr, &pass.framebuffer), VK_SUCCESS);
+    defer([this, pass] {
+        vkDestroyFramebuffer(device, pass.framebuffer, nullptr);
+        vkDestroyRenderPass(device, pass.pass, nullptr);
+    });
+}
+
+VkDescriptorSetLayout DrawTest::makeSetLayout(const std::vector<VkDescriptorSetLayoutBinding>& bindings) {
+    auto info = make<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
+    info.bindingCount = static_cast<uint32_t>(bindings.size());
+    info.pBindings = bindings.data();
+    VkDescriptorSetLayout layout = VK_NULL_HANDLE;
+    EXPECT_EQ(vkCreateDescriptorSetLayout(device, &info, nullptr, &layout), VK_SUCCESS);
+    defer([this, layout] { vkDestroyDescriptorSetLayout(device, layout, nullptr); });
+    return layout;
+}
+
+VkDescriptorSet DrawTest::makeEmptySet(VkDescriptorSetLayout layout, const std::vector<VkDescriptorPoolSize>& sizes,
+                                       VkDescriptorPoolCreateFlags flags) {
+    auto info = make<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
+    info.flags = flags;
+    info.maxSets = 1;
+    info.poolSizeCount = static_cast<uint32_t>(sizes.size());
+    info.pPoolSizes = sizes.data();
+    VkDescriptorPool descriptors = VK_NULL_HANDLE;
+    EXPECT_EQ(vkCreateDescriptorPool(device, &info, nullptr, &descriptors), VK_SUCCESS);
+    defer([this, descriptors] { vkDestroyDescriptorPool(device, descriptors, nullptr); });
+    auto allocation = make<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
+    allocation.descriptorPool = descriptors;
+    allocation.descriptorSetCount = 1;
+    allocation.pSetLayouts = &layout;
+    VkDescriptorSet set = VK_NULL_HANDLE;
+    EXPECT_EQ(vkAllocateDescriptorSets(device, &allocation, &set), VK_SUCCESS);
+    return set;
 }
 
 VkPipelineLayout DrawTest::makeLayout(const std::vector<VkDescriptorSetLayout>& sets, uint32_t pushBytes,
@@ -82,13 +117,7 @@ VkPipelineLayout DrawTest::makeLayout(const std::vector<VkDescriptorSetLayout>& 
 VkPipeline DrawTest::makePipeline(VkRenderPass pass, const PipelineDesc& desc, VkResult expected) {
     std::vector<VkPipelineShaderStageCreateInfo> stages;
     const auto addStage = [&](VkShaderStageFlagBits stage, VkShaderModule module, const VkSpecializationInfo* special) {
-        if (module == VK_NULL_HANDLE) return;
-        auto& info = stages.emplace_back(
-            make<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO));
-        info.stage = stage;
-        info.module = module;
-        info.pName = "main";
-        info.pSpecializationInfo = special;
+        if (module != VK_NULL_HANDLE) stages.push_back(stageOf(stage, module, special));
     };
     addStage(VK_SHADER_STAGE_VERTEX_BIT, desc.vertex, nullptr);
     addStage(VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT, desc.control, nullptr);
@@ -96,41 +125,25 @@ VkPipeline DrawTest::makePipeline(VkRenderPass pass, const PipelineDesc& desc, V
     addStage(VK_SHADER_STAGE_GEOMETRY_BIT, desc.geometry, desc.specialization);
     addStage(VK_SHADER_STAGE_FRAGMENT_BIT, desc.fragment, desc.specialization);
 
-    auto input = make<VkPipelineVertexInputStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
-    input.vertexBindingDescriptionCount = static_cast<uint32_t>(desc.bindings.size());
-    input.pVertexBindingDescriptions = desc.bindings.data();
-    input.vertexAttributeDescriptionCount = static_cast<uint32_t>(desc.attributes.size());
-    input.pVertexAttributeDescriptions = desc.attributes.data();
-    auto assembly =
-        make<VkPipelineInputAssemblyStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
-    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-    const VkViewport viewport{0, 0, static_cast<float>(desc.extent.width), static_cast<float>(desc.extent.height),
-                              0, 1};
-    const VkRect2D scissor{{0, 0}, desc.extent};
-    auto viewports = make<VkPipelineViewportStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
-    viewports.viewportCount = viewports.scissorCount = 1;
-    viewports.pViewports = &viewport;
-    viewports.pScissors = &scissor;
-    auto raster =
-        make<VkPipelineRasterizationStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
-    raster.lineWidth = 1;
-    auto multisample =
-        make<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
-    multisample.rasterizationSamples = desc.samples;
+    PlainStates states(desc.extent);
+    states.input.vertexBindingDescriptionCount = static_cast<uint32_t>(desc.bindings.size());
+    states.input.pVertexBindingDescriptions = desc.bindings.data();
+    states.input.vertexAttributeDescriptionCount = static_cast<uint32_t>(desc.attributes.size());
+    states.input.pVertexAttributeDescriptions = desc.attributes.data();
+    states.multisample.rasterizationSamples = desc.samples;
     auto depth =
         make<VkPipelineDepthStencilStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
     depth.depthTestEnable = depth.depthWriteEnable = desc.depthTest ? VK_TRUE : VK_FALSE;
     depth.depthCompareOp = VK_COMPARE_OP_LESS;
-    VkPipelineColorBlendAttachmentState blend{};
-    blend.colorWriteMask = 0xF;
-    std::vector<VkPipelineColorBlendAttachmentState> blends(desc.colorCount, blend);
-    auto colors = make<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
-    colors.attachmentCount = desc.colorCount;
-    colors.pAttachments = blends.data();
+    std::vector<VkPipelineColorBlendAttachmentState> blends(desc.colorCount, states.blend);
+    states.colors.attachmentCount = desc.colorCount;
+    states.colors.pAttachments = blends.data();
     auto dynamic = make<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
     dynamic.dynamicStateCount = static_cast<uint32_t>(desc.dynamic.size());
     dynamic.pDynamicStates = desc.dynamic.data();
-    if (desc.change) desc.change({input, assembly, viewports, raster, multisample, depth, colors, blends});
+    if (desc.change)
+        desc.change({states.input, states.assembly, states.viewports, states.raster, states.multisample, depth,
+                     states.colors, blends});
 
     auto origin = make<VkPipelineTessellationDomainOriginStateCreateInfo>(
         VK_STRUCTURE_TYPE_PIPELINE_TESSELLATION_DOMAIN_ORIGIN_STATE_CREATE_INFO);
@@ -141,22 +154,12 @@ VkPipeline DrawTest::makePipeline(VkRenderPass pass, const PipelineDesc& desc, V
     tessellation.pNext = &origin;
     tessellation.patchControlPoints = desc.patchControlPoints;
 
-    auto info = make<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
+    auto info = states.with(stages, desc.layout != VK_NULL_HANDLE ? desc.layout : makeLayout({}, 0), pass);
     info.pNext = desc.next;
     info.flags = desc.flags;
-    info.stageCount = static_cast<uint32_t>(stages.size());
-    info.pStages = stages.data();
-    info.pVertexInputState = &input;
-    info.pInputAssemblyState = &assembly;
     info.pTessellationState = desc.patchControlPoints != 0 ? &tessellation : nullptr;
-    info.pViewportState = &viewports;
-    info.pRasterizationState = &raster;
-    info.pMultisampleState = &multisample;
     info.pDepthStencilState = &depth;
-    info.pColorBlendState = &colors;
     info.pDynamicState = &dynamic;
-    info.layout = desc.layout != VK_NULL_HANDLE ? desc.layout : makeLayout({}, 0);
-    info.renderPass = pass;
     info.subpass = desc.subpass;
     VkPipeline pipeline = VK_NULL_HANDLE;
     EXPECT_EQ(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline), expected)
@@ -175,10 +178,12 @@ void DrawTest::beginPass(VkCommandBuffer commands, const Pass& pass, VkSubpassCo
     vkCmdBeginRenderPass(commands, &info, contents);
 }
 
-void DrawTest::drawTriangle(const Pass& pass, VkPipeline pipeline) {
+void DrawTest::drawTriangle(const Pass& pass, VkPipeline pipeline, VkPipelineLayout layout, VkDescriptorSet set) {
     const VkCommandBuffer commands = begin();
     beginPass(commands, pass);
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+    if (set != VK_NULL_HANDLE)
+        vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &set, 0, nullptr);
     vkCmdDraw(commands, 3, 1, 0, 0);
     vkCmdEndRenderPass(commands);
     submit(commands);

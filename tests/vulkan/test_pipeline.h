@@ -21,6 +21,14 @@ class DrawTest : public VulkanTest {
     Pass makePass(const TestImage& color, const TestImage* depth = nullptr, const TestImage* resolve = nullptr,
                   VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_4_BIT, uint32_t layers = 1, uint32_t viewMask = 0);
 
+    /// The framebuffer of a pass that has its render pass and extent; both are destroyed at the end.
+    void makeFramebuffer(Pass& pass, const std::vector<VkImageView>& views, uint32_t layers = 1);
+
+    VkDescriptorSetLayout makeSetLayout(const std::vector<VkDescriptorSetLayoutBinding>& bindings);
+    /// A set from a pool of these sizes, in which nothing is written yet.
+    VkDescriptorSet makeEmptySet(VkDescriptorSetLayout layout, const std::vector<VkDescriptorPoolSize>& sizes,
+                                 VkDescriptorPoolCreateFlags flags = 0);
+
     /// What a test may change before the pipeline is made of it.
     struct PipelineStates {
         VkPipelineVertexInputStateCreateInfo& input;
@@ -58,8 +66,9 @@ class DrawTest : public VulkanTest {
                                                                 VK_SHADER_STAGE_FRAGMENT_BIT);
 
     void beginPass(VkCommandBuffer commands, const Pass& pass, VkSubpassContents contents = VK_SUBPASS_CONTENTS_INLINE);
-    /// A submission of one pass that draws three vertices; nothing is bound but the pipeline.
-    void drawTriangle(const Pass& pass, VkPipeline pipeline);
+    /// A submission of one pass that draws three vertices; nothing is bound but the pipeline and, of `layout`, a set.
+    void drawTriangle(const Pass& pass, VkPipeline pipeline, VkPipelineLayout layout = VK_NULL_HANDLE,
+                      VkDescriptorSet set = VK_NULL_HANDLE);
 
     /// A full-screen triangle without vertex buffers: gl_Position from gl_VertexIndex, at depth `z`.
     VkShaderModule fullScreen(const std::string& z = "0.5");

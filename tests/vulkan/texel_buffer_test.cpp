@@ -88,14 +88,7 @@ layout(set = 0, binding = 0) uniform samplerBuffer positions;
 void main() { gl_Position = texelFetch(positions, gl_VertexIndex); })");
     desc.fragment = constantColor("0, 0, 1, 1");
     desc.layout = makeLayout({setLayout}, 0);
-    const VkPipeline pipeline = makePipeline(pass.pass, desc);
-    const VkCommandBuffer commands = begin();
-    beginPass(commands, pass);
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, desc.layout, 0, 1, &set, 0, nullptr);
-    vkCmdDraw(commands, 3, 1, 0, 0);
-    vkCmdEndRenderPass(commands);
-    submit(commands);
+    drawTriangle(pass, makePipeline(pass.pass, desc), desc.layout, set);
     const auto texels = readImage(color, VK_IMAGE_ASPECT_COLOR_BIT, 4);
     for (const uint32_t at : {0u, 7u}) EXPECT_EQ(pixelAt(texels, color, at, 7 - at), 0xFFFF0000u);
 }

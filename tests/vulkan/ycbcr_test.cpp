@@ -160,27 +160,15 @@ class YcbcrTest : public ComputeTest {
     }
 
     VkImage makePlanar(const Planar& format, VkImageTiling tiling, VkImageCreateFlags flags) {
-        auto info = make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
+        auto info =
+            flatImage(format.format, {kWidth, kHeight},
+                      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
         info.flags = flags;
-        info.imageType = VK_IMAGE_TYPE_2D;
-        info.format = format.format;
-        info.extent = {kWidth, kHeight, 1};
-        info.mipLevels = info.arrayLayers = 1;
-        info.samples = VK_SAMPLE_COUNT_1_BIT;
         info.tiling = tiling;
-        info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
         VkImage image = VK_NULL_HANDLE;
         EXPECT_EQ(vkCreateImage(device, &info, nullptr, &image), VK_SUCCESS);
         defer([this, image] { vkDestroyImage(device, image, nullptr); });
         return image;
-    }
-    VkDeviceMemory allocate(VkDeviceSize size) {
-        auto info = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-        info.allocationSize = size;
-        VkDeviceMemory memory = VK_NULL_HANDLE;
-        EXPECT_EQ(vkAllocateMemory(device, &info, nullptr, &memory), VK_SUCCESS);
-        defer([this, memory] { vkFreeMemory(device, memory, nullptr); });
-        return memory;
     }
     VkDeviceMemory bindWhole(VkImage image) {
         VkMemoryRequirements needs{};
@@ -256,16 +244,7 @@ class YcbcrTest : public ComputeTest {
         return sampler;
     }
     VkImageView makeView(VkImage image, VkFormat format, VkImageAspectFlags aspect, const void* chain) {
-        auto info = make<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
-        info.pNext = chain;
-        info.image = image;
-        info.viewType = VK_IMAGE_VIEW_TYPE_2D;
-        info.format = format;
-        info.subresourceRange = {aspect, 0, 1, 0, 1};
-        VkImageView view = VK_NULL_HANDLE;
-        EXPECT_EQ(vkCreateImageView(device, &info, nullptr, &view), VK_SUCCESS);
-        defer([this, view] { vkDestroyImageView(device, view, nullptr); });
-        return view;
+        return ComputeTest::makeView(image, VK_IMAGE_VIEW_TYPE_2D, format, {aspect, 0, 1, 0, 1}, chain);
     }
     VkImageView makeView(VkImage image, const Planar& format, VkSamplerYcbcrConversion conversion) {
         auto with = make<VkSamplerYcbcrConversionInfo>(VK_STRUCTURE_TYPE_SAMPLER_YCBCR_CONVERSION_INFO);

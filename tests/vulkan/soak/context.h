@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/vulkan/structures.h"
+
 namespace vernier::soak {
 
 /// Says what went wrong, once, and makes every thread stop. Thread-safe.
@@ -35,13 +37,8 @@ inline uint32_t below(Random& random, uint32_t limit) {
     return static_cast<uint32_t>(uint64_t{random()} * limit >> 32);
 }
 
-/// A structure with its sType set and everything else zero.
-template <class T>
-T make(VkStructureType type) {
-    T structure{};
-    structure.sType = type;
-    return structure;
-}
+using test::flatImage;
+using test::make;
 
 /// Held where the Vulkan loader reads or changes its list of instances and their devices: creating and destroying
 /// these, surfaces and swapchains. It frees devices of one thread while another walks over them, even from an instance

@@ -1,5 +1,7 @@
 #include "tests/vulkan/soak/workshop.h"
 
+#include "tests/vulkan/pipeline_states.h"
+
 namespace vernier::soak {
 namespace {
 
@@ -57,6 +59,14 @@ void Workshop::makeLayouts() {
     }
 }
 
+VkDeviceMemory Workshop::allocate(const VkMemoryRequirements& needs) const {
+    auto info = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
+    info.allocationSize = needs.size;
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    SOAK_CHECK(verdict_, vkAllocateMemory, device_, &info, nullptr, &memory);
+    return memory;
+}
+
 std::shared_ptr<SoakBuffer> Workshop::makeBuffer(uint32_t words) {
     std::shared_ptr<SoakBuffer> made(new SoakBuffer, [device = device_](SoakBuffer* buffer) {
         vkDestroyBuffer(device, buffer->buffer, nullptr);
@@ -70,9 +80,7 @@ std::shared_ptr<SoakBuffer> Workshop::makeBuffer(uint32_t words) {
     SOAK_CHECK(verdict_, vkCreateBuffer, device_, &info, nullptr, &made->buffer);
     VkMemoryRequirements needs{};
     vkGetBufferMemoryRequirements(device_, made->buffer, &needs);
-    auto allocation = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-    allocation.allocationSize = needs.size;
-    SOAK_CHECK(verdict_, vkAllocateMemory, device_, &allocation, nullptr, &made->memory);
+    made->memory = allocate(needs);
     SOAK_CHECK(verdict_, vkBindBufferMemory, device_, made->buffer, made->memory, 0);
     void* data = nullptr;
     SOAK_CHECK(verdict_, vkMapMemory, device_, made->memory, 0, VK_WHOLE_SIZE, 0, &data);
@@ -92,20 +100,13 @@ std::shared_ptr<SoakImage> Workshop::makeImage() {
     });
     made->extent = {1 + below(random_, 200), 1 + below(random_, 200)};
     made->model.resize(size_t{made->extent.width} * made->extent.height);
-    auto info = make<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
-    info.imageType = VK_IMAGE_TYPE_2D;
-    info.format = VK_FORMAT_R8G8B8A8_UNORM;
-    info.extent = {made->extent.width, made->extent.height, 1};
-    info.mipLevels = info.arrayLayers = 1;
-    info.samples = VK_SAMPLE_COUNT_1_BIT;
-    info.usage =
-        VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+    const auto info = flatImage(
+        VK_FORMAT_R8G8B8A8_UNORM, made->extent,
+        VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
     SOAK_CHECK(verdict_, vkCreateImage, device_, &info, nullptr, &made->image);
     VkMemoryRequirements needs{};
     vkGetImageMemoryRequirements(device_, made->image, &needs);
-    auto allocation = make<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-    allocation.allocationSize = needs.size;
-    SOAK_CHECK(verdict_, vkAllocateMemory, device_, &allocation, nullptr, &made->memory);
+    made->memory = allocate(needs);
     SOAK_CHECK(verdict_, vkBindImageMemory, device_, made->image, made->memory, 0);
     auto view = make<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
     view.image = made->image;
@@ -146,47 +147,15 @@ void Workshop::makePass() {
 }
 
 VkPipeline Workshop::makeDrawing() const {
-    VkPipelineShaderStageCreateInfo stages[2];
-    for (const bool fragment : {false, true}) {
-        auto& stage = stages[fragment ? 1 : 0];
-        stage = make<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
-        stage.stage = fragment ? VK_SHADER_STAGE_FRAGMENT_BIT : VK_SHADER_STAGE_VERTEX_BIT;
-        stage.module = fragment ? fragment_ : vertex_;
-        stage.pName = "main";
-    }
-    const auto input =
-        make<VkPipelineVertexInputStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
-    auto assembly =
-        make<VkPipelineInputAssemblyStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
-    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-    auto viewport = make<VkPipelineViewportStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
-    viewport.viewportCount = viewport.scissorCount = 1;
-    auto raster =
-        make<VkPipelineRasterizationStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
-    raster.lineWidth = 1;
-    auto samples = make<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
-    samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-    VkPipelineColorBlendAttachmentState blend{};
-    blend.colorWriteMask = 0xF;
-    auto colors = make<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
-    colors.attachmentCount = 1;
-    colors.pAttachments = &blend;
-    const VkDynamicState states[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+    const VkPipelineShaderStageCreateInfo stages[] = {test::stageOf(VK_SHADER_STAGE_VERTEX_BIT, vertex_),
+                                                      test::stageOf(VK_SHADER_STAGE_FRAGMENT_BIT, fragment_)};
+    const test::PlainStates states(VkExtent2D{});
+    const VkDynamicState commanded[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
     auto dynamic = make<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
     dynamic.dynamicStateCount = 2;
-    dynamic.pDynamicStates = states;
-    auto info = make<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
-    info.stageCount = 2;
-    info.pStages = stages;
-    info.pVertexInputState = &input;
-    info.pInputAssemblyState = &assembly;
-    info.pViewportState = &viewport;
-    info.pRasterizationState = &raster;
-    info.pMultisampleState = &samples;
-    info.pColorBlendState = &colors;
+    dynamic.pDynamicStates = commanded;
+    auto info = states.with(stages, drawLayout_, pass_);
     info.pDynamicState = &dynamic;
-    info.layout = drawLayout_;
-    info.renderPass = pass_;
     VkPipeline pipeline = VK_NULL_HANDLE;
     SOAK_CHECK(verdict_, vkCreateGraphicsPipelines, device_, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline);
     return pipeline;
@@ -194,10 +163,7 @@ VkPipeline Workshop::makeDrawing() const {
 
 VkPipeline Workshop::makeCompute() const {
     auto info = make<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
-    info.stage = make<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
-    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-    info.stage.module = multiply_;
-    info.stage.pName = "main";
+    info.stage = test::stageOf(VK_SHADER_STAGE_COMPUTE_BIT, multiply_);
     info.layout = computeLayout_;
     VkPipeline pipeline = VK_NULL_HANDLE;
     SOAK_CHECK(verdict_, vkCreateComputePipelines, device_, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline);

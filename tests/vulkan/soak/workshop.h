@@ -54,6 +54,7 @@ class Workshop {
   private:
     void makeLayouts();
     void makePass();
+    VkDeviceMemory allocate(const VkMemoryRequirements& needs) const;
 
     Verdict& verdict_;
     VkDevice device_;
