@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <span>
 
+#include "runtime/attachment_ops.h"
 #include "runtime/limits.h"
 #include "runtime/plan/compute_pipeline.h"
 #include "runtime/plan/pipeline.h"
@@ -23,17 +24,11 @@ class CommandBuffer;
 class QueryPool;
 struct PassStatistics;
 
-struct RenderingAttachment {
+struct RenderingAttachment : AttachmentOps {
     const ImageView* view = nullptr;     // nullptr: not used
     const ImageView* resolve = nullptr;  // what the samples are resolved to at the end: the average of colours
     // Of depth and stencil.
     VkResolveModeFlagBits depthResolveMode = VK_RESOLVE_MODE_NONE, stencilResolveMode = VK_RESOLVE_MODE_NONE;
-    VkAttachmentLoadOp loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
-    VkAttachmentStoreOp storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-    VkAttachmentLoadOp stencilLoadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
-    VkAttachmentStoreOp stencilStoreOp = VK_ATTACHMENT_STORE_OP_STORE;
-    VkClearValue clear{};
-    uint32_t loadViews = ~0u;  // with multiview: the views that the load operations are for; the others are kept
 };
 
 namespace command {

@@ -33,12 +33,7 @@ RenderTarget targetOf(const ImageView* view) {
 
 RenderTarget targetOf(const RenderingAttachment& attachment) {
     RenderTarget target = targetOf(attachment.view);
-    target.loadOp = attachment.loadOp;
-    target.storeOp = attachment.storeOp;
-    target.stencilLoadOp = attachment.stencilLoadOp;
-    target.stencilStoreOp = attachment.stencilStoreOp;
-    target.clear = attachment.clear;
-    target.loadViews = attachment.loadViews;
+    static_cast<AttachmentOps&>(target) = attachment;
     return target;
 }
 

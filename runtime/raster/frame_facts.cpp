@@ -26,14 +26,15 @@ std::vector<Fact> frameFacts(const FrameCommands& commands, const PassStatistics
     const auto add = [&](const Counter& counter) { facts.push_back(factOf(counter)); };
     add({commands.draws, "draws", "times", "they were recorded", "none was recorded"});
     add({commands.dispatches, "dispatches", "times", "they were recorded", "none was recorded"});
-    add({s.computeInvocations, "compute programs", "invocations", "of the dispatches", "nothing was dispatched"});
+    if (commands.dispatches != 0)
+        add({s.computeInvocations, "compute programs", "invocations", "of the dispatches", "they have no work-group"});
     if (commands.draws == 0) return facts;
     add({s.vertexInvocations, "vertex programs", "vertices", "once per vertex in each chunk of primitives",
          "no vertex was drawn"});
     // Of stages that few draws have, nothing is said where they are not there.
     if (s.controlPatches != 0) add({s.controlPatches, "control programs", "patches", "draws have tessellation", ""});
     if (s.evaluationInvocations != 0)
-        add({s.evaluationInvocations, "evaluation programs", "points", "once per point that the tessellator makes",
+        add({s.evaluationInvocations, "evaluation programs", "invocations", "at points that the tessellator makes",
              ""});
     if (s.geometryInvocations != 0)
         add({s.geometryInvocations, "geometry programs", "invocations", "once per primitive and invocation", ""});
@@ -43,7 +44,7 @@ std::vector<Fact> frameFacts(const FrameCommands& commands, const PassStatistics
          "all are culled or outside"});
     add({s.clearedPixels, "clearing attachments", "pixels", "load operations ask for it",
          "no load operation asks for it, or all is drawn over"});
-    add({s.coarseDepthRejects, "rejecting blocks of 8 x 8 pixels as wholes", "blocks",
+    add({s.coarseDepthRejects, "rejecting whole blocks of 8 x 8 pixels", "blocks",
          "all in them is behind what is there", "no block is known to be hidden"});
     add({s.depthReads, "reading depth and stencil", "samples", "tests need them",
          "no test is on, or bounds of whole blocks decide it"});

@@ -11,13 +11,14 @@
 #include <functional>
 
 #include "base/simd.h"
+#include "runtime/attachment_ops.h"
 #include "runtime/limits.h"
 #include "spirv_interp/program.h"
 
 namespace vernier {
 
 /// One subresource that is drawn to. Rows and columns are padded to kAttachmentBlock texels in memory.
-struct RenderTarget {
+struct RenderTarget : AttachmentOps {
     VkFormat format = VK_FORMAT_UNDEFINED;  // VK_FORMAT_UNDEFINED: no attachment
     std::byte* data = nullptr;              // texel (0, 0) of sample 0 of layer 0
     uint32_t rowPitch = 0;                  // bytes
@@ -25,12 +26,6 @@ struct RenderTarget {
     VkDeviceSize layerPitch = 0;            // bytes
     VkExtent2D extent{};                    // of the mip level
     uint32_t samples = 1;
-    VkAttachmentLoadOp loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
-    VkAttachmentStoreOp storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-    VkAttachmentLoadOp stencilLoadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
-    VkAttachmentStoreOp stencilStoreOp = VK_ATTACHMENT_STORE_OP_STORE;
-    VkClearValue clear{};
-    uint32_t loadViews = ~0u;  // with multiview: the views that the load operations are for; the others are kept
 };
 
 struct PassTargets {

@@ -54,7 +54,7 @@ class HostileTest : public ComputeTest {
         defer([this, made] { vkDestroyImage(device, made.image, nullptr); });
         made.view = makeView(made.image, viewType, format,
                              {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0,
-                              type == VK_IMAGE_TYPE_3D ? 1 : VK_REMAINING_ARRAY_LAYERS});
+                              type == VK_IMAGE_TYPE_3D ? 1u : VK_REMAINING_ARRAY_LAYERS});
         return made;
     }
     Guarded guardedFlat(VkImageUsageFlags usage, uint32_t mips = 1, uint32_t layers = 1) {
