@@ -83,7 +83,10 @@ void geometryFacts(const GraphicsState& state, const ShaderProgram& program, con
         facts.leftOut("culling", "cull mode is none");
     else
         facts.runs("culling", "the cull mode asks for it");
-    if (!state.depthBiasEnable) facts.leftOut("depth bias", "it is off");
+    if (state.depthBiasEnable)
+        facts.runs("depth bias", "it is on");
+    else
+        facts.leftOut("depth bias", "it is off");
 }
 
 void depthFacts(const GraphicsState& state, const Plan& plan, FactWriter& facts) {

@@ -27,17 +27,17 @@ Result<std::shared_ptr<const GraphicsPipeline>> GraphicsPipeline::create(const G
 
 std::vector<Fact> GraphicsPipeline::explain(const DynamicState& dynamic) const {
     std::vector<Fact> facts = plan_->facts;
-    const auto add = [&](bool runs, const char* what, const char* why) {
-        facts.push_back({.runs = runs, .what = what, .why = why, .rates = {}});
+    const auto leftOut = [](const char* what, const char* why) {
+        return Fact{.runs = false, .what = what, .why = why, .rates = {}};
     };
     const auto& viewport = dynamic.viewports[0];
-    if (viewport.width == 0 || viewport.height == 0) add(false, "rasterisation", "the viewport is empty");
+    if (viewport.width == 0 || viewport.height == 0) facts.push_back(leftOut("rasterisation", "the viewport is empty"));
     const auto& scissor = dynamic.scissors[0];
-    if (scissor.extent.width == 0 || scissor.extent.height == 0) add(false, "rasterisation", "the scissor is empty");
-    if (state_.depthBiasEnable) {
-        const bool biases = dynamic.depthBiasConstant != 0 || dynamic.depthBiasSlope != 0;
-        add(biases, "depth bias", biases ? "it is on" : "both factors are zero");
-    }
+    if (scissor.extent.width == 0 || scissor.extent.height == 0)
+        facts.push_back(leftOut("rasterisation", "the scissor is empty"));
+    if (state_.depthBiasEnable && dynamic.depthBiasConstant == 0 && dynamic.depthBiasSlope == 0)
+        for (Fact& fact : facts)
+            if (fact.what == "depth bias") fact = leftOut("depth bias", "both factors are zero");
     return facts;
 }
 

@@ -288,6 +288,7 @@ TEST_F(Explain, ColorsThatStayTellWhy) {
         more->view = view(image(VK_FORMAT_R8G8B8A8_UNORM, kSize, kSize));
     }
     VnBlendStateDesc desc{};
+    desc.independent = 1;
     desc.attachments[1].writeMaskOff = 0xF;
     VnBlendState masked{};
     ASSERT_EQ(vnCreateBlendState(device_, &desc, &masked), VN_SUCCESS);
@@ -298,6 +299,24 @@ TEST_F(Explain, ColorsThatStayTellWhy) {
     EXPECT_THAT(text, HasSubstr("left out  writes to colour 1: its write mask is empty\n"));
     EXPECT_THAT(text, HasSubstr("left out  writes to colour 2: there is no attachment\n"));
     EXPECT_THAT(text, HasSubstr("left out  writes to colour 3: the program does not write it\n"));
+    ASSERT_EQ(vnEndPass(context_), VN_SUCCESS);
+}
+
+TEST_F(Explain, DepthBiasByItsFactors) {
+    const VnPassDesc pass = passOn(image(VK_FORMAT_R8G8B8A8_UNORM, kSize, kSize));
+    ASSERT_EQ(vnBeginPass(context_, &pass), VN_SUCCESS) << lastError();
+    ASSERT_EQ(vnBindProgram(context_, program(kFullScreenVertex, kWhiteFragment)), VN_SUCCESS);
+    EXPECT_THAT(explain(), HasSubstr("left out  depth bias: it is off\n"));
+    for (const float slope : {0.0f, 2.0f}) {
+        VnRasterStateDesc desc{};
+        desc.depthBias = 1;
+        desc.depthBiasSlope = slope;
+        VnRasterState biased{};
+        ASSERT_EQ(vnCreateRasterState(device_, &desc, &biased), VN_SUCCESS);
+        ASSERT_EQ(vnBindRasterState(context_, biased), VN_SUCCESS);
+        EXPECT_THAT(explain(), HasSubstr(slope != 0 ? "runs      depth bias: it is on\n"
+                                                    : "left out  depth bias: both factors are zero\n"));
+    }
     ASSERT_EQ(vnEndPass(context_), VN_SUCCESS);
 }
 
