@@ -161,11 +161,18 @@ Status VulkanContext::createDevice(const VulkanOptions& options) {
     if (!options.robustBufferAccess) features_.robustBufferAccess = VK_FALSE;
     const auto getProperties =
         instanceFunction<PFN_vkGetPhysicalDeviceProperties2KHR>("vkGetPhysicalDeviceProperties2KHR");
-    if (extensions_.depthStencilResolve && getProperties != nullptr) {
-        depthStencilResolve_.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DEPTH_STENCIL_RESOLVE_PROPERTIES;
+    if (getProperties != nullptr) {
         VkPhysicalDeviceProperties2 properties{};
         properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
-        properties.pNext = &depthStencilResolve_;
+        if (extensions_.depthStencilResolve) {
+            depthStencilResolve_.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DEPTH_STENCIL_RESOLVE_PROPERTIES;
+            properties.pNext = &depthStencilResolve_;
+        }
+        if (apiVersion() >= VK_API_VERSION_1_1) {
+            subgroups_.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES;
+            subgroups_.pNext = properties.pNext;
+            properties.pNext = &subgroups_;
+        }
         getProperties(physicalDevice_, &properties);
     }
     const float priority = 1;

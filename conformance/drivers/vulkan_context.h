@@ -80,6 +80,10 @@ class VulkanContext {
     /// Of the instance and the device together.
     uint32_t apiVersion() const { return std::min(instanceVersion_, properties_.apiVersion); }
     const VkPhysicalDeviceDepthStencilResolveProperties& depthStencilResolve() const { return depthStencilResolve_; }
+    /// What fragment shaders may do in subgroups: nothing before Vulkan 1.1.
+    VkSubgroupFeatureFlags fragmentSubgroups() const {
+        return (subgroups_.supportedStages & VK_SHADER_STAGE_FRAGMENT_BIT) != 0 ? subgroups_.supportedOperations : 0;
+    }
     /// Whether viewports may have negative heights.
     bool hasNegativeViewports() const { return negativeViewports_; }
     const VulkanExtensions& extensions() const { return extensions_; }
@@ -110,6 +114,7 @@ class VulkanContext {
     VkPhysicalDeviceFeatures features_{};
     VkPhysicalDeviceMemoryProperties memory_{};
     VkPhysicalDeviceDepthStencilResolveProperties depthStencilResolve_{};
+    VkPhysicalDeviceSubgroupProperties subgroups_{};
     bool compute_ = false, negativeViewports_ = false;
     VulkanExtensions extensions_;
     VkDevice device_ = VK_NULL_HANDLE;

@@ -51,21 +51,30 @@ Status VulkanPassBuilder::checkFeatures(const ScenePipeline& scene, const SceneD
     VERNIER_TRY(need(scene.topology >= VK_PRIMITIVE_TOPOLOGY_LINE_LIST_WITH_ADJACENCY &&
                          scene.topology <= VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY,
                      features.geometryShader, "geometryShader"));
+    const auto groups = [&](VkSubgroupFeatureFlagBits operations) -> VkBool32 {
+        return (context_.fragmentSubgroups() & operations) != 0 ? VK_TRUE : VK_FALSE;
+    };
     // What a shader's text names, and what it takes.
     const struct {
         const char* text;
         VkBool32 feature;
         const char* name;
-    } uses[] = {{"gl_ViewportIndex", extensions.viewportIndexLayer, "VK_EXT_shader_viewport_index_layer"},
-                {"gl_Layer", extensions.viewportIndexLayer, "VK_EXT_shader_viewport_index_layer"},
-                {"gl_FragStencilRefARB", extensions.stencilExport, "VK_EXT_shader_stencil_export"},
-                {"GL_EXT_fragment_shader_barycentric", extensions.barycentric.fragmentShaderBarycentric,
-                 "fragmentShaderBarycentric"},
-                {"float16_t", extensions.float16.shaderFloat16, "shaderFloat16"},
-                {"GL_EXT_shader_atomic_float ", extensions.floatAtomics.shaderBufferFloat32AtomicAdd,
-                 "shaderBufferFloat32AtomicAdd"},
-                {"GL_EXT_shader_atomic_float2", extensions.floatAtomics2.shaderBufferFloat32AtomicMinMax,
-                 "shaderBufferFloat32AtomicMinMax"}};
+    } uses[] = {
+        {"gl_ViewportIndex", extensions.viewportIndexLayer, "VK_EXT_shader_viewport_index_layer"},
+        {"gl_Layer", extensions.viewportIndexLayer, "VK_EXT_shader_viewport_index_layer"},
+        {"gl_FragStencilRefARB", extensions.stencilExport, "VK_EXT_shader_stencil_export"},
+        {"GL_EXT_fragment_shader_barycentric", extensions.barycentric.fragmentShaderBarycentric,
+         "fragmentShaderBarycentric"},
+        {"gl_PrimitiveID", features.geometryShader, "geometryShader"},
+        {"GL_KHR_shader_subgroup_vote", groups(VK_SUBGROUP_FEATURE_VOTE_BIT), "subgroup votes"},
+        {"GL_KHR_shader_subgroup_ballot", groups(VK_SUBGROUP_FEATURE_BALLOT_BIT), "subgroup ballots"},
+        {"GL_KHR_shader_subgroup_arithmetic", groups(VK_SUBGROUP_FEATURE_ARITHMETIC_BIT), "subgroup arithmetic"},
+        {"GL_KHR_shader_subgroup_quad", groups(VK_SUBGROUP_FEATURE_QUAD_BIT), "subgroup quads"},
+        {"float16_t", extensions.float16.shaderFloat16, "shaderFloat16"},
+        {"GL_EXT_shader_atomic_float ", extensions.floatAtomics.shaderBufferFloat32AtomicAdd,
+         "shaderBufferFloat32AtomicAdd"},
+        {"GL_EXT_shader_atomic_float2", extensions.floatAtomics2.shaderBufferFloat32AtomicMinMax,
+         "shaderBufferFloat32AtomicMinMax"}};
     VERNIER_TRY(need(scene.geometryShader != kNone, features.geometryShader, "geometryShader"));
     for (const uint32_t shader : {scene.vertexShader, scene.geometryShader, scene.fragmentShader}) {
         if (shader == kNone) continue;
