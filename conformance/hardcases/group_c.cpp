@@ -1,5 +1,6 @@
 // C: clipping.
 #include "conformance/hardcases/clip_distance_input.h"
+#include "conformance/hardcases/geometry_stage_cases.h"
 #include "conformance/hardcases/groups.h"
 #include "conformance/hardcases/homogeneous_input.h"
 #include "conformance/hardcases/judges.h"
@@ -388,6 +389,9 @@ const std::vector<HardCase> kCases{
      "A point is clipped by its vertex; a line by the view volume.", kClipping, c11},
     {"C12", "A clip distance in perspective, against the rational line", "The cut is within a sub-unit of c(P) = 0.",
      kClipping, c12},
+    {"C13", "Triangles through near plane and eye, handed on by a geometry shader",
+     "What is left has the unclipped triangle's values. Declared: the same bits as without the shader.",
+     "Vulkan, Primitive Clipping; Vernier: same bits", c13},
 };
 
 }  // namespace

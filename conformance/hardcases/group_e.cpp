@@ -1,5 +1,6 @@
 // E: coverage and edges.
 #include "conformance/hardcases/coverage_input.h"
+#include "conformance/hardcases/geometry_stage_cases.h"
 #include "conformance/hardcases/groups.h"
 #include "conformance/hardcases/judges.h"
 #include "conformance/hardcases/painter_input.h"
@@ -417,6 +418,9 @@ const std::vector<HardCase> kCases{
     {"E20", "240 overlapping triangles of equal depth, in one draw and in many",
      "API order decides: the last one is seen, or the first with a LESS depth test.",
      "Vulkan, Primitive Order and Rasterization Order", e20},
+    {"E21", "240 overlapping triangles of equal depth out of invocations of a geometry shader",
+     "By input primitive, invocation and emission: the last one is seen, or the first with a LESS depth test.",
+     "Vulkan, Geometry Shader Primitive Ordering", e21},
 };
 
 }  // namespace

@@ -1,4 +1,5 @@
 // T: texture filtering and addressing.
+#include "conformance/hardcases/block_cases.h"
 #include "conformance/hardcases/coverage_input.h"
 #include "conformance/hardcases/groups.h"
 #include "conformance/hardcases/image_kind_cases.h"
@@ -354,6 +355,21 @@ const std::vector<HardCase> kCases{
      t21,
      {},
      {{"lavapipe", "its CI lists crashes of image arrays read outside"}}},
+    {"T22", "Blocks of BC2, BC3 and BC5, signed and sRGB: end points at their ends, equal, in both orders",
+     "Colours of BC2 and BC3 are four whatever the order; -128 is -127.",
+     "Khronos Data Format Specification, S3TC; RGTC", t22},
+    {"T23", "Blocks of BC6H and BC7: every mode, reserved ones too, with bits all 0, all ones and random",
+     "Integers all the way: one right answer; reserved modes are black, in BC7 without alpha.",
+     "Khronos Data Format Specification, BPTC", t23},
+    {"T24",
+     "Blocks of ASTC, four footprints, with sRGB and without: end points in both orders, void extents, a reserved "
+     "mode, "
+     "partitions",
+     "Integers all the way to 16 bits; with sRGB the upper eight are the code; errors are magenta.",
+     "Khronos Data Format Specification, ASTC",
+     t24,
+     {},
+     {{"lavapipe", "its CI lists ASTC with sRGB at full precision as failing"}}},
 };
 
 }  // namespace

@@ -1,7 +1,9 @@
 // V: set-up overflow, viewports, topology (topology_cases.h).
+#include "conformance/hardcases/geometry_stage_cases.h"
 #include "conformance/hardcases/groups.h"
 #include "conformance/hardcases/homogeneous_input.h"
 #include "conformance/hardcases/judges.h"
+#include "conformance/hardcases/layer_cases.h"
 #include "conformance/hardcases/robust_cases.h"
 #include "conformance/hardcases/topology_cases.h"
 #include "conformance/scenes/recorder.h"
@@ -247,82 +249,6 @@ void v14(CaseInput& input) {
     }
 }
 
-// Four layers of 32 x 32 shown side by side.
-constexpr VkExtent2D kLayer{32, 32}, kSideBySide{128, 32};
-
-const char* const kViewFragmentGlsl = R"(#version 450
-layout(location = 0) in vec4 vColor;
-layout(location = 0) out vec4 color;
-void main() { color = vColor; }
-)";
-
-// `which` tells the number of the view or layer, `choose` writes gl_ViewportIndex and gl_Layer.
-std::string viewVertexGlsl(const std::string& extensions, const std::string& which, const std::string& choose) {
-    return "#version 450\n" + extensions + R"(layout(push_constant) uniform Number { int number; };
-layout(location = 0) out vec4 vColor;
-void main() {
-    int which = )" +
-           which + R"(;
-    vec2 corner = vec2(float(gl_VertexIndex & 1), float(gl_VertexIndex >> 1));
-    gl_Position = vec4(corner * (1.3 + 0.2 * float(which)) - 0.85, 0.5, 1.0);
-    vColor = vec4(0.25 * float(which), corner, 1.0);
-    )" + choose +
-           "\n}\n";
-}
-
-/// `layers`: layered rendering instead of views; `together`: one draw for all.
-Result<Scene> layeredScene(bool layers, bool together) {
-    SceneRecorder record("V13", "Views or layers with viewports of their own.");
-    const uint32_t target = record.layeredTarget("layers", VK_FORMAT_R8G8B8A8_UNORM, kLayer, 4);
-    const uint32_t flat = record.colorTarget("side by side", VK_FORMAT_R8G8B8A8_UNORM, kSideBySide);
-    const std::string array = "#extension GL_ARB_shader_viewport_layer_array : enable\n";
-    const std::string views = array + "#extension GL_EXT_multiview : enable\n";
-    const std::string viewport = "gl_ViewportIndex = which & 1;";
-    const std::string vertex = !together ? viewVertexGlsl("", "number", "")
-                               : layers  ? viewVertexGlsl(array, "gl_InstanceIndex", viewport + " gl_Layer = which;")
-                                         : viewVertexGlsl(views, "gl_ViewIndex", viewport);
-    const uint32_t pipeline =
-        record.pipeline(record.vertex(vertex), record.fragment(kViewFragmentGlsl)).pushConstants(4);
-    const SceneView second{{8, 4, 20, 24, 0, 1}, {{9, 0}, {15, 30}}};
-    record.pass(kLayer).color(target, {0.1f, 0.2f, 0.3f, 1}).layers(4);
-    const uint32_t mask = layers ? 0b1111 : 0b1011;
-    if (together) {
-        PassRecorder pass = record.pass(kLayer).loadColor(target);
-        layers ? pass.layers(4) : pass.views(mask);
-        record.draw(pipeline, 3).instances(layers ? 4 : 1).view(second);
-    } else {
-        for (int32_t layer = 0; layer < 4; ++layer) {
-            if ((mask >> layer & 1) == 0) continue;
-            record.pass(kLayer).loadColor(target).layer(static_cast<uint32_t>(layer));
-            auto draw = record.draw(pipeline, 3).push(layer);
-            if ((layer & 1) != 0) {
-                draw.viewport(second.viewport.x, second.viewport.y, second.viewport.width, second.viewport.height)
-                    .scissor(second.scissor.offset.x, second.scissor.offset.y, second.scissor.extent.width,
-                             second.scissor.extent.height);
-            }
-        }
-    }
-    record.pass(kSideBySide).color(flat, {});
-    for (uint32_t layer = 0; layer < 4; ++layer) {
-        SceneCopyImage copy{target, flat, {}};
-        copy.region.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, layer, 1};
-        copy.region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-        copy.region.dstOffset = {static_cast<int32_t>(layer * kLayer.width), 0, 0};
-        copy.region.extent = {kLayer.width, kLayer.height, 1};
-        record.copy(copy);
-    }
-    record.output(flat);
-    return record.finish();
-}
-
-void v13(CaseInput& input) {
-    for (const bool layers : {false, true}) {
-        const size_t apart = input.scene(layeredScene(layers, false));
-        judgeSame(input, input.scene(layeredScene(layers, true)), apart,
-                  layers ? "layers of one draw are draws into each" : "views of one draw are draws into each");
-    }
-}
-
 constexpr std::string_view kViewport = "Vulkan, Controlling the Viewport";
 
 const std::vector<HardCase> kCases{
@@ -353,6 +279,17 @@ const std::vector<HardCase> kCases{
      "Vulkan, Multiview; VK_EXT_shader_viewport_index_layer", v13},
     {"V14", "Triangles through near, far and the eye plane, culled front and back", "One facing for all parts.",
      "Vulkan, Basic Polygon Rasterization", v14},
+    {"V15", "Flat colours in every topology of triangles and lines, with neighbours, of the first and the last vertex",
+     "The provoking vertex of the table, of odd triangles of a strip too.",
+     "Vulkan, Flat Shading; Primitive Topologies", v15},
+    {"V16", "Strips of triangles and lines out of a geometry shader, ended and begun again, either provoking vertex",
+     "Odd triangles are turned: all face one way; counting begins anew with each strip.",
+     "Vulkan, Geometry Shader; Flat Shading", v16},
+    {"V17", "Layers and viewports that invocations of a geometry shader choose",
+     "Each layer by itself: as separate draws.", "Vulkan, Geometry Shader Output; Layered Rendering", v17},
+    {"V18", "PrimitiveID through strips with restarts, culled and empty triangles, and instances",
+     "Primitives are counted, drawn or not; restarts change nothing; instances begin at 0.", "Vulkan, PrimitiveID",
+     v18},
 };
 
 }  // namespace

@@ -1,9 +1,9 @@
 // X: shader arithmetic.
-#include "conformance/hardcases/coverage_input.h"
 #include "conformance/hardcases/groups.h"
+#include "conformance/hardcases/half_cases.h"
 #include "conformance/hardcases/judges.h"
+#include "conformance/hardcases/subgroup_cases.h"
 #include "conformance/hardcases/value_input.h"
-#include "conformance/oracle/encode.h"
 #include "conformance/scenes/recorder.h"
 #include "conformance/scenes/shapes.h"
 
@@ -299,139 +299,8 @@ void x13(CaseInput& input) {
     addValues(input, "X13", "floatBitsToUint(dot(vec3(f(0), f(1), f(2)), vec3(1.0)))", std::move(rows));
 }
 
-// ---- Halves ----
-
-/// Exact when it is the nearest half, permitted when it is the other neighbour; denormals may be flushed.
-ValueJudge halfOf(double exactly, double moreUlps) {
-    return [=](uint32_t bits, const Declared&) -> Verdict {
-        const double got = std::bit_cast<float>(bits);
-        const exact::Component half{0, 0, 16, exact::Encoding::sfloat};
-        const exact::CodeSet codes = exact::encode(half, exact::rational(exactly));
-        const auto number = [&half](uint64_t code) { return exact::decode(half, code)->get_d(); };
-        if (got == number(codes.nearest)) return {};
-        const std::string text =
-            "exactly " + std::to_string(exactly) + ", the nearest half is " + std::to_string(number(codes.nearest));
-        const double ulp = std::ldexp(1.0, std::ilogb(exactly) - 10);
-        const bool legal =
-            got == number(codes.below) || got == number(codes.above) || std::abs(got - exactly) <= moreUlps * ulp;
-        return legal ? Verdict::allowed(text) : Verdict::wrong(text);
-    };
-}
-
-void x14(CaseInput& input) {
-    struct Operation {
-        const char* text;  // of a and b
-        double (*exactly)(double a, double b);
-        double ulps;  // beyond the two neighbours
-    };
-    const Operation operations[] = {{"a + b", [](double a, double b) { return a + b; }, 0},
-                                    {"a - b", [](double a, double b) { return a - b; }, 0},
-                                    {"a * b", [](double a, double b) { return a * b; }, 0},
-                                    {"a / b", [](double a, double b) { return a / b; }, 2.5},
-                                    {"sqrt(a)", [](double a, double) { return std::sqrt(a); }, 3}};
-    const std::vector<std::pair<float, float>> pairs{
-        {1.0f, 0.0009765625f},   {1.0f, 0.00048828125f}, {3.0f, 7.0f},      {1.0009765625f, 1.5f}, {127.0f, 129.0f},
-        {0.333251953125f, 3.0f}, {2048.0f, 1.0f},        {0.125f, 0.0625f}, {5.5f, 0.099975586f}};
-    for (const Operation& operation : operations) {
-        std::vector<ValueRow> halves, relaxed;
-        for (const auto& [a, b] : pairs) {
-            const double exactly = operation.exactly(static_cast<double>(a), static_cast<double>(b));
-            halves.push_back({{bitsOf(a), bitsOf(b)}, halfOf(exactly, operation.ulps)});
-            // A relative error of 2^-10 beside that of the function (Vulkan, Precision of RelaxedPrecision operations).
-            relaxed.push_back(
-                {{bitsOf(a), bitsOf(b)},
-                 floatNear(exactly, (1 + operation.ulps) * std::max(std::abs(exactly), 0x1p-14) * 0x1p-10)});
-        }
-        ValueShader shader;
-        shader.extensions = "#extension GL_EXT_shader_explicit_arithmetic_types_float16 : require\n";
-        shader.declarations = std::string(
-                                  "uint half_() { float16_t a = float16_t(f(0)), b = float16_t(f(1)); return "
-                                  "floatBitsToUint(float(") +
-                              operation.text + ")); }\n";
-        addValues(input, "X14_half", "half_()", std::move(halves), shader);
-        shader.extensions.clear();
-        shader.declarations = std::string("uint relaxed() { mediump float a = f(0), b = f(1); mediump float r = ") +
-                              operation.text + "; return floatBitsToUint(r); }\n";
-        addValues(input, "X14_relaxed", "relaxed()", std::move(relaxed), shader);
-    }
-}
-
-// ---- Subgroups ----
-
-constexpr VkExtent2D kGroups{64, 64};
-
-// One bit per property that holds for the invocation.
-const char* const kSubgroupFragmentGlsl = R"(#version 450
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_vote : require
-#extension GL_KHR_shader_subgroup_ballot : require
-#extension GL_KHR_shader_subgroup_arithmetic : require
-#extension GL_KHR_shader_subgroup_quad : require
-layout(location = 0) out uint result;
-void main() {
-    uint seen = 0x80u;
-    uvec4 all = subgroupBallot(true);
-    uint active_ = subgroupBallotBitCount(all), own = gl_SubgroupInvocationID;
-    uint workers = subgroupAdd(gl_HelperInvocation ? 0u : 1u);
-    if (subgroupAll(true) && !subgroupAny(false)) seen |= 1u;
-    if (subgroupInverseBallot(all) && own < gl_SubgroupSize) seen |= 2u;
-    if (active_ >= 1u && active_ <= gl_SubgroupSize) seen |= 4u;
-    if (workers >= 1u && workers <= active_) seen |= 8u;
-    if (subgroupMin(own) <= own && subgroupMax(own) >= own) seen |= 16u;
-    if (subgroupBroadcastFirst(own) == subgroupMin(own)) seen |= 32u;
-    float across = subgroupQuadSwapHorizontal(gl_FragCoord.x), down = subgroupQuadSwapVertical(gl_FragCoord.y);
-    if (abs(across - gl_FragCoord.x) == 1.0 && abs(down - gl_FragCoord.y) == 1.0) seen |= 64u;
-    result = seen;
-}
-)";
-
-size_t addSubgroups(CaseInput& input, const std::vector<ClipPosition>& positions) {
-    SceneRecorder record("X15", "Subgroup operations in fragments.");
-    const uint32_t target = record.colorTarget("properties", VK_FORMAT_R32_UINT, kGroups);
-    const uint32_t pipeline = record
-                                  .pipeline(record.vertex(kPositionVertexGlsl),
-                                            record.fragment(kSubgroupFragmentGlsl, VN_GLSL_TARGET_VULKAN_1_1))
-                                  .binding(sizeof(ClipPosition))
-                                  .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, 0);
-    record.pass(kGroups).color(target, {0, 0, 0, 0});
-    record.draw(pipeline, static_cast<uint32_t>(positions.size()))
-        .vertices(record.vertexBuffer("positions", positions));
-    record.output(target);
-    return input.scene(record.finish());
-}
-
-/// `wholeQuads`: no quad has helper invocations, so that quad operations have nothing open.
-void judgeSubgroups(CaseInput& input, size_t scene, bool wholeQuads) {
-    judgePixels(input, scene, 0, kGroups, [wholeQuads](const PixelReader& pixels, const Declared&) -> Verdict {
-        constexpr uint64_t kDrawn = 0x80, kGroupBits = 0x3f, kQuadBit = 0x40;
-        Verdict worst;
-        size_t covered = 0;
-        for (uint32_t y = 0; y < kGroups.height; ++y) {
-            for (uint32_t x = 0; x < kGroups.width; ++x) {
-                const uint64_t seen = pixels.code(x, y, 0);
-                if ((seen & kDrawn) == 0) continue;
-                ++covered;
-                if ((seen & kGroupBits) != kGroupBits) {
-                    return Verdict::wrong(pixelText(x, y) + ": only properties " + std::to_string(seen & kGroupBits) +
-                                          " of 63 hold");
-                }
-                if ((seen & kQuadBit) != 0) continue;
-                const std::string text = pixelText(x, y) + ": the neighbours in the quad are not one pixel away";
-                worst = worst.worse(wholeQuads ? Verdict::wrong(text)
-                                               : Verdict::allowed(text + "; helper invocations need not be active"));
-            }
-        }
-        return covered < 1000 ? Verdict::wrong("only " + std::to_string(covered) + " pixels are covered") : worst;
-    });
-}
-
-void x15(CaseInput& input) {
-    judgeSubgroups(input, addSubgroups(input, {{-1, -1, 0.5f, 1}, {3, -1, 0.5f, 1}, {-1, 3, 0.5f, 1}}), true);
-    const std::vector<ClipPosition> small = clipAt(jitteredTiling(15, 3.75, 1.4, 256, 15), viewportOf(kGroups));
-    judgeSubgroups(input, addSubgroups(input, small), false);
-}
-
 constexpr std::string_view kPrecision = "Vulkan, Precision and Operation of SPIR-V Instructions";
+constexpr std::string_view kGroupOperations = "Vulkan, Group Operations; Helper Invocations";
 
 const std::vector<HardCase> kCases{
     {"X01",
@@ -474,7 +343,21 @@ const std::vector<HardCase> kCases{
     {"X14", "Halves and RelaxedPrecision: sums, differences, products, quotients, roots",
      "Halves correctly rounded; relaxed no less exact than the table for halves.", kPrecision, x14},
     {"X15", "Subgroup and quad operations, over whole quads and in partly covered ones",
-     "Active invocations count; helpers take part where they are active.", "Vulkan, Subgroup Operations", x15},
+     "Active invocations count; helpers take part where they are active.", kGroupOperations, x15},
+    {"X16", "Halves at ties, at the step to infinity, denormal, zeros with signs; conversions from floats and integers",
+     "Correctly rounded: either neighbour, the largest or infinity.", kPrecision, x16},
+    {"X17", "exp, log, inversesqrt, sin, cos and atan of halves and with RelaxedPrecision",
+     "The table for halves: exp 1 + 2|x| ULP, log 3 ULP or 2^-7, sin and cos 2^-7, atan 5 ULP.", kPrecision, x17},
+    {"X18", "Ballots, sums, scans, minima and bit operations of the invocations that triangles cover, quads in part",
+     "Helper invocations that branched away do not count: the groups, made again from their ballots, give every "
+     "result.",
+     kGroupOperations, x18},
+    {"X19", "Quad broadcasts and swaps in quads that triangles cover in part, and the fine derivatives",
+     "Helper invocations are launched: each has its pixel's place; a fine derivative is the difference of a swap.",
+     "Vulkan, Quad Group Operations; Derivative Operations", x19},
+    {"X20", "Sums, products and scans of floats that cancel, over the invocations of a group",
+     "Any order of sums. Declared: in the order of invocations, every step rounded; before the first 0 or 1.",
+     kGroupOperations, x20},
 };
 
 }  // namespace

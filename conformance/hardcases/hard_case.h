@@ -1,7 +1,8 @@
 // Numeric hard cases as data: small scenes whose right answer is known exactly, and the judges that know it. A case
 // runs on any driver; what a driver may do is decided by exact arithmetic, never by another driver's picture.
 //
-// Case ids are those of the project's catalogue of numeric hard cases: a letter for the group and a number.
+// Case ids are those of the project's catalogue of numeric hard cases, a letter for the group and a number; numbers go
+// on behind it for what stages and types that came later can do.
 #pragma once
 
 #include "base/result.h"

@@ -136,15 +136,16 @@ std::vector<ClipPosition> flatten(const std::vector<ClipTriangle>& triangles) {
 }
 
 Result<Scene> colorScene(std::string_view name, const std::vector<ColorVertex>& vertices, VkExtent2D extent,
-                         VkFormat format, VkPrimitiveTopology topology) {
+                         VkFormat format, VkPrimitiveTopology topology, std::string_view geometryGlsl) {
     SceneRecorder record(name, "Colours interpolated in perspective.");
     const uint32_t target = record.colorTarget("color", format, extent);
     const uint32_t buffer = record.vertexBuffer("vertices", vertices);
-    const uint32_t pipeline = record.pipeline(record.vertex(kColorVertexGlsl), record.fragment(kColorFragmentGlsl))
-                                  .binding(sizeof(ColorVertex))
-                                  .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, 0)
-                                  .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, sizeof(ClipPosition))
-                                  .topology(topology);
+    PipelineRecorder pipeline = record.pipeline(record.vertex(kColorVertexGlsl), record.fragment(kColorFragmentGlsl))
+                                    .binding(sizeof(ColorVertex))
+                                    .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, 0)
+                                    .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, sizeof(ClipPosition))
+                                    .topology(topology);
+    if (!geometryGlsl.empty()) pipeline.geometry(record.geometry(geometryGlsl));
     record.pass(extent).color(target, {0, 0, 0, 0});
     record.draw(pipeline, static_cast<uint32_t>(vertices.size())).vertices(buffer);
     record.output(target);

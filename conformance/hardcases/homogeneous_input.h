@@ -61,10 +61,12 @@ struct ColorVertex {
 
 extern const char* const kColorVertexGlsl;  // locations 0 and 1: vec4 to gl_Position, vec4 to location 0
 
-/// Draws vertices with their colours interpolated in perspective into one target.
+/// Draws vertices with their colours interpolated in perspective into one target, through a geometry shader if there is
+/// one.
 Result<Scene> colorScene(std::string_view name, const std::vector<ColorVertex>& vertices, VkExtent2D extent,
                          VkFormat format = VK_FORMAT_R8G8B8A8_UNORM,
-                         VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST);
+                         VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
+                         std::string_view geometryGlsl = {});
 
 /// The same with two targets of floats: smooth and noperspective.
 Result<Scene> interpolationScene(std::string_view name, const std::vector<ColorVertex>& vertices, VkExtent2D extent);

@@ -3,14 +3,12 @@
 #include "conformance/hardcases/coverage_input.h"
 #include "conformance/hardcases/judges.h"
 #include "conformance/hardcases/texture_input.h"
-#include "conformance/oracle/block_decode.h"
 #include "conformance/scenes/recorder.h"
 #include "conformance/scenes/shapes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <random>
 
 namespace vernier::conformance::hardcases {
 namespace {
@@ -98,61 +96,6 @@ LevelRange levelAt(double x, double y) {
     const double ux = along(other, dx), vx = along(1, dx), uy = along(other, dy), vy = along(1, dy);
     const double u = std::max(std::abs(ux), std::abs(uy)), v = std::max(std::abs(vx), std::abs(vy));
     return {std::log2(std::max(std::hypot(ux, vx), std::hypot(uy, vy))), std::log2(std::max(u, v)), std::log2(u + v)};
-}
-
-// ---- Blocks ----
-
-struct BlockSample {
-    VkFormat format;
-    const char* name;
-    std::vector<Bytes> blocks;
-};
-
-Bytes bytesOfWords(std::initializer_list<uint64_t> words, bool bigEndian) {
-    Bytes bytes;
-    for (const uint64_t word : words) {
-        for (int i = 0; i < 8; ++i) bytes.push_back(static_cast<std::byte>(word >> (bigEndian ? 56 - 8 * i : 8 * i)));
-    }
-    return bytes;
-}
-
-/// Indices that name every entry of a palette of four in every row.
-constexpr uint64_t kAllOfFour = 0xe4e4e4e4;
-/// Indices 0 to 7, twice, of three bits.
-constexpr uint64_t kAllOfEight = 0xfac688fac688;
-
-Bytes bc1(uint64_t first, uint64_t second) {
-    return bytesOfWords({first | second << 16 | kAllOfFour << 32}, false);
-}
-Bytes bc4(uint64_t first, uint64_t second) {
-    return bytesOfWords({(first & 255) | (second & 255) << 8 | kAllOfEight << 16}, false);
-}
-
-/// End points at the ends of their ranges, equal ones, both orders, and some in between.
-std::vector<BlockSample> endPoints() {
-    std::vector<BlockSample> samples;
-    const std::vector<Bytes> colors{bc1(0xffff, 0x0000), bc1(0x0000, 0xffff), bc1(0x8410, 0x8410),
-                                    bc1(0xf800, 0x001f), bc1(0x001f, 0xf800), bc1(0x07e0, 0x07df)};
-    samples.push_back({VK_FORMAT_BC1_RGB_UNORM_BLOCK, "BC1", colors});
-    samples.push_back({VK_FORMAT_BC1_RGBA_UNORM_BLOCK, "BC1 with alpha", colors});
-    samples.push_back({VK_FORMAT_BC4_UNORM_BLOCK, "BC4", {bc4(255, 0), bc4(0, 255), bc4(128, 128), bc4(200, 13)}});
-    samples.push_back(
-        {VK_FORMAT_BC4_SNORM_BLOCK, "BC4 signed", {bc4(127, 0x80), bc4(0x80, 127), bc4(0x81, 0x80), bc4(100, 0xf0)}});
-    // ETC2: each of the five modes, and random ones. The two bits behind bit 33 choose the mode by overflow.
-    std::vector<Bytes> etc2{bytesOfWords({0x0f5af0a5'00fce4b1 & ~(uint64_t{2} << 32)}, true),
-                            bytesOfWords({0x8142c3ff'e4b12d87}, true),
-                            bytesOfWords({0xff000000'5555aaaa | uint64_t{2} << 32}, true),   // red overflows: T
-                            bytesOfWords({0x00ff0042'1b8de472 | uint64_t{2} << 32}, true),   // green overflows: H
-                            bytesOfWords({0x0000ff42'72d81be4 | uint64_t{2} << 32}, true)};  // blue overflows: planar
-    std::mt19937_64 random(20);
-    for (int i = 0; i < 12; ++i) etc2.push_back(bytesOfWords({random()}, true));
-    samples.push_back({VK_FORMAT_ETC2_R8G8B8_UNORM_BLOCK, "ETC2", etc2});
-    samples.push_back({VK_FORMAT_ETC2_R8G8B8A1_UNORM_BLOCK, "ETC2 with one bit of alpha", etc2});
-    std::vector<Bytes> eac{bytesOfWords({0x00f0'0539'7705'3977}, true), bytesOfWords({0xfff3'0539'7705'3977}, true),
-                           bytesOfWords({0x800d'fac6'88fa'c688}, true)};
-    for (int i = 0; i < 6; ++i) eac.push_back(bytesOfWords({random()}, true));
-    samples.push_back({VK_FORMAT_EAC_R11_UNORM_BLOCK, "EAC", eac});
-    return samples;
 }
 
 }  // namespace
@@ -342,42 +285,6 @@ void t17(CaseInput& input) {
         }
         return worst;
     });
-}
-
-void t20(CaseInput& input) {
-    for (const BlockSample& sample : endPoints()) {
-        TextureTable table;
-        table.format = sample.format;
-        table.extent = {static_cast<uint32_t>(sample.blocks.size()) * 4, 4};
-        Bytes all;
-        for (const Bytes& block : sample.blocks) all.insert(all.end(), block.begin(), block.end());
-        table.levels = {all};
-        table.sampler = filtered(VK_FILTER_NEAREST);
-        table.expression = "texelFetch(picture, ivec2(c.xy), 0)";
-        for (uint32_t x = 0; x < table.extent.width; ++x) {
-            for (uint32_t y = 0; y < 4; ++y)
-                table.coordinates.push_back({static_cast<float>(x), static_cast<float>(y), 0, 0});
-        }
-        const size_t scene = input.scene(textureScene("T20", table));
-        judgePixels(input, scene, 0, extentOf(table), [sample](const PixelReader& pixels, const Declared&) -> Verdict {
-            Verdict worst;
-            for (uint32_t i = 0; i < pixels.extent().width; ++i) {
-                const uint32_t x = i / 4, y = i % 4;
-                const exact::Color expected = exact::decodeBlockTexel(sample.format, sample.blocks[x / 4], x % 4, y);
-                for (uint8_t c = 0; c < 4; ++c) {
-                    const double seen = pixels.number(i, 0, c);
-                    if (std::abs(seen - expected[c].value) <= 1e-6) continue;
-                    const std::string text = std::string(sample.name) + ", block " + std::to_string(x / 4) +
-                                             ", texel (" + std::to_string(x % 4) + ", " + std::to_string(y) +
-                                             "), channel " + "RGBA"[c] + ": " + std::to_string(seen) + ", exactly " +
-                                             std::to_string(expected[c].value);
-                    const bool legal = seen >= expected[c].low - 1e-5 && seen <= expected[c].high + 1e-5;
-                    worst = worst.worse(Verdict::inexact(legal, text));
-                }
-            }
-            return worst;
-        });
-    }
 }
 
 }  // namespace vernier::conformance::hardcases

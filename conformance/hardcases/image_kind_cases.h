@@ -1,4 +1,4 @@
-// Cases of groups L and T about images that are not plain: arrays, cubes, unnormalised coordinates, compressed blocks.
+// Cases of groups L and T about images that are not plain: arrays, cubes, unnormalised coordinates.
 #pragma once
 
 #include "conformance/hardcases/hard_case.h"
@@ -10,6 +10,5 @@ void t14(CaseInput& input);
 void t15(CaseInput& input);
 void t16(CaseInput& input);
 void t17(CaseInput& input);
-void t20(CaseInput& input);
 
 }  // namespace vernier::conformance::hardcases

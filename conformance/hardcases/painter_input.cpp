@@ -6,6 +6,13 @@
 #include <algorithm>
 
 namespace vernier::conformance::hardcases {
+
+const char* const kCodeFragmentGlsl = R"(#version 450
+layout(location = 0) flat in float vCode;
+layout(location = 0) out vec4 color;
+void main() { color = vec4(vCode / 255.0, 0.0, 0.0, 1.0); }
+)";
+
 namespace {
 
 const char* const kVertexGlsl = R"(#version 450
@@ -16,12 +23,6 @@ void main() {
     gl_Position = position;
     vCode = code;
 }
-)";
-
-const char* const kFragmentGlsl = R"(#version 450
-layout(location = 0) flat in float vCode;
-layout(location = 0) out vec4 color;
-void main() { color = vec4(vCode / 255.0, 0.0, 0.0, 1.0); }
 )";
 
 struct Vertex {
@@ -38,7 +39,7 @@ Result<Scene> painterScene(std::string_view name, const WindowTriangles& triangl
             vertices.push_back({clipAt(p, viewportOf(options.extent)), static_cast<float>(i + 1)});
     }
     const uint32_t buffer = record.vertexBuffer("vertices", vertices);
-    auto pipeline = record.pipeline(record.vertex(kVertexGlsl), record.fragment(kFragmentGlsl))
+    auto pipeline = record.pipeline(record.vertex(kVertexGlsl), record.fragment(kCodeFragmentGlsl))
                         .binding(sizeof(Vertex))
                         .attribute(VK_FORMAT_R32G32B32A32_SFLOAT, 0)
                         .attribute(VK_FORMAT_R32_SFLOAT, sizeof(ClipPosition));
@@ -58,9 +59,7 @@ Result<Scene> painterScene(std::string_view name, const WindowTriangles& triangl
 
 }  // namespace
 
-size_t addPainter(CaseInput& input, std::string_view name, const WindowTriangles& triangles,
-                  const PainterOptions& options) {
-    const size_t scene = input.scene(painterScene(name, triangles, options));
+void judgePainter(CaseInput& input, size_t scene, const WindowTriangles& triangles, const PainterOptions& options) {
     judgePixels(input, scene, 0, options.extent, [=](const PixelReader& pixels, const Declared& declared) -> Verdict {
         const std::vector<exact::GridTriangle> grid = snapped(triangles, declared.subPixelBits);
         const exact::SampleGrid samples{
@@ -96,6 +95,12 @@ size_t addPainter(CaseInput& input, std::string_view name, const WindowTriangles
         }
         return worst;
     });
+}
+
+size_t addPainter(CaseInput& input, std::string_view name, const WindowTriangles& triangles,
+                  const PainterOptions& options) {
+    const size_t scene = input.scene(painterScene(name, triangles, options));
+    judgePainter(input, scene, triangles, options);
     return scene;
 }
 

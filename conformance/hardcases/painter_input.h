@@ -17,4 +17,8 @@ struct PainterOptions {
 size_t addPainter(CaseInput& input, std::string_view name, const WindowTriangles& triangles,
                   const PainterOptions& options);
 
+/// Adds the judge alone, for triangles that `scene` draws in its own way, with kCodeFragmentGlsl.
+void judgePainter(CaseInput& input, size_t scene, const WindowTriangles& triangles, const PainterOptions& options);
+extern const char* const kCodeFragmentGlsl;  // location 0: a flat float, the code
+
 }  // namespace vernier::conformance::hardcases
