@@ -22,9 +22,10 @@ double halfUlp(double value) {
 }
 
 /// Exact when it is the nearest half, zeros with their sign; permitted when it is the other neighbour, a zero of the
-/// other sign, or within the tolerance. Denormals may be flushed. Where `exactly` is NaN nothing is asked.
+/// other sign, or within the tolerance; declared within a float's bounds, rounded once more. Denormals may be flushed.
+/// Where `exactly` is NaN nothing is asked.
 ValueJudge halfOf(double exactly, double tolerance = 0) {
-    return [=](uint32_t bits, const Declared&) -> Verdict {
+    return [=](uint32_t bits, const Declared& declared) -> Verdict {
         const double got = std::bit_cast<float>(bits);
         if (std::isnan(exactly)) return {};
         double nearest = exactly, below = exactly, above = exactly;
@@ -37,6 +38,10 @@ ValueJudge halfOf(double exactly, double tolerance = 0) {
         if (got == nearest && std::signbit(got) == std::signbit(nearest)) return {};
         const std::string text =
             "exactly " + std::to_string(exactly) + ", the nearest half is " + std::to_string(nearest);
+        if (declared.own && std::isfinite(exactly)) {
+            const double own = (0.5 + declared.own->functionUlps * 0x1p-13) * halfUlp(exactly);
+            if (std::abs(got - exactly) <= own) return Verdict::declared(text);
+        }
         const bool flushed = got == 0 && std::abs(exactly) < kLeastNormal;
         const bool legal =
             got == nearest || got == below || got == above || flushed || std::abs(got - exactly) <= tolerance;
