@@ -119,10 +119,11 @@ void fragmentRateFacts(const Plan& plan, const Accuracy& accuracy, FactWriter& f
     facts.runs(std::string("fragment program, once per ") + (plan.coarse      ? "2x2 pixels"
                                                              : plan.perSample ? "sample"
                                                                               : "pixel"),
-               plan.coarse      ? "the accuracy asks for it"
-               : plan.perSample ? "it asks for samples"
-               : askedCoarse    ? "2x2 is asked for, but it depends on single pixels, or they have several samples"
-                                : "nothing in it varies between samples");
+               plan.coarse        ? "the accuracy asks for it"
+               : plan.allAtSample ? "sample shading is on"
+               : plan.perSample   ? "it asks for samples"
+               : askedCoarse      ? "2x2 is asked for, but it depends on single pixels, or they have several samples"
+                                  : "nothing in it varies between samples");
 }
 
 /// Why a fragment program runs for whole quads of 2x2 pixels.

@@ -24,8 +24,8 @@ Fact factOf(const Counter& counter) {
 std::vector<Fact> frameFacts(const FrameCommands& commands, const PassStatistics& s) {
     std::vector<Fact> facts;
     const auto add = [&](const Counter& counter) { facts.push_back(factOf(counter)); };
-    add({commands.draws, "draws", "times", "they were recorded", "none was recorded"});
-    add({commands.dispatches, "dispatches", "times", "they were recorded", "none was recorded"});
+    add({commands.draws, "draws", "of them", "they were recorded", "none was recorded"});
+    add({commands.dispatches, "dispatches", "of them", "they were recorded", "none was recorded"});
     if (commands.dispatches != 0)
         add({s.computeInvocations, "compute programs", "invocations", "of the dispatches", "they have no work-group"});
     if (commands.draws == 0) return facts;
@@ -40,7 +40,7 @@ std::vector<Fact> frameFacts(const FrameCommands& commands, const PassStatistics
         add({s.geometryInvocations, "geometry programs", "invocations", "once per primitive and invocation", ""});
     add({s.clippedPrimitives, "clipping primitives", "of them", "they cross a clip plane",
          "none crosses a clip plane"});
-    add({s.rasterPrimitives, "rasterising", "primitives", "they are neither culled nor outside",
+    add({s.rasterPrimitives, "rasterising primitives", "of them", "they are neither culled nor outside",
          "all are culled or outside"});
     add({s.clearedPixels, "clearing attachments", "pixels", "load operations ask for it",
          "no load operation asks for it, or all is drawn over"});
