@@ -66,6 +66,7 @@ GraphicsState graphicsStateOf(const VnContext_T& context) {
     state.sampleShading = raster.minSampleShading > 0;
     state.minSampleShading = raster.minSampleShading;
     state.negativeOneToOne = raster.depthNegativeOneToOne != 0;
+    state.domainLowerLeft = raster.domainLowerLeft != 0;
     state.lineMode = raster.lineMode;
     state.stippledLine = raster.lineStippleFactor != 0;
     state.sampleLocations = raster.programmableSamples != 0;

@@ -150,6 +150,7 @@ Status SceneRun::runDraw(const SceneDraw& draw) {
     VERNIER_TRY_API(vnBindDepthStencilState(context_, pipeline.depthStencil));
     VERNIER_TRY_API(vnBindBlendState(context_, pipeline.blend));
     VERNIER_TRY_API(vnSetTopology(context_, scene.topology, scene.primitiveRestart));
+    VERNIER_TRY_API(vnSetPatchVertices(context_, scene.patchVertices));
     VERNIER_TRY_API(vnSetBlendConstants(context_, scene.blendConstants.data()));
     VERNIER_TRY_API(vnSetStencilReference(context_, scene.front.reference, scene.back.reference));
     VERNIER_TRY_API(vnSetViewport(context_, &draw.viewport));

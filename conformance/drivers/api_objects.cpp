@@ -181,6 +181,8 @@ Result<ApiPipeline> ApiObjects::createPipeline(const ScenePipeline& scene) {
     ApiPipeline pipeline;
     VnProgramDesc program{};
     program.vertex = shaders_[scene.vertexShader];
+    if (scene.controlShader != kNone) program.control = shaders_[scene.controlShader];
+    if (scene.evaluationShader != kNone) program.evaluation = shaders_[scene.evaluationShader];
     if (scene.geometryShader != kNone) program.geometry = shaders_[scene.geometryShader];
     if (scene.fragmentShader != kNone) program.fragment = shaders_[scene.fragmentShader];
     VERNIER_TRY_API(vnCreateProgram(device_, &program, &pipeline.program));
@@ -218,6 +220,7 @@ Result<ApiPipeline> ApiObjects::createPipeline(const ScenePipeline& scene) {
     raster.minSampleShading = scene.sampleShading ? scene.minSampleShading : 0;
     raster.provokingVertexLast = scene.provokingVertexLast;
     raster.depthNegativeOneToOne = scene.depthNegativeOneToOne;
+    raster.domainLowerLeft = scene.domainLowerLeft;
     raster.lineMode = scene.lineMode;
     raster.lineStippleFactor = scene.stippleFactor;
     raster.lineStipplePattern = scene.stipplePattern;

@@ -6,6 +6,8 @@
 namespace vernier::conformance {
 namespace {
 
+constexpr uint32_t kMaxPatchVertices = 32;  // what every device with tessellation has
+
 /// "scene 'x': what[i].field is value, must be below limit", or success. kNone passes when `optional`.
 class Checker {
   public:
@@ -106,6 +108,30 @@ void checkDraw(Checker& check, const Scene& scene, const ScenePass& pass, const 
     }
 }
 
+void checkPipeline(Checker& check, const Scene& scene, size_t i) {
+    const ScenePipeline& pipeline = scene.pipelines[i];
+    const std::vector<std::array<uint8_t, 2>>& locations = pipeline.sampleLocations;
+    if (!locations.empty() && locations.size() != static_cast<size_t>(pipeline.samples)) {
+        check.fail(at("pipelines", i, "sampleLocations") + " has " + std::to_string(locations.size()) +
+                   " entries for " + std::to_string(pipeline.samples) + " samples");
+    }
+    const bool patches = pipeline.topology == VK_PRIMITIVE_TOPOLOGY_PATCH_LIST;
+    const auto shader = [&](const char* field, uint32_t index, bool optional) {
+        check.index(at("pipelines", i, field), index, scene.shaders.size(), optional);
+    };
+    shader("vertexShader", pipeline.vertexShader, false);
+    shader("controlShader", pipeline.controlShader, !patches);
+    shader("evaluationShader", pipeline.evaluationShader, !patches);
+    shader("geometryShader", pipeline.geometryShader, true);
+    shader("fragmentShader", pipeline.fragmentShader, true);
+    if (!patches && (pipeline.controlShader != kNone || pipeline.evaluationShader != kNone))
+        check.fail(at("pipelines", i, "topology") + " is " + std::to_string(pipeline.topology) + ", not of patches");
+    if (pipeline.patchVertices == 0 || pipeline.patchVertices > kMaxPatchVertices) {
+        check.fail(at("pipelines", i, "patchVertices") + " is " + std::to_string(pipeline.patchVertices) +
+                   ", must be 1 to " + std::to_string(kMaxPatchVertices));
+    }
+}
+
 }  // namespace
 
 Status validateScene(const Scene& scene) {
@@ -118,18 +144,7 @@ Status validateScene(const Scene& scene) {
     for (size_t i = 0; i < scene.shaders.size(); ++i) {
         if (scene.shaders[i].spirv.empty()) check.fail(at("shaders", i, "spirv") + " is empty");
     }
-    for (size_t i = 0; i < scene.pipelines.size(); ++i) {
-        const std::vector<std::array<uint8_t, 2>>& locations = scene.pipelines[i].sampleLocations;
-        if (!locations.empty() && locations.size() != static_cast<size_t>(scene.pipelines[i].samples)) {
-            check.fail(at("pipelines", i, "sampleLocations") + " has " + std::to_string(locations.size()) +
-                       " entries for " + std::to_string(scene.pipelines[i].samples) + " samples");
-        }
-        check.index(at("pipelines", i, "vertexShader"), scene.pipelines[i].vertexShader, scene.shaders.size());
-        check.index(at("pipelines", i, "geometryShader"), scene.pipelines[i].geometryShader, scene.shaders.size(),
-                    true);
-        check.index(at("pipelines", i, "fragmentShader"), scene.pipelines[i].fragmentShader, scene.shaders.size(),
-                    true);
-    }
+    for (size_t i = 0; i < scene.pipelines.size(); ++i) checkPipeline(check, scene, i);
     for (const SceneStep& step : scene.steps) {
         if (const auto* pass = std::get_if<ScenePass>(&step)) {
             const auto layers = [&](const SceneAttachment& attachment) {

@@ -18,6 +18,12 @@ bool readsSecondSource(const VkPipelineColorBlendAttachmentState& state) {
            second(state.srcAlphaBlendFactor) || second(state.dstAlphaBlendFactor);
 }
 
+/// The shaders of a pipeline, in the order of its stages; kNone where there is no such stage.
+std::array<uint32_t, 5> stagesOf(const ScenePipeline& scene) {
+    return {scene.vertexShader, scene.controlShader, scene.evaluationShader, scene.geometryShader,
+            scene.fragmentShader};
+}
+
 bool saysLines(const ScenePipeline& scene) {
     return scene.lineMode != VK_LINE_RASTERIZATION_MODE_DEFAULT_EXT || scene.stippleFactor != 0;
 }
@@ -76,7 +82,15 @@ Status VulkanPassBuilder::checkFeatures(const ScenePipeline& scene, const SceneD
         {"GL_EXT_shader_atomic_float2", extensions.floatAtomics2.shaderBufferFloat32AtomicMinMax,
          "shaderBufferFloat32AtomicMinMax"}};
     VERNIER_TRY(need(scene.geometryShader != kNone, features.geometryShader, "geometryShader"));
-    for (const uint32_t shader : {scene.vertexShader, scene.geometryShader, scene.fragmentShader}) {
+    VERNIER_TRY(need(scene.controlShader != kNone, features.tessellationShader, "tessellationShader"));
+    const bool choosesOrigin = extensions.maintenance2 || context_.apiVersion() >= VK_API_VERSION_1_1;
+    VERNIER_TRY(need(scene.domainLowerLeft, choosesOrigin ? VK_TRUE : VK_FALSE, "VK_KHR_maintenance2"));
+    for (const uint32_t shader : {scene.controlShader, scene.evaluationShader, scene.geometryShader}) {
+        const bool sizes = shader != kNone && scene_.shaders[shader].glsl.find("gl_PointSize") != std::string::npos;
+        VERNIER_TRY(
+            need(sizes, features.shaderTessellationAndGeometryPointSize, "shaderTessellationAndGeometryPointSize"));
+    }
+    for (const uint32_t shader : stagesOf(scene)) {
         if (shader == kNone) continue;
         for (const auto& use : uses) {
             // What geometry shaders choose comes with their feature, and so does what is read behind them.
@@ -133,8 +147,8 @@ Result<VulkanPipeline> VulkanPassBuilder::createPipeline(const SceneDraw& draw, 
     VERNIER_TRY(createLayouts(draw, pipeline));
 
     std::vector<VkPipelineShaderStageCreateInfo> stages;
-    std::array<VkSpecializationInfo, 3> specializations{};
-    for (const uint32_t index : {scene.vertexShader, scene.geometryShader, scene.fragmentShader}) {
+    std::array<VkSpecializationInfo, 5> specializations{};
+    for (const uint32_t index : stagesOf(scene)) {
         if (index == kNone) continue;
         const Result<VkShaderModule> shader = shaderModule(index);
         if (!shader) return shader.error();
@@ -160,6 +174,13 @@ Result<VulkanPipeline> VulkanPassBuilder::createPipeline(const SceneDraw& draw, 
     assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
     assembly.topology = scene.topology;
     assembly.primitiveRestartEnable = scene.primitiveRestart ? VK_TRUE : VK_FALSE;
+    VkPipelineTessellationDomainOriginStateCreateInfo origin{};
+    origin.sType = VK_STRUCTURE_TYPE_PIPELINE_TESSELLATION_DOMAIN_ORIGIN_STATE_CREATE_INFO;
+    origin.domainOrigin = VK_TESSELLATION_DOMAIN_ORIGIN_LOWER_LEFT;
+    VkPipelineTessellationStateCreateInfo tessellation{};
+    tessellation.sType = VK_STRUCTURE_TYPE_PIPELINE_TESSELLATION_STATE_CREATE_INFO;
+    tessellation.patchControlPoints = scene.patchVertices;
+    if (scene.domainLowerLeft) tessellation.pNext = &origin;
     VkPipelineViewportStateCreateInfo viewport{};
     viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
     viewport.viewportCount = viewport.scissorCount = static_cast<uint32_t>(1 + draw.moreViews.size());
@@ -254,6 +275,7 @@ Result<VulkanPipeline> VulkanPassBuilder::createPipeline(const SceneDraw& draw, 
     info.pStages = stages.data();
     info.pVertexInputState = &vertexInput;
     info.pInputAssemblyState = &assembly;
+    if (scene.controlShader != kNone) info.pTessellationState = &tessellation;
     info.pViewportState = &viewport;
     info.pRasterizationState = &raster;
     info.pMultisampleState = &multisample;

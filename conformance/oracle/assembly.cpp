@@ -2,6 +2,7 @@
 
 #include "conformance/oracle/geometry_stage.h"
 #include "conformance/oracle/quantise.h"
+#include "conformance/oracle/tessellation_stage.h"
 
 #include <algorithm>
 #include <cstring>
@@ -135,16 +136,34 @@ ShadedVertex shadedVertex(const Values& outputs, const ScenePipeline& pipeline) 
     return vertex;
 }
 
+namespace {
+
+/// What the run that has ended stores, invocation by invocation.
+void keepStores(ShaderResources& resources, size_t invocations) {
+    for (uint32_t invocation = 0; invocation < invocations; ++invocation) {
+        for (const WordWrite& write : combineWords(resources.wordRuns, invocation, ValueError{}, resources.flags))
+            resources.wordWrites.push_back(write);
+    }
+    resources.flags = 0;
+}
+
+}  // namespace
+
 Result<reference::Outcome<double>> runAlone(const Interpreter& shader, const Values& inputs,
                                             ShaderResources& resources) {
     resources.resetRuns();
     resources.startRun();
     auto outcome = shader.run(inputs, resources);
-    if (!outcome) return outcome;
-    for (const WordWrite& write : combineWords(resources.wordRuns, 0, ValueError{}, resources.flags))
-        resources.wordWrites.push_back(write);
-    resources.flags = 0;
+    if (outcome) keepStores(resources, 1);
     return outcome;
+}
+
+Result<Values> runPatch(const Interpreter& shader, const Values& inputs, ShaderResources& resources) {
+    resources.resetRuns();
+    resources.startRun();
+    auto outputs = shader.runPatch(inputs, resources);
+    if (outputs) keepStores(resources, outputs->vertices.size());
+    return outputs;
 }
 
 Result<reference::Interpreter<double>> createStage(const SceneShader& shader, spv::ExecutionModel model) {
@@ -226,19 +245,11 @@ std::vector<AssembledPrimitive> primitivesOf(VkPrimitiveTopology topology, uint3
     return result;
 }
 
-bool isAssembled(VkPrimitiveTopology topology) {
-    return topology <= VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP_WITH_ADJACENCY;  // all but patches
-}
-
 }  // namespace
 
 Result<DrawGeometry> assembleDraw(const Scene& scene, const SceneDraw& draw, ShaderResources& resources,
                                   uint32_t viewIndex) {
     const ScenePipeline& pipeline = scene.pipelines[draw.pipeline];
-    if (!isAssembled(pipeline.topology)) {
-        return unsupported("oracle: pipeline " + std::to_string(draw.pipeline) + ": topology " +
-                           std::to_string(pipeline.topology));
-    }
     for (const VkVertexInputAttributeDescription& attribute : pipeline.vertexAttributes) {
         if (!findPixelFormat(attribute.format)) {
             return unsupported("oracle: vertex attribute at location " + std::to_string(attribute.location) +
@@ -254,6 +265,13 @@ Result<DrawGeometry> assembleDraw(const Scene& scene, const SceneDraw& draw, Sha
         if (!made) return made.error();
         stage = std::move(*made);
     }
+    std::optional<TessellationStage> tessellation;
+    if (pipeline.topology == VK_PRIMITIVE_TOPOLOGY_PATCH_LIST) {
+        auto made = TessellationStage::create(scene, pipeline, resources, viewIndex);
+        if (!made) return made.error();
+        tessellation = std::move(*made);
+    }
+    const bool further = stage || tessellation;  // stages between vertices and rasterisation
 
     const VertexFetcher fetcher{scene, draw, pipeline};
     const auto order = vertexOrder(scene, draw, pipeline);
@@ -261,12 +279,14 @@ Result<DrawGeometry> assembleDraw(const Scene& scene, const SceneDraw& draw, Sha
     for (uint32_t i = 0; i < draw.instances; ++i) {
         const uint32_t instance = draw.firstInstance + i;
         std::map<uint32_t, uint32_t> shaded;  // vertex number -> index into geometry.vertices, or into `outputs`
-        std::vector<Values> outputs;          // of vertices for a geometry stage
+        std::vector<Values> outputs;          // of vertices for further stages
         std::vector<uint32_t> run;            // vertices since the last restart
         uint32_t primitiveId = 0;
         const auto flush = [&]() -> Status {
-            if (stage) {
-                const Status status = stage->run(outputs, run, primitiveId, geometry);
+            if (further) {
+                const Status status =
+                    tessellation ? tessellation->run(outputs, run, primitiveId, stage ? &*stage : nullptr, geometry)
+                                 : stage->run(outputs, run, primitiveId, geometry);
                 run.clear();
                 return status;
             }
@@ -287,13 +307,13 @@ Result<DrawGeometry> assembleDraw(const Scene& scene, const SceneDraw& draw, Sha
                 if (Status status = flush(); !status) return status.error();
                 continue;
             }
-            const size_t next = stage ? outputs.size() : geometry.vertices.size();
+            const size_t next = further ? outputs.size() : geometry.vertices.size();
             const auto [entry, fresh] = shaded.try_emplace(*number, static_cast<uint32_t>(next));
             if (fresh) {
                 auto vertex = shadeVertex(*shader, fetcher.fetch(*number, instance), *number, instance, draw, resources,
                                           viewIndex);
                 if (!vertex) return vertex.error();
-                if (stage) {
+                if (further) {
                     outputs.push_back(std::move(*vertex));
                 } else {
                     geometry.vertices.push_back(shadedVertex(*vertex, pipeline));

@@ -50,8 +50,12 @@ Result<reference::Interpreter<double>> createStage(const SceneShader& shader, sp
 Result<reference::Outcome<double>> runAlone(const reference::Interpreter<double>& shader,
                                             const reference::InterfaceValues<double>& inputs,
                                             ShaderResources& resources);
+/// The invocations of a control stage for one patch, the same.
+Result<reference::InterfaceValues<double>> runPatch(const reference::Interpreter<double>& shader,
+                                                    const reference::InterfaceValues<double>& inputs,
+                                                    ShaderResources& resources);
 
-/// All primitives of all instances of a draw, seen by one view. Patches are refused.
+/// All primitives of all instances of a draw, seen by one view.
 Result<DrawGeometry> assembleDraw(const Scene& scene, const SceneDraw& draw, ShaderResources& resources,
                                   uint32_t viewIndex = 0);
 

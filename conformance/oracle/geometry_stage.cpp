@@ -71,18 +71,25 @@ Result<GeometryStage> GeometryStage::create(const SceneShader& shader, const Sce
 
 Status GeometryStage::run(const std::vector<Values>& vertices, std::span<const uint32_t> run, uint32_t& primitiveId,
                           DrawGeometry& geometry) const {
-    for (const std::vector<uint32_t>& numbers : inputsOf(pipeline_->topology, static_cast<uint32_t>(run.size()))) {
-        Values inputs;
-        for (const uint32_t number : numbers) inputs.vertices.push_back(vertices[run[number]]);
-        inputs.setInt(spv::BuiltInPrimitiveId, static_cast<int32_t>(primitiveId));
-        inputs.setInt(spv::BuiltInViewIndex, static_cast<int32_t>(viewIndex_));
-        for (uint32_t invocation = 0; invocation < modes_.invocations; ++invocation) {
-            inputs.setInt(spv::BuiltInInvocationId, static_cast<int32_t>(invocation));
-            const auto outcome = runAlone(shader_, inputs, *resources_);
-            if (!outcome) return outcome.error();
-            add(outcome->vertices, primitiveId, geometry);
-        }
+    for (std::vector<uint32_t>& primitive : inputsOf(pipeline_->topology, static_cast<uint32_t>(run.size()))) {
+        for (uint32_t& vertex : primitive) vertex = run[vertex];
+        if (Status s = runPrimitive(vertices, primitive, primitiveId, geometry); !s) return s;
         ++primitiveId;
+    }
+    return {};
+}
+
+Status GeometryStage::runPrimitive(const std::vector<Values>& vertices, std::span<const uint32_t> primitive,
+                                   uint32_t primitiveId, DrawGeometry& geometry) const {
+    Values inputs;
+    for (const uint32_t vertex : primitive) inputs.vertices.push_back(vertices[vertex]);
+    inputs.setInt(spv::BuiltInPrimitiveId, static_cast<int32_t>(primitiveId));
+    inputs.setInt(spv::BuiltInViewIndex, static_cast<int32_t>(viewIndex_));
+    for (uint32_t invocation = 0; invocation < modes_.invocations; ++invocation) {
+        inputs.setInt(spv::BuiltInInvocationId, static_cast<int32_t>(invocation));
+        const auto outcome = runAlone(shader_, inputs, *resources_);
+        if (!outcome) return outcome.error();
+        add(outcome->vertices, primitiveId, geometry);
     }
     return {};
 }

@@ -17,6 +17,9 @@ class GeometryStage {
     /// `primitiveId` counts them.
     Status run(const std::vector<reference::InterfaceValues<double>>& vertices, std::span<const uint32_t> run,
                uint32_t& primitiveId, DrawGeometry& geometry) const;
+    /// Adds what becomes of one primitive.
+    Status runPrimitive(const std::vector<reference::InterfaceValues<double>>& vertices,
+                        std::span<const uint32_t> primitive, uint32_t primitiveId, DrawGeometry& geometry) const;
 
   private:
     GeometryStage(reference::Interpreter<double> shader, const ScenePipeline& pipeline, ShaderResources& resources)

@@ -51,6 +51,14 @@ class SceneCheck {
     void checkPipeline(size_t i) {
         const ScenePipeline& pipeline = scene_.pipelines[i];
         index(pipeline.vertexShader, scene_.shaders.size(), "vertex shader");
+        const bool patches = pipeline.topology == VK_PRIMITIVE_TOPOLOGY_PATCH_LIST;
+        if (patches || pipeline.controlShader != kNone)
+            index(pipeline.controlShader, scene_.shaders.size(), "control shader");
+        if (patches || pipeline.evaluationShader != kNone)
+            index(pipeline.evaluationShader, scene_.shaders.size(), "evaluation shader");
+        if (patches != (pipeline.controlShader != kNone)) fail("tessellation shaders without patches");
+        if (patches && (pipeline.patchVertices == 0 || pipeline.patchVertices > 32))
+            fail("patches of " + std::to_string(pipeline.patchVertices) + " vertices");
         if (pipeline.geometryShader != kNone) index(pipeline.geometryShader, scene_.shaders.size(), "geometry shader");
         if (pipeline.fragmentShader != kNone) index(pipeline.fragmentShader, scene_.shaders.size(), "fragment shader");
     }

@@ -49,6 +49,20 @@ enum class TieRule : uint8_t {
     neither,
 };
 
+/// What the specification leaves to a tessellator; by default as Vernier does (runtime/geometry/tessellator.h).
+struct TessellationChoices {
+    /// The two additional segments of fractional spacings are next to the middle instead of first and last, and
+    /// shorter: of n segments for a level f they are (1 - (n - f) / 2)^2 as long as the others instead of 1 - (n - f)
+    /// / 2.
+    bool shortInside = false;
+    /// Between two edges the triangles on the outer one come first; otherwise the next one is on the edge whose next
+    /// segment has its middle first.
+    bool outerFirst = false;
+    bool otherDiagonals = false;  // of rectangles
+    /// Primitives come in the other order, and begin with their last vertex.
+    bool turned = false;
+};
+
 /// What an implementation declares and the specification leaves to it.
 struct OracleRules {
     int subPixelBits = 8;               // subPixelPrecisionBits: vertices are snapped to multiples of 2^-bits pixel
@@ -67,6 +81,7 @@ struct OracleRules {
     // vertices behind the eye; of linear blits whose coordinates are truncated instead of floored.
     bool mirroredDepths = false, planesBehindEye = false, truncatedBlits = false;
     TieRule ties = TieRule::topLeft;  // of triangles
+    TessellationChoices tessellation;
 };
 
 /// One image per Scene::outputs, in that order. An error with code `unsupported` when the scene uses

@@ -73,6 +73,10 @@ struct SceneShader {
 
 struct ScenePipeline {
     uint32_t vertexShader = kNone;
+    // Both or neither; with them the topology is a list of patches.
+    uint32_t controlShader = kNone, evaluationShader = kNone;
+    uint32_t patchVertices = 3;
+    bool domainLowerLeft = false;     // VkPipelineTessellationDomainOriginStateCreateInfo
     uint32_t geometryShader = kNone;  // kNone: no such stage
     uint32_t fragmentShader = kNone;  // kNone: depth-only
     std::vector<VkVertexInputBindingDescription> vertexBindings;
@@ -111,7 +115,7 @@ struct ScenePipeline {
     std::array<float, 4> blendConstants{};
     bool logicOpEnable = false;
     VkLogicOp logicOp = VK_LOGIC_OP_COPY;
-    uint32_t pushConstantBytes = 0;  // visible to both stages, from offset 0
+    uint32_t pushConstantBytes = 0;  // visible to all stages, from offset 0
 };
 
 struct SceneBinding {

@@ -25,6 +25,21 @@ uint32_t append(std::vector<T>& list, T element) {
     return static_cast<uint32_t>(list.size() - 1);
 }
 
+const char* endingOf(VkShaderStageFlagBits stage) {
+    switch (stage) {
+        case VK_SHADER_STAGE_VERTEX_BIT:
+            return ".vert";
+        case VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT:
+            return ".tesc";
+        case VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT:
+            return ".tese";
+        case VK_SHADER_STAGE_GEOMETRY_BIT:
+            return ".geom";
+        default:
+            return ".frag";
+    }
+}
+
 Result<std::vector<uint32_t>> compile(VkShaderStageFlagBits stage, const std::string& glsl, VnGlslTarget target,
                                       const std::string& name) {
     VnGlslDesc desc{};
@@ -109,6 +124,19 @@ PipelineRecorder& PipelineRecorder::stipple(uint32_t factor, uint16_t pattern) {
 
 PipelineRecorder& PipelineRecorder::geometry(uint32_t shader) {
     state().geometryShader = shader;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::patches(uint32_t vertices, uint32_t control, uint32_t evaluation) {
+    state().topology = VK_PRIMITIVE_TOPOLOGY_PATCH_LIST;
+    state().patchVertices = vertices;
+    state().controlShader = control;
+    state().evaluationShader = evaluation;
+    return *this;
+}
+
+PipelineRecorder& PipelineRecorder::domainLowerLeft() {
+    state().domainLowerLeft = true;
     return *this;
 }
 
@@ -445,10 +473,7 @@ uint32_t SceneRecorder::shader(VkShaderStageFlagBits stage, std::string_view gls
     SceneShader shader;
     shader.stage = stage;
     shader.glsl = glsl;
-    const std::string name = scene_.name + "/shader" + std::to_string(scene_.shaders.size()) +
-                             (stage == VK_SHADER_STAGE_VERTEX_BIT     ? ".vert"
-                              : stage == VK_SHADER_STAGE_GEOMETRY_BIT ? ".geom"
-                                                                      : ".frag");
+    const std::string name = scene_.name + "/shader" + std::to_string(scene_.shaders.size()) + endingOf(stage);
     Result<std::vector<uint32_t>> compiled = compileOnce(stage, shader.glsl, target, name);
     if (compiled) {
         shader.spirv = std::move(compiled).value();

@@ -50,6 +50,9 @@ class PipelineRecorder {
     PipelineRecorder& stipple(uint32_t factor, uint16_t pattern);
     PipelineRecorder& provokingVertexLast();
     PipelineRecorder& geometry(uint32_t shader);
+    /// Patches of so many vertices, in the place of other primitives.
+    PipelineRecorder& patches(uint32_t vertices, uint32_t control, uint32_t evaluation);
+    PipelineRecorder& domainLowerLeft();
     /// Clip depths from -w to w.
     PipelineRecorder& depthNegativeOneToOne();
     PipelineRecorder& depthClamp();
@@ -173,6 +176,12 @@ class SceneRecorder {
     /// Compile a stage; an error is kept for finish().
     uint32_t vertex(std::string_view glsl, VnGlslTarget target = VN_GLSL_TARGET_VULKAN_1_0) {
         return shader(VK_SHADER_STAGE_VERTEX_BIT, glsl, target);
+    }
+    uint32_t control(std::string_view glsl, VnGlslTarget target = VN_GLSL_TARGET_VULKAN_1_0) {
+        return shader(VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT, glsl, target);
+    }
+    uint32_t evaluation(std::string_view glsl, VnGlslTarget target = VN_GLSL_TARGET_VULKAN_1_0) {
+        return shader(VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT, glsl, target);
     }
     uint32_t geometry(std::string_view glsl, VnGlslTarget target = VN_GLSL_TARGET_VULKAN_1_0) {
         return shader(VK_SHADER_STAGE_GEOMETRY_BIT, glsl, target);

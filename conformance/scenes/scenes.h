@@ -27,6 +27,14 @@
     /* geometry_stage.cpp */   \
     X(geometry_strips)         \
     X(geometry_adjacency)      \
+    /* tessellation.cpp */     \
+    X(tessellation_triangles)  \
+    X(tessellation_quads)      \
+    X(tessellation_spacing)    \
+    X(tessellation_isolines)   \
+    X(tessellation_points)     \
+    X(tessellation_counts)     \
+    X(tessellation_winding)    \
     /* lines_and_points.cpp */ \
     X(lines)                   \
     X(lines_bresenham)         \

@@ -4,6 +4,10 @@
 // Coordinates are multiples of 2^-24 in [0, 1], computed in integers: 1 - x is exact for each of them, u + v + w of a
 // triangle is exactly 1, edges are symmetric to the bit and the same whichever edge of a patch they are and whatever
 // lies inside ("Tessellation Invariance").
+//
+// What the specification leaves open is declared: of fractional spacings the first and the last segment are the shorter
+// ones, of n segments for a level f 1 - (n - f) / 2 as long as the others; between two edges the next triangle is on
+// the edge whose next segment has its middle first; rectangles are cut from the corner with the least u and v.
 #pragma once
 
 #include <array>

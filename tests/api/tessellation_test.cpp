@@ -88,6 +88,20 @@ TEST_F(Tessellation, ASquareBecomesADisc) {
     EXPECT_EQ(areaOf(draw(program, 0, 28.0f / 32)), 0);
 }
 
+TEST_F(Tessellation, WindingIsSeenFromTheOriginOfTheDomain) {
+    const VnProgram program = made(disc());
+    for (const int lowerLeft : {0, 1}) {
+        VnRasterStateDesc desc{};
+        desc.cullMode = VK_CULL_MODE_BACK_BIT;
+        desc.domainLowerLeft = lowerLeft;
+        VnRasterState state{};
+        ASSERT_EQ(vnCreateRasterState(device_, &desc, &state), VN_SUCCESS) << lastError();
+        ASSERT_EQ(vnBindRasterState(context_, state), VN_SUCCESS) << lastError();
+        // Clockwise with v downwards, as on the screen, is the back.
+        EXPECT_EQ(areaOf(draw(program, 4, 0.5f)) > 0, lowerLeft != 0);
+    }
+}
+
 TEST_F(Tessellation, CountsOfPatchesAndPoints) {
     const VnProgram program = made(disc());
     VnStatistics statistics{};

@@ -320,6 +320,7 @@ typedef struct VnRasterStateDesc {
     int alphaToOne;          /* nonzero: then the alpha of all colours becomes 1 */
     float minSampleShading;  /* 0 .. 1; above 1 / samples: the fragment shader runs once per sample */
     int depthNegativeOneToOne;           /* nonzero: clip depths from -w to w, as in GL, instead of 0 to w */
+    int domainLowerLeft;                 /* nonzero: tessellated triangles wind as seen with v upwards, as in GL */
     VkLineRasterizationModeEXT lineMode; /* 0: rectangles; BRESENHAM, RECTANGULAR_SMOOTH (coverage goes into alpha) */
     uint32_t lineStippleFactor;  /* 1 .. 256: lines are stippled, each bit this many pixels long; 0: they are not */
     uint16_t lineStipplePattern; /* 16 bits, the lowest first; a strip goes on where its segments meet */
