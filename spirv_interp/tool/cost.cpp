@@ -46,7 +46,7 @@ struct Tally {
 }  // namespace
 
 Result<int> printCost(const ModuleInput& input, const IrOptions& options) {
-    const auto program = loadShader(input.shader(options.contract));
+    const auto program = input.program(options.contract);
     if (!program) return program.error();
     const auto compiled = BatchProgram::compile(*program, {bestIsa(), MathTier::standard, 0});
     if (!compiled) return compiled.error();

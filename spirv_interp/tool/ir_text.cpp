@@ -65,7 +65,7 @@ Result<int> printIr(const ModuleInput& input, const IrOptions& options) {
 }
 
 Result<int> printRates(const ModuleInput& input) {
-    const auto program = loadShader(input.shader());
+    const auto program = input.program();
     if (!program) return program.error();
     const auto compiled = BatchProgram::compile(*program, {bestIsa(), MathTier::standard, 0});
     if (!compiled) return compiled.error();

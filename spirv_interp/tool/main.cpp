@@ -25,6 +25,14 @@ struct Arguments {
 
 using Command = std::function<Result<int>(const ModuleInput&, const Invocation&)>;
 
+/// A command that runs an invocation.
+Command alone(const Command& command) {
+    return [command](const ModuleInput& input, const Invocation& invocation) -> Result<int> {
+        if (const Status status = input.standsAlone(); !status.ok()) return status.error();
+        return command(input, invocation);
+    };
+}
+
 int perform(const Arguments& arguments, const Command& command) {
     const auto input = readModule(arguments.path, arguments.stage, arguments.entryPoint);
     if (!input) return fail(input.error());
@@ -42,14 +50,16 @@ int perform(const Arguments& arguments, const Command& command) {
 }
 
 int parseAndPerform(int argc, char** argv) {
-    CLI::App app("Looks into SPIR-V shaders. Files are .spv, or GLSL (.vert, .frag, .comp; others with --stage)");
+    CLI::App app(
+        "Looks into SPIR-V shaders. Files are .spv, or GLSL (.vert, .tesc, .tese, .geom, .frag, .comp; others with "
+        "--stage)");
     app.require_subcommand(1);
     Arguments a;
     Command chosen;
     const auto add = [&](const char* name, const char* text, Command command) {
         CLI::App* sub = app.add_subcommand(name, text);
         sub->add_option("file", a.path, "The module")->required();
-        sub->add_option("--stage", a.stage, "vertex, fragment or compute");
+        sub->add_option("--stage", a.stage, "vertex, control, evaluation, geometry, fragment or compute");
         sub->add_option("--entry", a.entryPoint, "Name of the entry point");
         sub->callback([&chosen, command] { chosen = command; });
         return sub;
@@ -75,8 +85,9 @@ int parseAndPerform(int argc, char** argv) {
     CLI::App* cost = add("cost", "Operations by kind and source line",
                          [&](const ModuleInput& m, const Invocation&) { return printCost(m, a.ir); });
     cost->add_flag("--listing", a.ir.listing, "The batch code too");
-    CLI::App* runCommand = add("run", "Runs an invocation, or work-groups, and prints the outputs",
-                               [&](const ModuleInput& m, const Invocation& i) { return tool::run(m, i, a.run); });
+    CLI::App* runCommand =
+        add("run", "Runs an invocation, or work-groups, and prints the outputs",
+            alone([&](const ModuleInput& m, const Invocation& i) { return tool::run(m, i, a.run); }));
     runCommand->add_option("--engine", a.run.engine, "batch, reference or both")
         ->check(CLI::IsMember({"batch", "reference", "both"}))
         ->capture_default_str();
@@ -85,11 +96,12 @@ int parseAndPerform(int argc, char** argv) {
         ->capture_default_str();
     withInputs(runCommand);
     CLI::App* stepCommand = add("step", "Steps through an invocation; commands from stdin, h for help",
-                                [&](const ModuleInput& m, const Invocation& i) { return step(m, i, a.step); });
+                                alone([&](const ModuleInput& m, const Invocation& i) { return step(m, i, a.step); }));
     stepCommand->add_flag("--all", a.step.all, "Print every instruction, without asking");
     withInputs(stepCommand);
-    CLI::App* profileCommand = add("profile", "The instructions at which floats lose most bits",
-                                   [&](const ModuleInput& m, const Invocation& i) { return profile(m, i, a.profile); });
+    CLI::App* profileCommand =
+        add("profile", "The instructions at which floats lose most bits",
+            alone([&](const ModuleInput& m, const Invocation& i) { return profile(m, i, a.profile); }));
     profileCommand->add_flag("--mpfr", a.profile.mpfr, "Against numbers of 128 bits instead of double");
     profileCommand->add_option("--count", a.profile.count, "Instructions to show")->capture_default_str();
     withInputs(profileCommand);

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "api/include/vernier/vernier_glsl.h"
+#include "spirv_interp/ir/place_vertices.h"
 #include "spirv_interp/reference/interpreter.h"
 
 namespace vernier::tool {
@@ -22,6 +23,11 @@ struct StageName {
 };
 constexpr StageName kStages[] = {
     {"vertex", ".vert", ir::Stage::vertex, VK_SHADER_STAGE_VERTEX_BIT, spv::ExecutionModelVertex},
+    {"control", ".tesc", ir::Stage::control, VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT,
+     spv::ExecutionModelTessellationControl},
+    {"evaluation", ".tese", ir::Stage::evaluation, VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT,
+     spv::ExecutionModelTessellationEvaluation},
+    {"geometry", ".geom", ir::Stage::geometry, VK_SHADER_STAGE_GEOMETRY_BIT, spv::ExecutionModelGeometry},
     {"fragment", ".frag", ir::Stage::fragment, VK_SHADER_STAGE_FRAGMENT_BIT, spv::ExecutionModelFragment},
     {"compute", ".comp", ir::Stage::compute, VK_SHADER_STAGE_COMPUTE_BIT, spv::ExecutionModelGLCompute},
 };
@@ -57,6 +63,17 @@ ShaderSource ModuleInput::shader(bool contract) const {
     shader.stage = stage;
     shader.contract = contract;
     return shader;
+}
+
+Result<ir::Program> ModuleInput::program(bool contract) const {
+    auto loaded = loadShader(shader(contract));
+    if (loaded && stage == ir::Stage::geometry) ir::placeVertices(*loaded);
+    return loaded;
+}
+
+Status ModuleInput::standsAlone() const {
+    if (stage == ir::Stage::vertex || stage == ir::Stage::fragment || stage == ir::Stage::compute) return {};
+    return unsupported(path + ": stages that take patches or primitives are not run here");
 }
 
 std::string ModuleInput::sourceLine(uint32_t line) const {
