@@ -81,7 +81,7 @@ struct OracleRules {
     // vertices behind the eye; of linear blits whose coordinates are truncated instead of floored.
     bool mirroredDepths = false, planesBehindEye = false, truncatedBlits = false;
     TieRule ties = TieRule::topLeft;  // of triangles
-    TessellationChoices tessellation;
+    TessellationChoices tessellation{};
 };
 
 /// One image per Scene::outputs, in that order. An error with code `unsupported` when the scene uses
