@@ -6,7 +6,6 @@
 #include "conformance/scenes/scenes.h"
 #include "conformance/scenes/shapes.h"
 
-#include <cmath>
 #include <string>
 
 namespace vernier::conformance::scenes {

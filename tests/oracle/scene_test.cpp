@@ -134,10 +134,13 @@ TEST(Scene, MipsAndBlitsAverage) {
 }
 
 TEST(Scene, UnsupportedIsRefusedInWords) {
-    const auto images = renderOracle(
-        drawScene(diagonalQuad(), kFlat, [](Scene& s) { s.pipelines[0].topology = VK_PRIMITIVE_TOPOLOGY_PATCH_LIST; }));
+    const auto images = renderOracle(drawScene(diagonalQuad(), kFlat, [](Scene& s) {
+        s.pipelines[0].polygonMode = VK_POLYGON_MODE_LINE;
+        s.pipelines[0].depthBias = true;
+    }));
     ASSERT_FALSE(images.ok());
     EXPECT_EQ(images.error().code, ErrorCode::unsupported);
+    EXPECT_NE(images.error().message.find("depth bias"), std::string::npos);
     const auto broken =
         renderOracle(drawScene(diagonalQuad(), kFlat, [](Scene& s) { passOf(s).colors[0].image = 77; }));
     ASSERT_FALSE(broken.ok());
