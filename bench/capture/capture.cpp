@@ -192,7 +192,9 @@ ScenePipeline Capture::pipelineOf() {
     ScenePipeline made;
     const VnProgramDesc& program = programs_.at(bound.program.id);
     made.vertexShader = sceneShader(program.vertex);
-    if (program.control.id) cannot("tessellation");
+    if (program.control.id) made.controlShader = sceneShader(program.control);
+    if (program.evaluation.id) made.evaluationShader = sceneShader(program.evaluation);
+    made.patchVertices = bound.patchVertices;
     if (program.geometry.id) made.geometryShader = sceneShader(program.geometry);
     if (program.fragment.id) made.fragmentShader = sceneShader(program.fragment);
     const Layout& layout = layouts_[bound.layout.id];
@@ -212,6 +214,7 @@ ScenePipeline Capture::pipelineOf() {
     made.lineMode = raster.lineMode;
     made.provokingVertexLast = raster.provokingVertexLast != 0;
     made.depthNegativeOneToOne = raster.depthNegativeOneToOne != 0;
+    made.domainLowerLeft = raster.domainLowerLeft != 0;
     made.depthClamp = raster.depthClamp != 0;
     made.depthBias = raster.depthBias != 0;
     made.depthBiasConstant = raster.depthBiasConstant;
@@ -244,7 +247,7 @@ ScenePipeline Capture::pipelineOf() {
 
 void Capture::bindResources(SceneDraw& draw, const VnProgramDesc& program) {
     std::map<std::pair<uint32_t, uint32_t>, bool> wanted = shaders_.at(program.vertex.id).bindings;
-    for (const VnShader stage : {program.geometry, program.fragment})
+    for (const VnShader stage : {program.control, program.evaluation, program.geometry, program.fragment})
         if (stage.id)
             for (const auto& entry : shaders_.at(stage.id).bindings) wanted.insert(entry);
     for (const auto& entry : wanted) {

@@ -15,7 +15,7 @@
 
 namespace vernier::bench {
 
-/// One program, one device, one context, one thread. What a scene cannot say (dispatches, tessellation, clears inside a
+/// One program, one device, one context, one thread. What a scene cannot say (dispatches, clears inside a
 /// pass, reading in the middle of a frame, ...) is remembered as the reason why there is none.
 class Capture {
   public:
@@ -54,6 +54,7 @@ class Capture {
         VkRect2D scissor{};
         VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
         bool restart = false;
+        uint32_t patchVertices = 3;
     };
     State bound;
 

@@ -146,6 +146,7 @@ CALL(vnSetScissor, (VnContext context, const VkRect2D* scissor), (context, sciss
 CALL(vnSetTopology, (VnContext context, VkPrimitiveTopology topology, int restart), (context, topology, restart),
      state.topology = topology;
      state.restart = restart != 0)
+CALL(vnSetPatchVertices, (VnContext context, uint32_t vertices), (context, vertices), state.patchVertices = vertices)
 CALL(vnDraw, (VnContext context, uint32_t count, uint32_t instances, uint32_t first, uint32_t firstInstance),
      (context, count, instances, first, firstInstance), capture.draw(count, instances, first, 0, firstInstance, false))
 CALL(vnDrawIndexed,
