@@ -127,8 +127,9 @@ class BatchContext {
     /// After run(): the lanes of output `slot`; lanes that were not live hold arbitrary bits.
     const float* output(uint32_t slot) const;
 
-    /// After run(): the memory of the program's resources of the kind stageMemory, one after the other. run() leaves
-    /// what it does not write.
+    /// The memory of the program's resources of the kind stageMemory, one after the other. run() leaves what it does
+    /// not write.
+    uint32_t* stageMemory();
     const uint32_t* stageMemory() const;
 
     /// After run(): storeMask less the lanes that were killed or demoted.

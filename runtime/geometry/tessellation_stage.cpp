@@ -62,7 +62,7 @@ bool runControl(const PreparedDraw& draw, const StagePrimitives& in, BatchContex
         });
     }
     // What is read before it is written does not tell of other patches.
-    std::fill_n(const_cast<uint32_t*>(context.stageMemory()), size_t{patches} * rowWords, 0u);
+    std::fill_n(context.stageMemory(), size_t{patches} * rowWords, 0u);
     const Mask mask(count);
     return context.run((count + 3) / 4 * 4, mask.data(), mask.data());
 }

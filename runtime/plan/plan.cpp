@@ -114,7 +114,8 @@ bool drawsLines(const GraphicsState& state, VkPrimitiveTopology topology) {
 
 /// Inputs that come from a primitive's vertices; the others are made by the rasteriser.
 bool isInterpolated(ir::Builtin builtin) {
-    return builtin == ir::Builtin::user || builtin == ir::Builtin::clipDistance || builtin == ir::Builtin::cullDistance;
+    return builtin == ir::Builtin::user || builtin == ir::Builtin::clipDistance ||
+           builtin == ir::Builtin::cullDistance || ir::isBaryCoord(builtin);
 }
 
 /// The varying of an input; made if there is none.
@@ -122,7 +123,7 @@ Varying& varyingOf(const ir::Program& vertex, const ir::InterfaceSlot& input, Pl
     Varying varying;
     varying.interpolation = input.interpolation;
     varying.sampling = input.sampling;
-    if (ir::isBaryCoord(input)) {
+    if (ir::isBaryCoord(input.builtin)) {
         varying.source = Varying::Source::weight;
         varying.number = input.component;
     } else if (ir::isPerVertex(input)) {

@@ -41,6 +41,10 @@ const float* BatchContext::output(uint32_t slot) const {
     return slot >= outputs.size() ? nullptr : reinterpret_cast<const float*>(impl_->batch.row(outputs[slot]));
 }
 
+uint32_t* BatchContext::stageMemory() {
+    return impl_->memory.words();
+}
+
 const uint32_t* BatchContext::stageMemory() const {
     return impl_->memory.words();
 }

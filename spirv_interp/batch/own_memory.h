@@ -15,7 +15,8 @@ class OwnMemory {
     OwnMemory(const OwnMemory&) = delete;
     OwnMemory& operator=(const OwnMemory&) = delete;
 
-    uint32_t* words() const { return memory_.get(); }
+    uint32_t* words() { return memory_.get(); }
+    const uint32_t* words() const { return memory_.get(); }
     uint32_t wordCount() const { return wordCount_; }
 
     /// Valid until the next call. Those given, if the program has no such memory.

@@ -4,7 +4,6 @@
 #include "spirv_interp/front/lowering.h"
 #include "spirv_interp/front/spelling.h"
 #include "spirv_interp/ir/ops.h"
-#include "spirv_interp/ir/primitive_inputs.h"
 #include "spirv_interp/tessellation.h"
 
 namespace vernier {
@@ -48,6 +47,8 @@ constexpr BuiltinEntry kBuiltins[] = {
     {spv::BuiltIn::SamplePosition, ir::Builtin::samplePosition, kFragment, true},
     {spv::BuiltIn::SampleMask, ir::Builtin::sampleMaskIn, kFragment, true},
     {spv::BuiltIn::PrimitiveId, ir::Builtin::primitiveId, kFragment, true},
+    {spv::BuiltIn::BaryCoordKHR, ir::Builtin::baryCoord, kFragment, true},
+    {spv::BuiltIn::BaryCoordNoPerspKHR, ir::Builtin::baryCoordNoPersp, kFragment, true},
     {spv::BuiltIn::Position, ir::Builtin::position, kGeometry, true},
     {spv::BuiltIn::PointSize, ir::Builtin::pointSize, kGeometry, true},
     {spv::BuiltIn::ClipDistance, ir::Builtin::clipDistance, kGeometry, true},
@@ -262,14 +263,8 @@ void Lowering::decorateSlot(const SlotPlace& place, ir::InterfaceSlot& slot, Slo
     const auto find = [&](spv::Decoration kind) { return module_.findDecoration(id, kind, place.member); };
     if (const Decoration* d = find(spv::Decoration::BuiltIn)) {
         at.location = at.component = 0;
-        const auto builtin = static_cast<spv::BuiltIn>(d->value);
-        const bool noPersp = builtin == spv::BuiltIn::BaryCoordNoPerspKHR;
-        if (noPersp || builtin == spv::BuiltIn::BaryCoordKHR) {
-            at.location = noPersp ? ir::kBaryCoordNoPerspLocation : ir::kBaryCoordLocation;
-            if (noPersp) slot.interpolation = ir::Interpolation::noPerspective;
-        } else {
-            slot.builtin = builtinOf(place, d->value);
-        }
+        slot.builtin = builtinOf(place, d->value);
+        if (slot.builtin == ir::Builtin::baryCoordNoPersp) slot.interpolation = ir::Interpolation::noPerspective;
     }
     if (const Decoration* d = find(spv::Decoration::XfbBuffer)) at.buffer = d->value;
     if (const Decoration* d = find(spv::Decoration::XfbStride)) at.stride = d->value;

@@ -103,6 +103,8 @@ enum class Builtin : uint8_t {
     sampleMaskIn,
     primitiveId,
     helperInvocation,
+    baryCoord,  // interpolated as user inputs are (ir/primitive_inputs.h)
+    baryCoordNoPersp,
     // fragment outputs
     fragDepth,
     sampleMask,

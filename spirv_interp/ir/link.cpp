@@ -5,7 +5,6 @@
 #include "spirv_interp/ir/names.h"
 #include "spirv_interp/ir/ops.h"
 #include "spirv_interp/ir/optimise.h"
-#include "spirv_interp/ir/primitive_inputs.h"
 
 namespace vernier::ir {
 namespace {
@@ -17,7 +16,6 @@ bool samePlace(const InterfaceSlot& output, const InterfaceSlot& input) {
 /// Whether an input is fed by an output of the stage before, rather than by what lies between the stages.
 bool isVarying(const Program& program, const InterfaceSlot& slot) {
     if (program.stage != Stage::fragment) return slot.index != 0;
-    if (isBaryCoord(slot)) return false;
     return slot.builtin == Builtin::user || slot.builtin == Builtin::clipDistance ||
            slot.builtin == Builtin::cullDistance;
 }

@@ -1,20 +1,15 @@
 // Fragment inputs that are of a primitive rather than of one of its vertices (SPV_KHR_fragment_shader_barycentric), and
 // how programs spell them: as inputs like others, so that everything that carries inputs carries these.
-//   BaryCoordKHR, BaryCoordNoPerspKHR   components of a location that no shader can have, interpolated as others are
+//   BaryCoordKHR, BaryCoordNoPerspKHR   built-ins, interpolated as user inputs are
 //   PerVertexKHR                        flat, with a number after the location: that of the vertex, and one
 #pragma once
 
 #include "spirv_interp/ir/ir.h"
-#include "spirv_interp/ir/split_samples.h"
 
 namespace vernier::ir {
 
-inline constexpr uint16_t kBaryCoordLocation = 0xFF7E, kBaryCoordNoPerspLocation = 0xFF7F;
-static_assert(kBaryCoordNoPerspLocation < kFirstCarried);
-
-constexpr bool isBaryCoord(const InterfaceSlot& slot) {
-    return slot.builtin == Builtin::user &&
-           (slot.location == kBaryCoordLocation || slot.location == kBaryCoordNoPerspLocation);
+constexpr bool isBaryCoord(Builtin builtin) {
+    return builtin == Builtin::baryCoord || builtin == Builtin::baryCoordNoPersp;
 }
 
 constexpr bool isPerVertex(const InterfaceSlot& input) {

@@ -39,6 +39,8 @@ class Splitter {
     static bool isPixelInput(const InterfaceSlot& slot) {
         switch (slot.builtin) {
             case Builtin::user:
+            case Builtin::baryCoord:
+            case Builtin::baryCoordNoPersp:
                 return slot.interpolation == Interpolation::flat || slot.sampling == Sampling::center;
             case Builtin::frontFacing:
             case Builtin::primitiveId:

@@ -21,14 +21,24 @@ using reference::ScalarKind;
 
 /// Built-ins that both sides know by scalar.
 constexpr std::pair<ir::Builtin, spv::BuiltIn> kBuiltins[] = {
-    {ir::Builtin::vertexIndex, spv::BuiltInVertexIndex},   {ir::Builtin::instanceIndex, spv::BuiltInInstanceIndex},
-    {ir::Builtin::baseVertex, spv::BuiltInBaseVertex},     {ir::Builtin::baseInstance, spv::BuiltInBaseInstance},
-    {ir::Builtin::drawIndex, spv::BuiltInDrawIndex},       {ir::Builtin::position, spv::BuiltInPosition},
-    {ir::Builtin::pointSize, spv::BuiltInPointSize},       {ir::Builtin::clipDistance, spv::BuiltInClipDistance},
-    {ir::Builtin::cullDistance, spv::BuiltInCullDistance}, {ir::Builtin::fragCoord, spv::BuiltInFragCoord},
-    {ir::Builtin::frontFacing, spv::BuiltInFrontFacing},   {ir::Builtin::pointCoord, spv::BuiltInPointCoord},
-    {ir::Builtin::sampleId, spv::BuiltInSampleId},         {ir::Builtin::samplePosition, spv::BuiltInSamplePosition},
-    {ir::Builtin::primitiveId, spv::BuiltInPrimitiveId},   {ir::Builtin::fragDepth, spv::BuiltInFragDepth},
+    {ir::Builtin::vertexIndex, spv::BuiltInVertexIndex},
+    {ir::Builtin::instanceIndex, spv::BuiltInInstanceIndex},
+    {ir::Builtin::baseVertex, spv::BuiltInBaseVertex},
+    {ir::Builtin::baseInstance, spv::BuiltInBaseInstance},
+    {ir::Builtin::drawIndex, spv::BuiltInDrawIndex},
+    {ir::Builtin::position, spv::BuiltInPosition},
+    {ir::Builtin::pointSize, spv::BuiltInPointSize},
+    {ir::Builtin::clipDistance, spv::BuiltInClipDistance},
+    {ir::Builtin::cullDistance, spv::BuiltInCullDistance},
+    {ir::Builtin::fragCoord, spv::BuiltInFragCoord},
+    {ir::Builtin::frontFacing, spv::BuiltInFrontFacing},
+    {ir::Builtin::pointCoord, spv::BuiltInPointCoord},
+    {ir::Builtin::sampleId, spv::BuiltInSampleId},
+    {ir::Builtin::samplePosition, spv::BuiltInSamplePosition},
+    {ir::Builtin::primitiveId, spv::BuiltInPrimitiveId},
+    {ir::Builtin::fragDepth, spv::BuiltInFragDepth},
+    {ir::Builtin::baryCoord, spv::BuiltInBaryCoordKHR},
+    {ir::Builtin::baryCoordNoPersp, spv::BuiltInBaryCoordNoPerspKHR},
 };
 
 /// The words of inputs or outputs, by place; a scalar of 64 bits has two, one of less is held in one. Halves are
@@ -128,12 +138,7 @@ bool hasDoubles(const reference::Module& module) {
 
 uint32_t inputWord(const ir::InterfaceSlot& slot, const Words& words) {
     uint32_t word = 0;
-    if (ir::isBaryCoord(slot)) {
-        const bool linear = slot.location == ir::kBaryCoordNoPerspLocation;
-        const auto found =
-            words.builtins.find({linear ? spv::BuiltInBaryCoordNoPerspKHR : spv::BuiltInBaryCoordKHR, slot.component});
-        if (found != words.builtins.end()) word = found->second;
-    } else if (slot.builtin == ir::Builtin::user) {
+    if (slot.builtin == ir::Builtin::user) {
         const uint32_t index = ir::isPerVertex(slot) ? ir::vertexNumber(slot) : slot.index;
         const auto found = words.locations.find({slot.location, index, slot.component});
         if (found != words.locations.end()) word = found->second;

@@ -146,10 +146,10 @@ layout(location=0) out vec4 o;
 void main() {
   o = vec4(gl_BaryCoordEXT.xz, gl_BaryCoordNoPerspEXT.y, corners[0].y + corners[2].x + float(blocks[1].k) + blocks[2].f);
 })");
-    // Weights have a location of their own; behind a location the number of the vertex, counted from one.
-    EXPECT_EQ(linesOf(program, "input"), R"(input 0 f32 user 65406.0 smooth center
-input 1 f32 user 65406.2 smooth center
-input 2 f32 user 65407.1 noPerspective center
+    // Behind a location the number of the vertex, counted from one.
+    EXPECT_EQ(linesOf(program, "input"), R"(input 0 f32 baryCoord 0.0 smooth center
+input 1 f32 baryCoord 0.2 smooth center
+input 2 f32 baryCoordNoPersp 0.1 noPerspective center
 input 3 f32 user 2.1.1 flat center
 input 4 f32 user 2.0.3 flat center
 input 5 i32 user 3.0.2 flat center
