@@ -3,16 +3,6 @@
 #include <algorithm>
 
 namespace vernier {
-namespace {
-
-/// How many vertices fit, and can be counted in 32 bits, `offset` among them. The last one need not have room for all
-/// of its stride.
-uint64_t roomFor(uint64_t size, uint64_t offset, uint32_t extent, uint32_t stride) {
-    if (offset > size || size - offset < extent) return 0;
-    return std::min((size - offset - extent) / stride + 1, (UINT32_MAX - offset) / stride);
-}
-
-}  // namespace
 
 void TransformFeedback::bind(uint32_t buffer, std::byte* data, uint64_t size) {
     if (buffer < kCaptureBuffers) bound_[buffer] = {data, data == nullptr ? 0 : size, 0};
@@ -28,8 +18,7 @@ CaptureTarget TransformFeedback::place(const CapturePlan& plan, uint32_t vertice
     target.primitives = primitives;
     for (uint32_t b = 0; b < kCaptureBuffers; ++b) {
         if (plan.extents[b] == 0) continue;
-        const RunningCapture::Buffer& buffer = buffers_[b];
-        const uint64_t vertices = roomFor(buffer.size, buffer.offset, plan.extents[b], plan.strides[b]);
+        const uint64_t vertices = buffers_[b].room(plan.extents[b], plan.strides[b]);
         target.primitives = std::min(target.primitives, vertices / verticesPerPrimitive);
     }
     for (uint32_t b = 0; b < kCaptureBuffers && target.primitives != 0; ++b) {

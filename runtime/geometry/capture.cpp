@@ -25,6 +25,11 @@ std::vector<const CapturedOutput*> outputsOf(const CapturePlan& plan, uint32_t s
 
 }  // namespace
 
+uint64_t RunningCapture::Buffer::room(uint32_t extent, uint32_t stride) const {
+    if (offset > size || size - offset < extent) return 0;
+    return std::min((size - offset - extent) / stride + 1, (UINT32_MAX - offset) / stride);
+}
+
 /// The primitives at hand are those from `first` of the draw on. Every primitive has its place, whoever captures it.
 void Assembler::capture(const PreparedDraw& draw, uint64_t first) const {
     const CaptureTarget& target = *draw.call.capture;
@@ -78,29 +83,20 @@ uint32_t writeCaptured(const PreparedDraw& draw, const CapturedPrimitives& captu
     RunningCapture& running = *draw.call.capture->running;
     std::array<bool, kCaptureBuffers> used{};
     for (const CapturedOutput* output : outputs) used[output->buffer] = true;
-    const auto hasRoom = [&] {
-        for (uint32_t b = 0; b < kCaptureBuffers; ++b) {
-            const RunningCapture::Buffer& buffer = running.buffers[b];
-            // The last vertex need not have room for all of its stride.
-            const uint64_t end =
-                buffer.offset + uint64_t{captured.verticesPerPrimitive - 1} * plan.strides[b] + plan.extents[b];
-            if (used[b] && end > buffer.size) return false;
-        }
-        return true;
-    };
+    uint64_t vertices = uint64_t{captured.primitives} * captured.verticesPerPrimitive;
+    for (uint32_t b = 0; b < kCaptureBuffers; ++b)
+        if (used[b]) vertices = std::min(vertices, running.buffers[b].room(plan.extents[b], plan.strides[b]));
+    const uint64_t primitives = vertices / captured.verticesPerPrimitive;
     const uint32_t* word = captured.words.data();
-    for (uint32_t n = 0; n < captured.primitives; ++n) {
-        if (!hasRoom()) return n;
-        for (uint32_t v = 0; v < captured.verticesPerPrimitive; ++v) {
-            for (const CapturedOutput* output : outputs) {
-                const RunningCapture::Buffer& buffer = running.buffers[output->buffer];
-                std::memcpy(buffer.data + buffer.offset + output->offset, word++, sizeof(uint32_t));
-            }
-            for (uint32_t b = 0; b < kCaptureBuffers; ++b)
-                if (used[b]) running.buffers[b].offset += plan.strides[b];
+    for (uint64_t n = 0; n < primitives * captured.verticesPerPrimitive; ++n) {
+        for (const CapturedOutput* output : outputs) {
+            const RunningCapture::Buffer& buffer = running.buffers[output->buffer];
+            std::memcpy(buffer.data + buffer.offset + output->offset, word++, sizeof(uint32_t));
         }
+        for (uint32_t b = 0; b < kCaptureBuffers; ++b)
+            if (used[b]) running.buffers[b].offset += plan.strides[b];
     }
-    return captured.primitives;
+    return static_cast<uint32_t>(primitives);
 }
 
 }  // namespace vernier

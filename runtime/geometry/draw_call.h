@@ -30,6 +30,9 @@ struct RunningCapture {
     struct Buffer {
         std::byte* data = nullptr;
         uint64_t size = 0, offset = 0;  // bytes
+        /// How many vertices fit, and can be counted in 32 bits, `offset` among them. The last one need not have room
+        /// for all of its stride.
+        uint64_t room(uint32_t extent, uint32_t stride) const;
     };
     std::array<Buffer, kCaptureBuffers> buffers{};
 };

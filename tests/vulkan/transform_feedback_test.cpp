@@ -132,6 +132,56 @@ void main() { gl_Position = vec4(0, 0, 0, 1); a = float(gl_VertexIndex); b = a +
     EXPECT_THAT(capture(feedback).counters, ElementsAre(9 * 8, 9 * 4));
 }
 
+// Of points 16 bytes apart the fourth would fit, but a counter could not tell where it ends.
+TEST_F(TransformFeedbackTest, goesNoFurtherThanCountersCount) {
+    constexpr VkDeviceSize kSize = 0xFFFFFFFCu;
+    constexpr uint32_t kFrom = 0xFFFFFFC0u;
+    VkPhysicalDeviceMemoryProperties memory{};
+    vkGetPhysicalDeviceMemoryProperties(physicalDevice, &memory);
+    if (memory.memoryHeaps[0].size < 2 * kSize) GTEST_SKIP() << "the heap is too small for buffers of 4 GiB";
+    const Commands vk = feedbackCommands();
+    const TestImage color = makeImage(VK_FORMAT_R8G8B8A8_UNORM, {16, 16}, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
+    const Pass pass = makePass(color);
+    PipelineDesc desc;
+    desc.extent = {16, 16};
+    desc.change = [](const PipelineStates& states) {
+        states.assembly.topology = VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
+        states.raster.rasterizerDiscardEnable = VK_TRUE;
+    };
+    desc.vertex = makeShader(VK_SHADER_STAGE_VERTEX_BIT, R"(#version 450
+layout(location = 0, xfb_buffer = 0, xfb_offset = 0, xfb_stride = 16) out float number;
+void main() { gl_Position = vec4(0, 0, 0, 1); gl_PointSize = 1; number = float(gl_VertexIndex + 1); })");
+    const VkShaderModule geometry = makeShader(VK_SHADER_STAGE_GEOMETRY_BIT, R"(#version 450
+layout(points) in;
+layout(points, max_vertices = 1) out;
+layout(location = 0) in float number[];
+layout(location = 0, xfb_buffer = 0, xfb_offset = 0, xfb_stride = 16) out float copy;
+void main() { copy = number[0]; gl_PointSize = 1; EmitVertex(); })");
+    for (const VkShaderModule stage : {VkShaderModule{VK_NULL_HANDLE}, geometry}) {
+        desc.geometry = stage;
+        const VkPipeline pipeline = makePipeline(pass.pass, desc);
+        const TestBuffer captured = makeBuffer(kSize, VK_BUFFER_USAGE_TRANSFORM_FEEDBACK_BUFFER_BIT_EXT);
+        const TestBuffer counter = makeBuffer(4, VK_BUFFER_USAGE_TRANSFORM_FEEDBACK_COUNTER_BUFFER_BIT_EXT);
+        std::memcpy(counter.data, &kFrom, 4);
+        const VkDeviceSize zero = 0;
+        const VkCommandBuffer commands = begin();
+        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+        vk.bind(commands, 0, 1, &captured.buffer, &zero, &kSize);
+        beginPass(commands, pass);
+        vk.begin(commands, 0, 1, &counter.buffer, &zero);
+        vkCmdDraw(commands, 6, 1, 0, 0);
+        vk.end(commands, 0, 1, &counter.buffer, &zero);
+        vkCmdEndRenderPass(commands);
+        submit(commands);
+        uint32_t end = 0;
+        std::memcpy(&end, counter.data, 4);
+        EXPECT_EQ(end, 0xFFFFFFF0u);
+        std::array<float, 15> behind{};
+        std::memcpy(behind.data(), static_cast<const std::byte*>(captured.data) + kFrom, sizeof behind);
+        EXPECT_THAT(behind, ElementsAre(1, 0, 0, 0, 2, 0, 0, 0, 3, 0, 0, 0, 0, 0, 0));
+    }
+}
+
 TEST_F(TransformFeedbackTest, pausesAndGoesOn) {
     Feedback feedback = indices();
     feedback.topology = VK_PRIMITIVE_TOPOLOGY_LINE_STRIP;
