@@ -127,8 +127,30 @@ VkResult acquire(const Device& device, VkSwapchainKHR swapchain, uint64_t timeou
     });
 }
 
-/// What is presented by one vkQueuePresentKHR; carried by the submission that waits for its semaphores.
-using Presentations = std::vector<std::pair<std::shared_ptr<Presenter>, uint32_t>>;
+/// The images of one vkQueuePresentKHR. The application has them back unless the queue takes them.
+class EnqueuedImages {
+  public:
+    using List = std::vector<std::pair<std::shared_ptr<Presenter>, uint32_t>>;
+
+    explicit EnqueuedImages(uint32_t most) { list_.reserve(most); }
+    EnqueuedImages(const EnqueuedImages&) = delete;
+    EnqueuedImages& operator=(const EnqueuedImages&) = delete;
+    ~EnqueuedImages() {
+        for (const auto& [presenter, index] : list_) presenter->takeBack(index);
+    }
+
+    /// False: the image is not acquired.
+    bool add(const std::shared_ptr<Presenter>& presenter, uint32_t index) {
+        if (!presenter->enqueue(index)) return false;
+        list_.emplace_back(presenter, index);
+        return true;
+    }
+    const List& list() const { return list_; }
+    void taken() { list_.clear(); }
+
+  private:
+    List list_;
+};
 
 /// The worst counts ("vkQueuePresentKHR"): in this order.
 VkResult worse(VkResult one, VkResult other) {
@@ -150,31 +172,24 @@ VkResult present(Device& device, const VkPresentInfoKHR& info) {
     for (uint32_t i = 0; i < info.waitSemaphoreCount; ++i) {
         submission.waitSemaphores.push_back(&object(info.pWaitSemaphores[i])->binary);
     }
-    Presentations shows;
-    shows.reserve(info.swapchainCount);
+    EnqueuedImages images(info.swapchainCount);
     VkResult worst = VK_SUCCESS;
     for (uint32_t i = 0; i < info.swapchainCount; ++i) {
         const std::shared_ptr<Presenter>& presenter = object(info.pSwapchains[i])->presenter;
         VkResult one = presenter->status();
         // With an error, too, the semaphores are waited for, and the image goes back to the swapchain.
-        if (presenter->enqueue(info.pImageIndices[i])) {
-            shows.emplace_back(presenter, info.pImageIndices[i]);
-        } else {
+        if (!images.add(presenter, info.pImageIndices[i])) {
             one = device.report("vkQueuePresentKHR", VK_ERROR_UNKNOWN,
                                 "image " + std::to_string(info.pImageIndices[i]) + " is not acquired");
         }
         if (info.pResults != nullptr) info.pResults[i] = one;
         worst = worse(worst, one);
     }
-    try {
-        submission.done = [shows] {
-            for (const auto& [presenter, index] : shows) presenter->present(index);
-        };
-        device.runtime->queue().submit(std::move(submission));
-    } catch (...) {
-        for (const auto& [presenter, index] : shows) presenter->takeBack(index);
-        throw;
-    }
+    submission.done = [shows = images.list()] {
+        for (const auto& [presenter, index] : shows) presenter->present(index);
+    };
+    device.runtime->queue().submit(std::move(submission));
+    images.taken();
     return device.lost() ? VK_ERROR_DEVICE_LOST : worst;
 }
 

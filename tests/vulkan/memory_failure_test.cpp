@@ -98,6 +98,40 @@ class SmallProgram {
         return outcome;
     }
 
+    /// Presents an image twice in one command, which refuses the second, until there is memory enough to say so. What
+    /// fails for want of memory leaves the image acquired.
+    void presentWithoutMemory() {
+        ASSERT_EQ(all(), VK_SUCCESS);
+        uint32_t index = 0;
+        VkResult results[2] = {};
+        const VkSwapchainKHR swapchains[2] = {swapchain_, swapchain_};
+        VkResult result = VK_ERROR_OUT_OF_HOST_MEMORY;
+        int64_t failures = -1;
+        while (result == VK_ERROR_OUT_OF_HOST_MEMORY) {
+            ASSERT_EQ(acquire(&index), VK_SUCCESS);
+            ASSERT_EQ(api_.DeviceWaitIdle(device_), VK_SUCCESS);
+            const uint32_t indices[2] = {index, index};
+            auto twice = make<VkPresentInfoKHR>(VK_STRUCTURE_TYPE_PRESENT_INFO_KHR);
+            twice.swapchainCount = 2;
+            twice.pSwapchains = swapchains;
+            twice.pImageIndices = indices;
+            twice.pResults = results;
+            countdown = ++failures;
+            armed = true;
+            result = api_.QueuePresentKHR(queue_, &twice);
+            armed = false;
+            if (result == VK_ERROR_OUT_OF_HOST_MEMORY) {
+                ASSERT_EQ(show(index), VK_SUCCESS) << failures;
+            }
+        }
+        // What fails next is in the queue, whose device is lost then.
+        EXPECT_THAT(result, testing::AnyOf(VK_ERROR_UNKNOWN, VK_ERROR_DEVICE_LOST));
+        EXPECT_EQ(results[0], VK_SUCCESS);
+        EXPECT_EQ(results[1], VK_ERROR_UNKNOWN);
+        EXPECT_GT(failures, 3);
+        destroy();
+    }
+
   private:
 #define TRY(call) \
     if (const VkResult tried = (call); tried != VK_SUCCESS) return tried
@@ -304,14 +338,20 @@ class SmallProgram {
         TRY(api_.CreateSwapchainKHR(device_, &info, nullptr, &swapchain_));
         for (int frame = 0; frame < 4; ++frame) {
             uint32_t index = 0;
-            TRY(api_.AcquireNextImageKHR(device_, swapchain_, UINT64_MAX, VK_NULL_HANDLE, VK_NULL_HANDLE, &index));
-            auto shown = make<VkPresentInfoKHR>(VK_STRUCTURE_TYPE_PRESENT_INFO_KHR);
-            shown.swapchainCount = 1;
-            shown.pSwapchains = &swapchain_;
-            shown.pImageIndices = &index;
-            TRY(api_.QueuePresentKHR(queue_, &shown));
+            TRY(acquire(&index));
+            TRY(show(index));
         }
         return VK_SUCCESS;
+    }
+    VkResult acquire(uint32_t* index) {
+        return api_.AcquireNextImageKHR(device_, swapchain_, UINT64_MAX, VK_NULL_HANDLE, VK_NULL_HANDLE, index);
+    }
+    VkResult show(uint32_t index) {
+        auto shown = make<VkPresentInfoKHR>(VK_STRUCTURE_TYPE_PRESENT_INFO_KHR);
+        shown.swapchainCount = 1;
+        shown.pSwapchains = &swapchain_;
+        shown.pImageIndices = &index;
+        return api_.QueuePresentKHR(queue_, &shown);
     }
 #undef TRY
 
@@ -412,6 +452,12 @@ TEST_P(MemoryFailure, AtEveryAllocation) {
         }
     }
     EXPECT_GT(failures, total / kStride * 8 / 10);
+}
+
+TEST_P(MemoryFailure, PresentsAllOrNothing) {
+    const Parts parts;
+    forGood = GetParam();
+    SmallProgram(parts).presentWithoutMemory();
 }
 
 INSTANTIATE_TEST_SUITE_P(Memory, MemoryFailure, testing::Values(false, true),
