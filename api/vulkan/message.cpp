@@ -69,24 +69,32 @@ void Messages::add(const DebugMessenger* messenger) {
 }
 
 void Messages::remove(const DebugMessenger* messenger) {
-    const std::lock_guard lock(mutex_);
+    std::unique_lock lock(mutex_);
     std::erase(messengers_, messenger);
+    // A callback that destroys its own messenger, which it must not, does not wait for itself.
+    const auto elsewhere = [&](const Running& one) {
+        return one.messenger == messenger && one.thread != std::this_thread::get_id();
+    };
+    returned_.wait(lock, [&] { return std::ranges::none_of(running_, elsewhere); });
 }
 
 void Messages::send(VkDebugUtilsMessageSeverityFlagBitsEXT severity, VkDebugUtilsMessageTypeFlagsEXT types,
                     const VkDebugUtilsMessengerCallbackDataEXT& data) const {
     if (log_) std::fprintf(stderr, "vernier: %s\n", data.pMessage);
-    // The callbacks run without the lock: one may destroy its own messenger.
-    std::vector<const DebugMessenger*> messengers;
-    {
-        const std::lock_guard lock(mutex_);
-        messengers = messengers_;
-    }
+    std::unique_lock lock(mutex_);
+    // Callbacks run without the lock: messengers come and go meanwhile.
+    const std::vector<const DebugMessenger*> messengers = messengers_;
     for (const DebugMessenger* messenger : messengers) {
-        const auto& info = messenger->info;
-        if ((info.messageSeverity & severity) != 0 && (info.messageType & types) != 0) {
-            info.pfnUserCallback(severity, types, &data, info.pUserData);
-        }
+        if (std::ranges::count(messengers_, messenger) == 0) continue;
+        const VkDebugUtilsMessengerCreateInfoEXT info = messenger->info;
+        if ((info.messageSeverity & severity) == 0 || (info.messageType & types) == 0) continue;
+        const Running running{messenger, std::this_thread::get_id()};
+        running_.push_back(running);
+        lock.unlock();
+        info.pfnUserCallback(severity, types, &data, info.pUserData);
+        lock.lock();
+        running_.erase(std::ranges::find(running_, running));
+        returned_.notify_all();
     }
 }
 

@@ -4,9 +4,11 @@
 
 #include <vulkan/vulkan_core.h>
 
+#include <condition_variable>
 #include <mutex>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <vector>
 
 #include "base/result.h"
@@ -30,6 +32,7 @@ struct MessageObject {
 class Messages {
   public:
     void add(const DebugMessenger* messenger);
+    /// Waits for its callbacks that run, on the queue's thread for one: none runs or is called afterwards.
     void remove(const DebugMessenger* messenger);
     void setLog(bool log) { log_ = log; }
 
@@ -40,8 +43,17 @@ class Messages {
     void error(const char* command, MessageObject about, std::string_view text) const;
 
   private:
+    /// A callback that has been called and has not returned.
+    struct Running {
+        const DebugMessenger* messenger;
+        std::thread::id thread;
+        bool operator==(const Running&) const = default;
+    };
+
     mutable std::mutex mutex_;
+    mutable std::condition_variable returned_;
     std::vector<const DebugMessenger*> messengers_;
+    mutable std::vector<Running> running_;
     bool log_ = false;
 };
 

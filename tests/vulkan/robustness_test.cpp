@@ -1,6 +1,9 @@
 // Null descriptors, and the edges of buffers and images: VK_EXT_robustness2, VK_EXT_image_robustness.
 #include <algorithm>
+#include <chrono>
+#include <condition_variable>
 #include <cstdlib>
+#include <mutex>
 
 #include "tests/vulkan/test_compute.h"
 
@@ -261,6 +264,61 @@ TEST_F(ValidateTest, harmlessMisuseIsTold) {
     defer([this, fence] { vkDestroyFence(device, fence, nullptr); });
     EXPECT_EQ(vkQueueSubmit(queue, 0, nullptr, fence), VK_SUCCESS);
     EXPECT_TRUE(told("signalled already"));
+}
+
+/// A callback that does not return before its messenger is destroyed, or that takes long.
+struct SlowCallback {
+    std::mutex mutex;
+    std::condition_variable changed;
+    bool called = false, destroyed = false, outlived = false;
+
+    static VkBool32 VKAPI_CALL call(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                                    const VkDebugUtilsMessengerCallbackDataEXT*, void* user) {
+        auto& self = *static_cast<SlowCallback*>(user);
+        std::unique_lock lock(self.mutex);
+        self.called = true;
+        self.changed.notify_all();
+        self.outlived = self.changed.wait_for(lock, std::chrono::milliseconds(100), [&] { return self.destroyed; });
+        return VK_FALSE;
+    }
+};
+
+TEST_F(ValidateTest, aMessengerGoesWhenItsCallbackHasReturned) {
+    VERNIER_SKIP_WHEN_VALIDATED();
+    SlowCallback callback;
+    auto info = make<VkDebugUtilsMessengerCreateInfoEXT>(VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT);
+    info.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+    info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT;
+    info.pfnUserCallback = SlowCallback::call;
+    info.pUserData = &callback;
+    VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
+    ASSERT_EQ(ofInstance<PFN_vkCreateDebugUtilsMessengerEXT>("vkCreateDebugUtilsMessengerEXT")(instance, &info, nullptr,
+                                                                                               &messenger),
+              VK_SUCCESS);
+    const Compute compute = makeCompute(R"(#version 450
+        layout(set = 0, binding = 0) buffer Out { uint value; };
+        void main() { value = 5; })",
+                                        {storageBuffer(makeStorage(4))});
+    const VkCommandBuffer commands = begin();
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, compute.pipeline);
+    vkCmdDispatch(commands, 1, 1, 1);  // without a descriptor set
+    ASSERT_EQ(vkEndCommandBuffer(commands), VK_SUCCESS);
+    auto submission = make<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
+    submission.commandBufferCount = 1;
+    submission.pCommandBuffers = &commands;
+    ASSERT_EQ(vkQueueSubmit(queue, 1, &submission, VK_NULL_HANDLE), VK_SUCCESS);
+    {
+        std::unique_lock lock(callback.mutex);
+        callback.changed.wait(lock, [&] { return callback.called; });
+    }
+    ofInstance<PFN_vkDestroyDebugUtilsMessengerEXT>("vkDestroyDebugUtilsMessengerEXT")(instance, messenger, nullptr);
+    {
+        const std::lock_guard lock(callback.mutex);
+        callback.destroyed = true;
+        callback.changed.notify_all();
+    }
+    ASSERT_EQ(vkQueueWaitIdle(queue), VK_SUCCESS);
+    EXPECT_FALSE(callback.outlived) << "the messenger was destroyed while its callback ran";
 }
 
 }  // namespace

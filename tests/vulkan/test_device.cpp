@@ -78,8 +78,7 @@ void VulkanTest::SetUp() {
         VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
     messengerInfo.pfnUserCallback = keepMessage;
     messengerInfo.pUserData = &messages;
-    const auto createMessenger = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
-        vkGetInstanceProcAddr(instance, "vkCreateDebugUtilsMessengerEXT"));
+    const auto createMessenger = ofInstance<PFN_vkCreateDebugUtilsMessengerEXT>("vkCreateDebugUtilsMessengerEXT");
     ASSERT_NE(createMessenger, nullptr);
     ASSERT_EQ(createMessenger(instance, &messengerInfo, nullptr, &messenger_), VK_SUCCESS);
 
@@ -127,9 +126,8 @@ void VulkanTest::TearDown() {
         vkDestroyDevice(device, nullptr);
     }
     if (instance != VK_NULL_HANDLE) {
-        const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
-            vkGetInstanceProcAddr(instance, "vkDestroyDebugUtilsMessengerEXT"));
-        destroy(instance, messenger_, nullptr);
+        ofInstance<PFN_vkDestroyDebugUtilsMessengerEXT>("vkDestroyDebugUtilsMessengerEXT")(instance, messenger_,
+                                                                                           nullptr);
         vkDestroyInstance(instance, nullptr);
     }
 }

@@ -81,6 +81,11 @@ class VulkanTest : public testing::Test {
     Function command(const char* name) const {
         return reinterpret_cast<Function>(vkGetDeviceProcAddr(device, name));
     }
+    /// Likewise, of the instance.
+    template <class Function>
+    Function ofInstance(const char* name) const {
+        return reinterpret_cast<Function>(vkGetInstanceProcAddr(instance, name));
+    }
 
     /// Remembers how to destroy something; done in reverse order at the end.
     void defer(std::function<void()> destroy) { deferred_.push_back(std::move(destroy)); }

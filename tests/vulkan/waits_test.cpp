@@ -64,10 +64,6 @@ class WaitsTest : public ComputeTest {
         conditional.pNext = &feedback;
         return &conditional;
     }
-    template <class Function>
-    Function ofInstance(const char* name) const {
-        return reinterpret_cast<Function>(vkGetInstanceProcAddr(instance, name));
-    }
 
     /// Records the dispatch, a pass with `commands`, and in it the draw that is told of.
     void expectNoWait(const std::function<void(VkCommandBuffer)>& record) {
