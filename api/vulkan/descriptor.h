@@ -55,10 +55,11 @@ struct DescriptorPool {
     VkAllocationCallbacks callbacks_{};
     const VkAllocationCallbacks* callbacks() const { return hasCallbacks_ ? &callbacks_ : nullptr; }
 
-    /// Descriptors by type, of inline uniform blocks the bytes; and the number of these blocks.
+    /// Descriptors by type, of inline uniform blocks the bytes; and the number of these blocks. Sums over any number of
+    /// pool sizes and bindings.
     struct Counts {
-        std::array<uint32_t, kDescriptorTypeCount> of{};
-        uint32_t blocks = 0;
+        std::array<uint64_t, kDescriptorTypeCount> of{};
+        uint64_t blocks = 0;
         bool take(const Counts& wanted);
         void put(const Counts& back);
     };

@@ -34,7 +34,7 @@ DescriptorPool::Counts DescriptorPool::countsOf(const DescriptorSetLayout& layou
 }
 
 bool DescriptorPool::Counts::take(const Counts& wanted) {
-    const auto holds = [](uint32_t has, uint32_t wants) { return has >= wants; };
+    const auto holds = [](uint64_t has, uint64_t wants) { return has >= wants; };
     if (blocks < wanted.blocks || !std::equal(of.begin(), of.end(), wanted.of.begin(), holds)) return false;
     std::transform(of.begin(), of.end(), wanted.of.begin(), of.begin(), std::minus<>{});
     blocks -= wanted.blocks;

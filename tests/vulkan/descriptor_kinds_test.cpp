@@ -203,5 +203,11 @@ void main() { color = subpassLoad(inputs[nonuniformEXT((int(gl_FragCoord.x) + in
             EXPECT_EQ(pixelAt(texels, color, x, y), (x + y) % 2 != 0 ? 0xFF00FF00u : 0xFF0000FFu) << x << ", " << y;
 }
 
+TEST_F(DescriptorKindsTest, poolSizesAddUpToMoreThan32Bits) {
+    constexpr VkDescriptorType kType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    const VkDescriptorSetLayout layout = makeSetLayout({{0, kType, 2, VK_SHADER_STAGE_ALL, nullptr}});
+    EXPECT_NE(makeEmptySet(layout, {{kType, 0x80000000u}, {kType, 0x80000001u}}), VkDescriptorSet{VK_NULL_HANDLE});
+}
+
 }  // namespace
 }  // namespace vernier::test
