@@ -1,6 +1,7 @@
 #include "runtime/resource/address_space.h"
 
 #include <algorithm>
+#include <iterator>
 #include <mutex>
 
 namespace vernier {
@@ -12,9 +13,13 @@ uint64_t addressOf(const std::byte* data) {
 
 }  // namespace
 
-void AddressSpace::refreshEnds(size_t first) {
-    for (size_t i = first; i < ranges_.size(); ++i)
-        ranges_[i].latestEnd = i == 0 ? ranges_[i].end : std::max(ranges_[i].end, ranges_[i - 1].latestEnd);
+void AddressSpace::refreshFarthest(size_t first) {
+    for (size_t i = first; i < ranges_.size(); ++i) {
+        Range& range = ranges_[i];
+        const bool before = i != 0 && ranges_[i - 1].farthestEnd > range.end;
+        range.farthestBegin = before ? ranges_[i - 1].farthestBegin : range.begin;
+        range.farthestEnd = before ? ranges_[i - 1].farthestEnd : range.end;
+    }
 }
 
 void AddressSpace::add(std::byte* data, uint64_t bytes) {
@@ -23,8 +28,8 @@ void AddressSpace::add(std::byte* data, uint64_t bytes) {
     const auto behind = std::upper_bound(ranges_.begin(), ranges_.end(), begin,
                                          [](uint64_t address, const Range& range) { return address < range.begin; });
     const auto place = behind - ranges_.begin();
-    ranges_.insert(behind, {begin, begin + bytes, 0});
-    refreshEnds(static_cast<size_t>(place));
+    ranges_.insert(behind, {begin, begin + bytes, 0, 0});
+    refreshFarthest(static_cast<size_t>(place));
 }
 
 void AddressSpace::remove(const std::byte* data, uint64_t bytes) {
@@ -36,20 +41,18 @@ void AddressSpace::remove(const std::byte* data, uint64_t bytes) {
     if (found == ranges_.end()) return;
     const auto place = found - ranges_.begin();
     ranges_.erase(found);
-    refreshEnds(static_cast<size_t>(place));
+    refreshFarthest(static_cast<size_t>(place));
 }
 
 AddressRange AddressSpace::find(uint64_t address) const {
     const std::shared_lock lock(mutex_);
-    auto range = std::upper_bound(ranges_.begin(), ranges_.end(), address,
-                                  [](uint64_t wanted, const Range& one) { return wanted < one.begin; });
-    while (range != ranges_.begin()) {
-        --range;
-        if (address < range->end)
-            return {reinterpret_cast<std::byte*>(range->begin), range->begin, range->end - range->begin};
-        if (address >= range->latestEnd) break;
-    }
-    return {};
+    const auto behind = std::upper_bound(ranges_.begin(), ranges_.end(), address,
+                                         [](uint64_t wanted, const Range& one) { return wanted < one.begin; });
+    if (behind == ranges_.begin()) return {};
+    const Range& last = *std::prev(behind);
+    if (address >= last.farthestEnd) return {};
+    return {reinterpret_cast<std::byte*>(last.farthestBegin), last.farthestBegin,
+            last.farthestEnd - last.farthestBegin};
 }
 
 AddressResolver AddressSpace::resolver() const {

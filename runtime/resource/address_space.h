@@ -31,10 +31,11 @@ class AddressSpace {
   private:
     struct Range {
         uint64_t begin, end;
-        uint64_t latestEnd;  // of this one and those before
+        uint64_t farthestBegin, farthestEnd;  // of this one and those before, the one that ends last
     };
+    /// Of the ranges with this address the one that ends last: it holds the bytes of an access if any does.
     AddressRange find(uint64_t address) const;
-    void refreshEnds(size_t first);
+    void refreshFarthest(size_t first);
 
     mutable std::shared_mutex mutex_;
     std::vector<Range> ranges_;  // by their beginnings

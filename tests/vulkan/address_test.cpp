@@ -175,6 +175,44 @@ void main() {
     EXPECT_EQ(*words(hidden), 55u);
 }
 
+// Buffers over the same memory, one inside the other and one across its end: an access is good if any of them holds it
+// ("vkGetBufferDeviceAddress": "a VkBuffer is selected such that valid usage passes, if it exists").
+TEST_F(AddressTest, buffersThatOverlap) {
+    const TestBuffer outer = makeBuffer(1024, kByAddress);
+    for (uint32_t n = 0; n < 256; ++n) words(outer)[n] = n;
+    std::vector<VkBuffer> others;
+    for (const auto& [offset, size] : {std::pair<VkDeviceSize, VkDeviceSize>{256, 260}, {256, 8}, {768, 256}}) {
+        auto info = make<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
+        info.size = size;
+        info.usage = kByAddress;
+        VkBuffer& buffer = others.emplace_back();
+        ASSERT_EQ(vkCreateBuffer(device, &info, nullptr, &buffer), VK_SUCCESS);
+        ASSERT_EQ(vkBindBufferMemory(device, buffer, outer.memory, offset), VK_SUCCESS);
+        defer([this, buffer] { vkDestroyBuffer(device, buffer, nullptr); });
+    }
+    const TestBuffer out = makeStorage(6);
+    const Compute compute = makeCompute(std::string("#version 450\n") + kReference + R"(
+layout(buffer_reference, std430, buffer_reference_align = 4) buffer Words { uint v[]; };
+layout(buffer_reference, std430, buffer_reference_align = 8) buffer Wide { uint64_t v[]; };
+layout(push_constant) uniform P { Words words; };
+layout(set = 0, binding = 0) buffer Out { uint v[6]; };
+void main() {
+    v[0] = words.v[64]; v[1] = words.v[66]; v[2] = words.v[128]; v[3] = words.v[129];
+    Wide across = Wide(uint64_t(words) + 512ul);
+    v[4] = uint(across.v[0] >> 32);
+    words.v[200] = 1000;
+    v[5] = words.v[255];
+})",
+                                        {storageBuffer(out)}, 8);
+    const VkDeviceAddress address = addressOf(outer);
+    const VkCommandBuffer commands = begin();
+    vkCmdPushConstants(commands, compute.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, 8, &address);
+    dispatch(commands, compute, 1);
+    submit(commands);
+    EXPECT_EQ(std::vector<uint32_t>(words(out), words(out) + 6), (std::vector<uint32_t>{64, 66, 128, 129, 129, 255}));
+    EXPECT_EQ(words(outer)[200], 1000u);
+}
+
 // Messages between invocations of a work-group and between work-groups, by the Vulkan memory model's rules.
 TEST_F(AddressTest, memoryModel) {
     const TestBuffer out = makeStorage(4 + 64 * 8);
