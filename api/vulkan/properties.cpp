@@ -15,8 +15,7 @@
 namespace vernier::vulkan {
 namespace {
 
-constexpr VkShaderStageFlags kSubgroupStages =
-    VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
+constexpr VkShaderStageFlags kSubgroupStages = VK_SHADER_STAGE_ALL_GRAPHICS | VK_SHADER_STAGE_COMPUTE_BIT;
 
 /// A name, a number and what tells apart the devices of this driver.
 void fillUuid(uint8_t (&uuid)[VK_UUID_SIZE], const char (&name)[9], uint32_t number, const PhysicalDevice& device) {

@@ -36,4 +36,10 @@ bool drive(std::vector<std::optional<Machine<Number>>>& machines) {
     }
 }
 
+/// Of invocations outside of a work-group, which have no barrier to wait at. Throws Failure.
+template <class Number>
+void driveAlone(std::vector<std::optional<Machine<Number>>>& machines) {
+    if (!drive(machines)) fail("OpControlBarrier outside a compute or tessellation control shader");
+}
+
 }  // namespace vernier::reference

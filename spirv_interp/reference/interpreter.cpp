@@ -54,12 +54,6 @@ bool isSupported(spv::ExecutionModel model) {
     }
 }
 
-/// A quad or a single invocation. There is no work-group to wait for.
-template <class Number>
-void driveAlone(std::vector<std::optional<Machine<Number>>>& machines) {
-    if (!drive(machines)) fail("OpControlBarrier outside a compute or tessellation control shader");
-}
-
 }  // namespace
 
 Result<Module> Module::parse(std::span<const uint32_t> words, const Specialization& specialization) {
@@ -137,6 +131,14 @@ Result<std::array<Outcome<Number>, 4>> Interpreter<Number>::runQuad(
         for (size_t k = 0; k < 4; ++k) outcomes[k] = machines[k]->outcome();
         return outcomes;
     });
+}
+
+template <class Number>
+Result<std::vector<Outcome<Number>>> Interpreter<Number>::runSubgroup(
+    std::span<const std::optional<InterfaceValues<Number>>> inputs, const std::vector<bool>& helper,
+    Resources<Number>& resources) const {
+    return guarded<std::vector<Outcome<Number>>>(
+        [&] { return reference::runSubgroup(state_->program, inputs, helper, resources); });
 }
 
 template <class Number>

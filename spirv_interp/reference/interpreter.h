@@ -21,6 +21,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <spirv/unified1/spirv.hpp>
 #include <string>
@@ -311,6 +312,12 @@ class Interpreter {
     /// The invocations of a tessellation control stage for one patch, in one subgroup, as those of a work-group; their
     /// InvocationId need not be among `inputs`. Returns the outputs: those of the patch, and those of its vertices.
     Result<InterfaceValues<Number>> runPatch(const InterfaceValues<Number>& inputs, Resources<Number>& resources) const;
+
+    /// Up to 32 invocations of a vertex, tessellation evaluation or geometry stage, by their place in a subgroup; a
+    /// place without inputs is empty. Helpers have no effect on memory.
+    Result<std::vector<Outcome<Number>>> runSubgroup(std::span<const std::optional<InterfaceValues<Number>>> inputs,
+                                                     const std::vector<bool>& helper,
+                                                     Resources<Number>& resources) const;
 
     /// One invocation on its own, but of tessellation control: all derivatives are 0.
     Result<Outcome<Number>> run(const InterfaceValues<Number>& inputs, Resources<Number>& resources) const;

@@ -128,10 +128,32 @@ InterfaceValues<Number> runPatch(const Program<Number>& program, const Interface
     return subgroups[0][0]->outcome().outputs;
 }
 
-#define VERNIER_INSTANTIATE(Number)                                                                   \
-    template void runWorkGroup(const Program<Number>&, const WorkGroup&, Resources<Number>&);         \
-    template InterfaceValues<Number> runPatch(const Program<Number>&, const InterfaceValues<Number>&, \
-                                              Resources<Number>&);
+template <class Number>
+std::vector<Outcome<Number>> runSubgroup(const Program<Number>& program,
+                                         std::span<const std::optional<InterfaceValues<Number>>> inputs,
+                                         const std::vector<bool>& helper, Resources<Number>& resources) {
+    if (inputs.size() > kSubgroupSize) fail("more invocations than a subgroup has");
+    Machines<Number> machines(kSubgroupSize);
+    for (uint32_t k = 0; k < inputs.size(); ++k) {
+        if (!inputs[k]) continue;
+        InterfaceValues<Number> values = *inputs[k];
+        setSubgroup(values, k, kSubgroupSize);
+        machines[k].emplace(program, values, resources, k, helper[k]);
+    }
+    driveAlone(machines);
+    std::vector<Outcome<Number>> outcomes(inputs.size());
+    for (size_t k = 0; k < inputs.size(); ++k)
+        if (machines[k]) outcomes[k] = machines[k]->outcome();
+    return outcomes;
+}
+
+#define VERNIER_INSTANTIATE(Number)                                                                            \
+    template void runWorkGroup(const Program<Number>&, const WorkGroup&, Resources<Number>&);                  \
+    template InterfaceValues<Number> runPatch(const Program<Number>&, const InterfaceValues<Number>&,          \
+                                              Resources<Number>&);                                             \
+    template std::vector<Outcome<Number>> runSubgroup(const Program<Number>&,                                  \
+                                                      std::span<const std::optional<InterfaceValues<Number>>>, \
+                                                      const std::vector<bool>&, Resources<Number>&);
 VERNIER_INSTANTIATE(float)
 VERNIER_INSTANTIATE(double)
 VERNIER_INSTANTIATE(Real)

@@ -1,5 +1,10 @@
-// A work-group, or the invocations of tessellation control for a patch: machines, in subgroups, that meet at barriers.
+// Machines in subgroups: those of a work-group, or of tessellation control for a patch, which meet at barriers, and
+// those of other stages.
 #pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
 
 #include "spirv_interp/reference/machine.h"
 
@@ -12,6 +17,12 @@ std::array<uint32_t, 3> workGroupSize(const ModuleData& module, size_t entryPoin
 template <class Number>
 InterfaceValues<Number> runPatch(const Program<Number>& program, const InterfaceValues<Number>& inputs,
                                  Resources<Number>& resources);
+
+/// Throws Failure.
+template <class Number>
+std::vector<Outcome<Number>> runSubgroup(const Program<Number>& program,
+                                         std::span<const std::optional<InterfaceValues<Number>>> inputs,
+                                         const std::vector<bool>& helper, Resources<Number>& resources);
 
 /// Throws Failure.
 template <class Number>

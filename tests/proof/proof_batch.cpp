@@ -136,7 +136,9 @@ void takeVertices(const ir::Program& program, const BatchContext& context, uint3
 void runPatches(const Case& subject, const Shape& shape, const BatchProgram& compiled, BatchContext& context,
                 Ending& ending) {
     const ir::Program& program = compiled.source();
-    const uint32_t each = program.localSize[0], most = patchesPerBatch(compiled.lanes(), each);
+    const uint32_t each = program.localSize[0];
+    // Subgroups see the invocations of one patch.
+    const uint32_t most = std::min(patchesPerBatch(compiled.lanes(), each), program.usesSubgroups ? 1u : ~0u);
     const auto words = static_cast<uint32_t>(program.outputs.size());
     if (most == 0) return;  // the test asks for fewer lanes than a patch has
     for (uint32_t first = 0; first < subject.invocations; first += most) {

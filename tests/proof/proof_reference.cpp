@@ -161,8 +161,13 @@ class ReferenceRun final : public reference::Resources<Number> {
         if (!interpreter) return failed(interpreter.error().message);
         if (subject_.stage == ir::Stage::compute) return runWorkGroups(*interpreter);
         variables_ = module->interfaceVariables(0);
-        for (uint32_t first = 0; first < subject_.invocations && ending_.error.empty(); first += 4) {
-            if (subject_.stage == ir::Stage::fragment) {
+        const bool together =
+            interface_.usesSubgroups && subject_.stage != ir::Stage::fragment && subject_.stage != ir::Stage::control;
+        const uint32_t step = together ? reference::kSubgroupSize : 4;
+        for (uint32_t first = 0; first < subject_.invocations && ending_.error.empty(); first += step) {
+            if (together) {
+                runSubgroup(*interpreter, first);
+            } else if (subject_.stage == ir::Stage::fragment) {
                 runQuad(*interpreter, first);
             } else if (subject_.stage == ir::Stage::control) {
                 for (first_ = first; first_ < first + 4; ++first_) runPatch(*interpreter);
@@ -332,6 +337,23 @@ class ReferenceRun final : public reference::Resources<Number> {
             return;
         }
         for (uint32_t k = 0; k < 4; ++k)
+            if (!helper[k]) note(first + k, (*outcomes)[k]);
+    }
+
+    void runSubgroup(const reference::Interpreter<Number>& interpreter, uint32_t first) {
+        const uint32_t count = std::min(reference::kSubgroupSize, subject_.invocations - first);
+        std::vector<std::optional<reference::InterfaceValues<Number>>> inputs(count);
+        std::vector<bool> helper(count);
+        for (uint32_t k = 0; k < count; ++k) {
+            if (shape_.exec[first + k]) inputs[k] = inputsOf(first + k);
+            helper[k] = !shape_.store[first + k];
+        }
+        const auto outcomes = interpreter.runSubgroup(inputs, helper, *this);
+        if (!outcomes) {
+            ending_.error = "reference: " + outcomes.error().message;
+            return;
+        }
+        for (uint32_t k = 0; k < count; ++k)
             if (!helper[k]) note(first + k, (*outcomes)[k]);
     }
 
