@@ -25,23 +25,35 @@ namespace {
 enum class Level : uint8_t { loader, instance, physicalDevice, device };
 
 struct EntryPoint {
-    std::string_view name;
-    PFN_vkVoidFunction function;
-    Level level;
+    const char* name;
     uint32_t coreVersion;     // 0: not core
     ExtensionSet extensions;  // that bring it
+    Level level;
+
+    PFN_vkVoidFunction function() const;
 };
 
-const EntryPoint kEntryPoints[] = {
-#define VERNIER_ENTRY_ROW(name, function, level, version, extensions) \
-    {#name, reinterpret_cast<PFN_vkVoidFunction>(&function), Level::level, version, extensions},
+// Functions stand in a table of their own: their casts are no constant expressions, and with them among it the first
+// table would be filled in by code, of more bytes than it has.
+constexpr EntryPoint kEntryPoints[] = {
+#define VERNIER_ENTRY_ROW(name, function, level, version, extensions) {#name, version, extensions, Level::level},
+#include "entry_points.inc"
+#undef VERNIER_ENTRY_ROW
+};
+const PFN_vkVoidFunction kFunctions[] = {
+#define VERNIER_ENTRY_ROW(name, function, level, version, extensions) reinterpret_cast<PFN_vkVoidFunction>(&function),
 #include "entry_points.inc"
 #undef VERNIER_ENTRY_ROW
 };
 
+PFN_vkVoidFunction EntryPoint::function() const {
+    return kFunctions[this - kEntryPoints];
+}
+
 /// Of our version or a listed extension; nullptr otherwise. The table is sorted by name.
 const EntryPoint* find(std::string_view name, ExtensionSet available) {
-    const auto* entry = std::ranges::lower_bound(kEntryPoints, name, {}, &EntryPoint::name);
+    const auto nameOf = [](const EntryPoint& entry) { return std::string_view(entry.name); };
+    const auto* entry = std::ranges::lower_bound(kEntryPoints, name, {}, nameOf);
     if (entry == std::end(kEntryPoints) || entry->name != name) return nullptr;
     const bool core = entry->coreVersion != 0 && entry->coreVersion <= kApiVersion;
     return core || entry->extensions.intersects(available) ? entry : nullptr;
@@ -62,7 +74,7 @@ PFN_vkVoidFunction instanceProcAddr(VkInstance instance, std::string_view name) 
         instance != nullptr ? object(instance)->extensions | kDeviceExtensions : ExtensionSet();
     const EntryPoint* entry = find(name, available);
     if (entry == nullptr || (instance == nullptr && entry->level != Level::loader)) return nullptr;
-    return entry->function;
+    return entry->function();
 }
 
 }  // namespace
@@ -74,7 +86,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL GetInstanceProcAddr(VkInstance instance
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL GetDeviceProcAddr(VkDevice device, const char* pName) {
     if (device == nullptr || pName == nullptr) return nullptr;
     const EntryPoint* entry = find(pName, object(device)->extensions);
-    return entry != nullptr && entry->level == Level::device ? entry->function : nullptr;
+    return entry != nullptr && entry->level == Level::device ? entry->function() : nullptr;
 }
 
 }  // namespace vernier::vulkan
@@ -97,7 +109,7 @@ PFN_vkVoidFunction vk_icdGetPhysicalDeviceProcAddr(VkInstance instance, const ch
     using namespace vernier::vulkan;
     if (instance == nullptr || name == nullptr) return nullptr;
     const EntryPoint* entry = find(name, object(instance)->extensions | kDeviceExtensions);
-    return entry != nullptr && entry->level == Level::physicalDevice ? entry->function : nullptr;
+    return entry != nullptr && entry->level == Level::physicalDevice ? entry->function() : nullptr;
 }
 
 VkResult vk_icdNegotiateLoaderICDInterfaceVersion(uint32_t* version) {
