@@ -78,59 +78,50 @@ void setGeometryLimits(VkPhysicalDeviceLimits& limits) {
     limits.maxGeometryTotalOutputComponents = ir::kMaxGeometryComponents;
 }
 
-}  // namespace
-
-VkPhysicalDeviceLimits deviceLimits(const VkPhysicalDeviceFeatures& features, const Accuracy& accuracy) {
-    // Nothing is sparse: those limits stay 0.
-    VkPhysicalDeviceLimits limits{};
-    limits.maxImageDimension1D = kMaxImageDimension2D;
-    limits.maxImageDimension2D = kMaxImageDimension2D;
-    limits.maxImageDimension3D = kMaxImageDimension3D;
-    limits.maxImageDimensionCube = kMaxImageDimension2D;
-    limits.maxImageArrayLayers = kMaxArrayLayers;
-    limits.maxMemoryAllocationCount = UINT32_MAX;
-    limits.maxSamplerAllocationCount = UINT32_MAX;
-    setDescriptorLimits(limits);
-    setAlignments(limits);
-    setComputeLimits(limits);
-
+void setVertexLimits(VkPhysicalDeviceLimits& limits) {
     limits.maxVertexInputAttributes = kMaxVertexAttributes;
     limits.maxVertexInputBindings = kMaxVertexBindings;
     limits.maxVertexInputAttributeOffset = kMaxVertexAttributeOffset;
     limits.maxVertexInputBindingStride = kMaxVertexBindingStride;
     limits.maxVertexOutputComponents = kMaxInterfaceComponents;
-    if (features.tessellationShader) setTessellationLimits(limits);
-    if (features.geometryShader) setGeometryLimits(limits);
+}
 
+void setFragmentLimits(VkPhysicalDeviceLimits& limits, const VkPhysicalDeviceFeatures& features) {
     limits.maxFragmentInputComponents = kMaxInterfaceComponents;
     limits.maxFragmentOutputAttachments = kMaxColorAttachments;
     limits.maxFragmentDualSrcAttachments = features.dualSrcBlend ? 1 : 0;
     limits.maxFragmentCombinedOutputResources = kMaxDescriptors;
+    if (features.sampleRateShading) {
+        limits.subPixelInterpolationOffsetBits = 4;
+        limits.minInterpolationOffset = -0.5f;
+        limits.maxInterpolationOffset = 0.5f - 1.0f / (1 << 4);
+    }
+}
 
-    limits.subPixelPrecisionBits = accuracy.subPixelBits;
+void setImageLimits(VkPhysicalDeviceLimits& limits, const VkPhysicalDeviceFeatures& features) {
+    limits.maxImageDimension1D = kMaxImageDimension2D;
+    limits.maxImageDimension2D = kMaxImageDimension2D;
+    limits.maxImageDimension3D = kMaxImageDimension3D;
+    limits.maxImageDimensionCube = kMaxImageDimension2D;
+    limits.maxImageArrayLayers = kMaxArrayLayers;
+    limits.sampledImageColorSampleCounts = kSampleCounts;
+    limits.sampledImageIntegerSampleCounts = kSampleCounts;
+    limits.sampledImageDepthSampleCounts = kSampleCounts;
+    limits.sampledImageStencilSampleCounts = kSampleCounts;
+    limits.storageImageSampleCounts = VK_SAMPLE_COUNT_1_BIT;
     limits.subTexelPrecisionBits = 8;
     limits.mipmapPrecisionBits = 8;
-    limits.maxDrawIndexedIndexValue = UINT32_MAX;
-    limits.maxDrawIndirectCount = features.multiDrawIndirect ? UINT32_MAX : 1;
     limits.maxSamplerLodBias = kMaxSamplerLodBias;
     limits.maxSamplerAnisotropy = kMaxSamplerAnisotropy;
-    limits.maxViewports = features.multiViewport ? kMaxViewports : 1;
-    limits.maxViewportDimensions[0] = limits.maxViewportDimensions[1] = kMaxImageDimension2D;
-    limits.viewportBoundsRange[0] = -2.0f * kMaxImageDimension2D;
-    limits.viewportBoundsRange[1] = 2.0f * kMaxImageDimension2D - 1;
-    limits.viewportSubPixelBits = accuracy.subPixelBits;
     limits.minTexelOffset = -8;
     limits.maxTexelOffset = 7;
     if (features.shaderImageGatherExtended) {
         limits.minTexelGatherOffset = -8;
         limits.maxTexelGatherOffset = 7;
     }
-    if (features.sampleRateShading) {
-        limits.subPixelInterpolationOffsetBits = 4;
-        limits.minInterpolationOffset = -0.5f;
-        limits.maxInterpolationOffset = 0.5f - 1.0f / (1 << 4);
-    }
+}
 
+void setFramebufferLimits(VkPhysicalDeviceLimits& limits) {
     limits.maxFramebufferWidth = limits.maxFramebufferHeight = kMaxImageDimension2D;
     limits.maxFramebufferLayers = kMaxArrayLayers;
     limits.framebufferColorSampleCounts = kSampleCounts;
@@ -138,25 +129,51 @@ VkPhysicalDeviceLimits deviceLimits(const VkPhysicalDeviceFeatures& features, co
     limits.framebufferStencilSampleCounts = kSampleCounts;
     limits.framebufferNoAttachmentsSampleCounts = kSampleCounts;
     limits.maxColorAttachments = kMaxColorAttachments;
-    limits.sampledImageColorSampleCounts = kSampleCounts;
-    limits.sampledImageIntegerSampleCounts = kSampleCounts;
-    limits.sampledImageDepthSampleCounts = kSampleCounts;
-    limits.sampledImageStencilSampleCounts = kSampleCounts;
-    limits.storageImageSampleCounts = VK_SAMPLE_COUNT_1_BIT;
     limits.maxSampleMaskWords = 1;
-    limits.timestampComputeAndGraphics = VK_TRUE;
-    limits.timestampPeriod = 1;
+    limits.standardSampleLocations = VK_TRUE;
+}
+
+/// Of what lies between vertices and fragments.
+void setRasterLimits(VkPhysicalDeviceLimits& limits, const VkPhysicalDeviceFeatures& features, uint32_t subPixelBits) {
+    limits.subPixelPrecisionBits = subPixelBits;
+    limits.maxViewports = features.multiViewport ? kMaxViewports : 1;
+    limits.maxViewportDimensions[0] = limits.maxViewportDimensions[1] = kMaxImageDimension2D;
+    limits.viewportBoundsRange[0] = -2.0f * kMaxImageDimension2D;
+    limits.viewportBoundsRange[1] = 2.0f * kMaxImageDimension2D - 1;
+    limits.viewportSubPixelBits = subPixelBits;
     limits.maxClipDistances = features.shaderClipDistance ? kMaxClipDistances : 0;
     limits.maxCullDistances = features.shaderCullDistance ? kMaxClipDistances : 0;
     limits.maxCombinedClipAndCullDistances = std::max(limits.maxClipDistances, limits.maxCullDistances);
-    limits.discreteQueuePriorities = 2;
     limits.pointSizeRange[0] = kMinPointSize;
     limits.pointSizeRange[1] = kMaxPointSize;
     limits.lineWidthRange[0] = kMinLineWidth;
     limits.lineWidthRange[1] = kMaxLineWidth;
-    limits.pointSizeGranularity = limits.lineWidthGranularity = 1.0f / static_cast<float>(1u << accuracy.subPixelBits);
+    limits.pointSizeGranularity = limits.lineWidthGranularity = 1.0f / static_cast<float>(1u << subPixelBits);
     limits.strictLines = VK_TRUE;
-    limits.standardSampleLocations = VK_TRUE;
+}
+
+}  // namespace
+
+VkPhysicalDeviceLimits deviceLimits(const VkPhysicalDeviceFeatures& features, const Accuracy& accuracy) {
+    // Nothing is sparse: those limits stay 0.
+    VkPhysicalDeviceLimits limits{};
+    limits.maxMemoryAllocationCount = UINT32_MAX;
+    limits.maxSamplerAllocationCount = UINT32_MAX;
+    limits.maxDrawIndexedIndexValue = UINT32_MAX;
+    limits.maxDrawIndirectCount = features.multiDrawIndirect ? UINT32_MAX : 1;
+    limits.timestampComputeAndGraphics = VK_TRUE;
+    limits.timestampPeriod = 1;
+    limits.discreteQueuePriorities = 2;
+    setImageLimits(limits, features);
+    setDescriptorLimits(limits);
+    setAlignments(limits);
+    setComputeLimits(limits);
+    setVertexLimits(limits);
+    if (features.tessellationShader) setTessellationLimits(limits);
+    if (features.geometryShader) setGeometryLimits(limits);
+    setRasterLimits(limits, features, accuracy.subPixelBits);
+    setFragmentLimits(limits, features);
+    setFramebufferLimits(limits);
     return limits;
 }
 
