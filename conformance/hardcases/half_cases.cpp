@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace vernier::conformance::hardcases {
 namespace {
@@ -22,9 +23,9 @@ double halfUlp(double value) {
 }
 
 /// Exact when it is the nearest half, zeros with their sign; permitted when it is the other neighbour, a zero of the
-/// other sign, or within the tolerance; declared within a float's bounds, rounded once more. Denormals may be flushed.
-/// Where `exactly` is NaN nothing is asked.
-ValueJudge halfOf(double exactly, double tolerance = 0) {
+/// other sign, or within the tolerance. Denormals may be flushed. Where `exactly` is NaN nothing is asked. With `own`
+/// it is a function of floats, rounded: declared within the driver's own bounds and half a step of halves.
+ValueJudge halfOf(double exactly, double tolerance = 0, std::optional<OwnTolerance> own = std::nullopt) {
     return [=](uint32_t bits, const Declared& declared) -> Verdict {
         const double got = std::bit_cast<float>(bits);
         if (std::isnan(exactly)) return {};
@@ -38,10 +39,8 @@ ValueJudge halfOf(double exactly, double tolerance = 0) {
         if (got == nearest && std::signbit(got) == std::signbit(nearest)) return {};
         const std::string text =
             "exactly " + std::to_string(exactly) + ", the nearest half is " + std::to_string(nearest);
-        if (declared.own && std::isfinite(exactly)) {
-            const double own = (0.5 + declared.own->functionUlps * 0x1p-13) * halfUlp(exactly);
-            if (std::abs(got - exactly) <= own) return Verdict::declared(text);
-        }
+        if (own && declared.own && std::abs(got - exactly) <= halfUlp(exactly) / 2 + own->of(exactly, *declared.own))
+            return Verdict::declared(text);
         const bool flushed = got == 0 && std::abs(exactly) < kLeastNormal;
         const bool legal =
             got == nearest || got == below || got == above || flushed || std::abs(got - exactly) <= tolerance;
@@ -72,6 +71,7 @@ struct HalfFunction {
     double (*exactly)(double a);
     double (*tolerance)(double a, double exactly);
     std::vector<float> inputs;
+    OwnTolerance own{};
 };
 
 double logTolerance(double a, double exactly) {
@@ -99,8 +99,8 @@ std::vector<HalfFunction> halfFunctions() {
             {"log(a)", [](double a) { return std::log(a); }, logTolerance, positives},
             {"inversesqrt(a)", [](double a) { return 1 / std::sqrt(a); },
              [](double, double exactly) { return 2 * halfUlp(exactly); }, positives},
-            {"sin(a)", [](double a) { return std::sin(a); }, turnTolerance, angles},
-            {"cos(a)", [](double a) { return std::cos(a); }, turnTolerance, angles},
+            {"sin(a)", [](double a) { return std::sin(a); }, turnTolerance, angles, {1, true}},
+            {"cos(a)", [](double a) { return std::cos(a); }, turnTolerance, angles, {1, true}},
             {"atan(a)",
              [](double a) { return std::atan(a); },
              [](double, double exactly) { return 5 * halfUlp(exactly); },
@@ -203,8 +203,8 @@ void x17(CaseInput& input) {
                 exact::decodeNumber(kHalf, exact::encode(kHalf, exact::rational(static_cast<double>(x))).nearest);
             const double exactly = function.exactly(a), tolerance = function.tolerance(a, exactly);
             const uint32_t bits = bitsOf(static_cast<float>(a));
-            halves.push_back({{bits}, halfOf(exactly, tolerance)});
-            if (std::abs(exactly) <= kLargest) relaxed.push_back({{bits}, floatNear(exactly, tolerance)});
+            halves.push_back({{bits}, halfOf(exactly, tolerance, function.own)});
+            if (std::abs(exactly) <= kLargest) relaxed.push_back({{bits}, floatNear(exactly, tolerance, function.own)});
         }
         addHalves(input, "X17_half", function.text, std::move(halves));
         addRelaxed(input, "X17_relaxed", function.text, std::move(relaxed));

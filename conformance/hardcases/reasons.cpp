@@ -10,7 +10,7 @@ constexpr std::string_view kThroughTheEye[] = {"C08", "C13", "I10"};
 constexpr std::string_view kFiltered[] = {"L09", "T02", "T03", "T06", "T07", "T15"};
 constexpr std::string_view kBlended[] = {"B19"};
 constexpr std::string_view kFunctions[] = {"X01", "X02", "X03", "X04", "X05", "X09", "X17"};
-constexpr std::string_view kFormulas[] = {"X12", "X13"};
+constexpr std::string_view kFormulas[] = {"X12", "X13", "X20"};
 constexpr std::string_view kPackedFloats[] = {"B12"};
 constexpr std::string_view kSignsOfZero[] = {"N08"};
 

@@ -77,6 +77,10 @@ double ulpOf(double value) {
     return std::ldexp(1.0, std::ilogb(size) - 23);
 }
 
+double OwnTolerance::of(double exactly, const OwnBounds& bounds) const {
+    return std::max(bounds.functionUlps * scale * ulpOf(exactly), angle ? bounds.angleError : 0);
+}
+
 ValueJudge floatNear(double exactly, double tolerance, OwnTolerance ownTolerance) {
     return [=](uint32_t bits, const Declared& declared) -> Verdict {
         if (std::isnan(exactly)) return {};
@@ -84,11 +88,8 @@ ValueJudge floatNear(double exactly, double tolerance, OwnTolerance ownTolerance
         if (got == static_cast<double>(static_cast<float>(exactly))) return {};
         char text[80];
         std::snprintf(text, sizeof text, "exactly %.9g, permitted within %.3g", exactly, tolerance);
-        if (declared.own) {
-            const double ulps = declared.own->functionUlps * ownTolerance.scale * ulpOf(exactly);
-            const double own = std::max(ulps, ownTolerance.angle ? declared.own->angleError : 0);
-            if (std::abs(got - exactly) <= own) return Verdict::declared(text);
-        }
+        if (declared.own && std::abs(got - exactly) <= ownTolerance.of(exactly, *declared.own))
+            return Verdict::declared(text);
         const bool flushed = got == 0 && std::abs(exactly) < 0x1p-126;
         const bool overflown =
             std::isinf(got) && std::abs(exactly) + tolerance > 0x1.fffffep127 && (got > 0) == (exactly > 0);

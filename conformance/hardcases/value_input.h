@@ -48,6 +48,9 @@ inline uint32_t bitsOf(float value) {
 struct OwnTolerance {
     double scale = 1;    // of OwnBounds::functionUlps
     bool angle = false;  // OwnBounds::angleError counts, too
+
+    /// By how much a driver with these bounds may be off.
+    double of(double exactly, const OwnBounds& bounds) const;
 };
 
 /// Judges of a float result: exact when it is the float nearest to `exactly`, declared within the driver's own bounds

@@ -3,25 +3,17 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
-#include <functional>
 #include <map>
 
-#include "conformance/drivers/api_driver.h"
-#include "conformance/hardcases/run.h"
 #include "conformance/hardcases/texture_input.h"
 #include "conformance/oracle/filtering.h"
 #include "conformance/oracle/oracle.h"
+#include "tests/hardcases/faults.h"
 #include "tests/oracle/rendered.h"
 
 namespace vernier::conformance::hardcases {
 namespace {
-
-struct Ideal {
-    CaseInput input;
-    std::vector<SceneOutcome> drawn;
-};
 
 // The oracle's own declared rendering, once per case and process.
 const Ideal& ideal(std::string_view id) {
@@ -44,37 +36,8 @@ const Ideal& ideal(std::string_view id) {
     return found->second;
 }
 
-// Vernier's rendering, for what the oracle judges but does not draw: lines, points, tables of values.
-const Ideal& vernier(std::string_view id) {
-    static std::map<std::string_view, Ideal> cache;
-    static const auto driver = ApiDriver::create({});
-    const auto [found, fresh] = cache.try_emplace(id);
-    if (!fresh) return found->second;
-    findCase(id)->build(found->second.input);
-    for (const Scene& scene : found->second.input.scenes()) {
-        found->second.drawn.push_back(drawScene(**driver, scene));
-    }
-    return found->second;
-}
-
-using Fault = std::function<void(std::vector<SceneOutcome>&)>;
-
-Verdict verdictOn(const Ideal& made, const Fault& fault, const Declared& declared = {}) {
-    std::vector<SceneOutcome> drawn = made.drawn;
-    fault(drawn);
-    return judgeCase(made.input, drawn, declared);
-}
-
 Verdict verdictOn(std::string_view id, const Fault& fault) {
     return verdictOn(ideal(id), fault);
-}
-
-std::byte& byteAt(RenderedImage& image, uint32_t x, uint32_t y, uint32_t channel) {
-    return image.texels[(size_t{y} * image.extent.width + x) * 4 + channel];
-}
-
-void setFloat(RenderedImage& image, uint32_t x, uint32_t y, uint32_t channel, float value) {
-    std::memcpy(image.texels.data() + (size_t{y} * image.extent.width + x) * 16 + channel * 4, &value, 4);
 }
 
 class DeclaredRendering : public testing::TestWithParam<const char*> {};
@@ -102,24 +65,6 @@ void expectWrong(std::string_view id, const Fault& fault, const std::string& cau
     const Verdict verdict = verdictOn(id, fault);
     EXPECT_EQ(verdict.outcome, Outcome::wrong) << id;
     EXPECT_NE(verdict.witness.find(cause), std::string::npos) << id << ": " << verdict.witness;
-}
-
-/// On Vernier's rendering.
-void expectCaught(std::string_view id, const Fault& fault, const std::string& cause) {
-    EXPECT_LE(verdictOn(vernier(id), [](auto&) {}).outcome, Outcome::allowed) << id;
-    const Verdict verdict = verdictOn(vernier(id), fault);
-    EXPECT_EQ(verdict.outcome, Outcome::wrong) << id;
-    EXPECT_NE(verdict.witness.find(cause), std::string::npos) << id << ": " << verdict.witness;
-}
-
-void setCode(RenderedImage& image, uint32_t x, uint32_t y, uint32_t code) {
-    std::memcpy(image.texels.data() + (size_t{y} * image.extent.width + x) * 4, &code, 4);
-}
-
-uint32_t codeAt(const RenderedImage& image, uint32_t x, uint32_t y) {
-    uint32_t code;
-    std::memcpy(&code, image.texels.data() + (size_t{y} * image.extent.width + x) * 4, 4);
-    return code;
 }
 
 /// The first covered pixel of a count image, or the last one.
@@ -341,64 +286,6 @@ TEST(Fault, ExportsSubgroupsAndViews) {
         "V10", [](auto& d) { setCode(d[0].images[0], 2, 2, 0x77); }, "one flat value");
     expectCaught(
         "G08", [](auto& d) { setCode(d[0].images[0], 4, 0, 0xdead); }, "exactly 0x00000000");
-}
-
-/// Four words a pixel.
-void setWord(RenderedImage& image, uint32_t x, uint32_t y, uint32_t channel, uint32_t word) {
-    setFloat(image, x, y, channel, std::bit_cast<float>(word));
-}
-
-TEST(Fault, OtherBlocks) {
-    expectCaught(
-        "T22", [](auto& d) { setFloat(d[0].images[0], 9, 0, 1, 0.4321f); }, "BC2, block");
-    expectCaught(
-        "T23",
-        [](auto& d) {
-            const float texel = std::bit_cast<float>(codeAt(d[0].images[0], 8, 0));
-            setFloat(d[0].images[0], 2, 0, 0, std::nextafter(texel, 1.0f));
-        },
-        "BC6H, block");
-    expectCaught(
-        "T24", [](auto& d) { setFloat(d[0].images[0], 4, 0, 0, 84.0f / 255); }, "ASTC 4x4, block 0, texel (1, 0)");
-    expectCaught(
-        "T24", [](auto& d) { setFloat(d[1].images[0], 4, 0, 0, 0.0860f); }, "ASTC 4x4, block 0, texel (1, 0)");
-}
-
-TEST(Fault, StagesAndStrips) {
-    // The last vertex of a strip's first triangle, and the first one instead.
-    expectCaught(
-        "V15", [](auto& d) { setCode(d[3].images[0], 11, 15, 1); }, "the number of the last vertex");
-    expectCaught(
-        "V16", [](auto& d) { setCode(d[0].images[0], 10, 10, codeAt(d[0].images[0], 10, 10) ^ 1u << 16); },
-        "for front faces");
-    expectCaught(
-        "V17", [](auto& d) { byteAt(d[1].images[0], 70, 10, 1) ^= std::byte{4}; }, "layers that invocations choose");
-    expectCaught(
-        "V18", [](auto& d) { setCode(d[0].images[0], 11, 10, 2); }, "counted through restarts");
-    expectCaught(
-        "E21", [](auto& d) { byteAt(d[0].images[0], 30, 30, 0) ^= std::byte{1}; }, "the last in API order");
-    expectCaught(
-        "C13", [](auto& d) { setFloat(d[1].images[0], 21, 57, 0, 0.5f); }, "exactly");
-    EXPECT_EQ(verdictOn(vernier("C13"), [](auto& d) { d[0].images[0].texels[0] ^= std::byte{1}; }).outcome,
-              Outcome::allowed);
-}
-
-TEST(Fault, HalvesAndGroups) {
-    expectCaught(
-        "X16", [](auto& d) { setCode(d[0].images[0], 0, 0, std::bit_cast<uint32_t>(2052.0f)); }, "the nearest half");
-    expectCaught(
-        "X17", [](auto& d) { setCode(d[0].images[0], 1, 0, std::bit_cast<uint32_t>(2.0625f)); }, "the nearest half");
-    // A helper invocation that counts; a sum of its own; a fragment that its group does not know of.
-    expectCaught(
-        "X18", [](auto& d) { setWord(d[0].images[1], 30, 30, 0, 77); }, "sum is 77");
-    expectCaught(
-        "X18", [](auto& d) { setWord(d[1].images[0], 30, 30, 3, 0); }, "the ballot has");
-    expectCaught(
-        "X19", [](auto& d) { setWord(d[0].images[1], 30, 30, 0, 30 * 64 + 31); }, "swap 0");
-    expectCaught(
-        "X19", [](auto& d) { setFloat(d[1].images[2], 30, 30, 0, 1); }, "the fine derivative");
-    expectCaught(
-        "X20", [](auto& d) { setFloat(d[0].images[1], 30, 30, 0, 1e9f); }, "the sum is");
 }
 
 TEST(Fault, HoleAndDoubleOnTheDiagonal) {
