@@ -4,6 +4,7 @@
 #include "conformance/hardcases/groups.h"
 #include "conformance/hardcases/judges.h"
 #include "conformance/hardcases/painter_input.h"
+#include "conformance/hardcases/tessellation_cases.h"
 
 #include <algorithm>
 #include <cmath>
@@ -421,6 +422,9 @@ const std::vector<HardCase> kCases{
     {"E21", "240 overlapping triangles of equal depth out of invocations of a geometry shader",
      "By input primitive, invocation and emission: the last one is seen, or the first with a LESS depth test.",
      "Vulkan, Geometry Shader Primitive Ordering", e21},
+    {"E22", "Patches that share edges, forwards, backwards and turned, with other inner levels, straight and in waves",
+     "The points of an edge depend on its level and the spacing alone: every pixel is covered once.",
+     "Vulkan, Tessellation Invariance, rules 2 to 4 and 8", e22},
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "conformance/hardcases/groups.h"
 #include "conformance/hardcases/judges.h"
 #include "conformance/hardcases/robust_cases.h"
+#include "conformance/hardcases/tessellation_cases.h"
 #include "conformance/hardcases/value_input.h"
 #include "conformance/scenes/recorder.h"
 #include "conformance/scenes/shapes.h"
@@ -318,6 +319,9 @@ const std::vector<HardCase> kSpecials{
      n08,
      {},
      {{"lavapipe", "its CI lists failures and crashes of atomics with NaN"}}},
+    {"N09", "Tessellation levels that are NaN, 0, -0, negative, infinite and denormal",
+     "An outer level that counts and is NaN or not above 0 discards the patch; inner ones are clamped.",
+     "Vulkan, Tessellator Patch Discard", n09},
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "conformance/hardcases/judges.h"
 #include "conformance/hardcases/layer_cases.h"
 #include "conformance/hardcases/robust_cases.h"
+#include "conformance/hardcases/tessellation_cases.h"
 #include "conformance/hardcases/topology_cases.h"
 #include "conformance/scenes/recorder.h"
 #include "conformance/scenes/shapes.h"
@@ -290,6 +291,9 @@ const std::vector<HardCase> kCases{
     {"V18", "PrimitiveID through strips with restarts, culled and empty triangles, and instances",
      "Primitives are counted, drawn or not; restarts change nothing; instances begin at 0.", "Vulkan, PrimitiveID",
      v18},
+    {"V19", "Levels of all spacings at the ends of their ranges, an ULP beside and beyond: 1, 2, 2 - 2^-23, 62 to 65",
+     "Clamped and rounded up to so many segments, seen from either end the same; two of them vanish towards n - 2.",
+     "Vulkan, Tessellator Spacing", v19},
 };
 
 }  // namespace

@@ -47,6 +47,23 @@ TEST(LaterFault, StagesAndStrips) {
               Outcome::allowed);
 }
 
+TEST(LaterFault, Patches) {
+    expectCaught(
+        "E22", [](auto& d) { byteAt(d[20].images[0], 33, 40, 0) = std::byte{0}; }, "is covered 0 times");
+    // A point that is missing, and one that is out of place.
+    expectCaught(
+        "V19", [](auto& d) { setFloat(d[1].images[0], 0, 0, 3, 0); }, "has 1 points");
+    expectCaught(
+        "V19",
+        [](auto& d) {
+            for (const uint32_t channel : {0u, 1u})
+                setFloat(d[0].images[0], 2048, 5, channel, 0.499f + 0.002f * channel);
+        },
+        "has segments of");
+    expectCaught(
+        "N09", [](auto& d) { byteAt(d[0].images[0], 10, 2, 0) = std::byte{16}; }, "patch 1 is covered 1 times");
+}
+
 TEST(LaterFault, HalvesAndGroups) {
     expectCaught(
         "X16", [](auto& d) { setCode(d[0].images[0], 0, 0, std::bit_cast<uint32_t>(2052.0f)); }, "the nearest half");
