@@ -29,8 +29,8 @@ std::string tableChart(const Table& table) {
                       std::to_string(height) +
                       "' font-family='sans-serif' font-size='12'>\n<rect width='100%' height='100%' fill='white'/>\n";
     svg += label(8, 18, "start", std::to_string(table.rows.size()) + " numeric hard cases, a line each, by driver:");
-    size_t x = 312;
-    for (size_t outcome = 0; outcome < kOutcomeCount; ++outcome, x += 90) {
+    size_t x = 300;
+    for (size_t outcome = 0; outcome < kOutcomeCount; ++outcome, x += 94) {
         svg += rectangle(x, 9, 10, 10, kColors[outcome]);
         svg += label(x + 14, 18, "start", std::string(outcomeName(static_cast<Outcome>(outcome))));
     }
