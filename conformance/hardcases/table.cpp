@@ -134,7 +134,8 @@ std::string tableText(const Table& table) {
 
 std::string tableMarkdown(const Table& table) {
     std::ostringstream out;
-    out << "# Numeric hard cases\n\nWritten by `vernier-hardcases --all --markdown docs/hardcases.md`. Every case is a "
+    out << "# Numeric hard cases\n\nWritten by `vernier-hardcases --all --dial --markdown docs/hardcases.md`. Every "
+           "case is a "
            "few "
            "small scenes, drawn by each driver in a process of its own and judged by exact arithmetic "
            "(`conformance/oracle`), "

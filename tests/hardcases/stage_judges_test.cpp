@@ -12,7 +12,7 @@ void setWord(RenderedImage& image, uint32_t x, uint32_t y, uint32_t channel, uin
     setFloat(image, x, y, channel, std::bit_cast<float>(word));
 }
 
-TEST(LaterFault, OtherBlocks) {
+TEST(StageFault, OtherBlocks) {
     expectCaught(
         "T22", [](auto& d) { setFloat(d[0].images[0], 9, 0, 1, 0.4321f); }, "BC2, block");
     expectCaught(
@@ -28,7 +28,7 @@ TEST(LaterFault, OtherBlocks) {
         "T24", [](auto& d) { setFloat(d[1].images[0], 4, 0, 0, 0.0860f); }, "ASTC 4x4, block 0, texel (1, 0)");
 }
 
-TEST(LaterFault, StagesAndStrips) {
+TEST(StageFault, StagesAndStrips) {
     // The last vertex of a strip's first triangle, and the first one instead.
     expectCaught(
         "V15", [](auto& d) { setCode(d[3].images[0], 11, 15, 1); }, "the number of the last vertex");
@@ -47,7 +47,7 @@ TEST(LaterFault, StagesAndStrips) {
               Outcome::allowed);
 }
 
-TEST(LaterFault, Patches) {
+TEST(StageFault, Patches) {
     expectCaught(
         "E22", [](auto& d) { byteAt(d[20].images[0], 33, 40, 0) = std::byte{0}; }, "is covered 0 times");
     // A point that is missing, and one that is out of place.
@@ -64,7 +64,7 @@ TEST(LaterFault, Patches) {
         "N09", [](auto& d) { byteAt(d[0].images[0], 10, 2, 0) = std::byte{16}; }, "patch 1 is covered 1 times");
 }
 
-TEST(LaterFault, HalvesAndGroups) {
+TEST(StageFault, HalvesAndGroups) {
     expectCaught(
         "X16", [](auto& d) { setCode(d[0].images[0], 0, 0, std::bit_cast<uint32_t>(2052.0f)); }, "the nearest half");
     expectCaught(
