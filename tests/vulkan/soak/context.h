@@ -57,6 +57,7 @@ struct Context {
     VkDevice device = VK_NULL_HANDLE;
     VkQueue queue = VK_NULL_HANDLE;
     std::mutex queueMutex;  // queues are externally synchronised
+    std::atomic<uint64_t> presentations{0};
 
     /// GLSL to a module; kept by the caller.
     VkShaderModule compile(VkShaderStageFlagBits stage, const char* glsl) const;
@@ -68,8 +69,8 @@ struct Context {
 /// Creates, fills, draws, copies and destroys at random until the verdict stops; what comes out of the device is
 /// compared with a model. Returns the number of submissions.
 uint64_t work(Context& context, uint32_t seed);
-/// Presents on a headless surface, with swapchains that come and go. Returns the number of presentations.
-uint64_t present(Context& context, uint32_t seed);
+/// Presents on a headless surface, with swapchains that come and go, and counts in `context.presentations`.
+void present(Context& context, uint32_t seed);
 /// Makes devices of its own, uses them for a moment and destroys them. Returns their number.
 uint64_t makeDevices(Verdict& verdict, uint32_t seed);
 

@@ -1,5 +1,6 @@
-// vernier-soak [--seconds N] [--seed N] [--workers N]: uses the driver from many threads at random for so long,
-// compares what comes out with a model, and watches its memory. VK_DRIVER_FILES chooses another driver.
+// vernier-soak [--seconds N | --frames N] [--seed N] [--workers N]: uses the driver from many threads at random for so
+// long, or until so many frames are presented, compares what comes out with a model, and watches its memory.
+// VK_DRIVER_FILES chooses another driver.
 #include <vernier/vernier_glsl.h>
 
 #include <algorithm>
@@ -36,7 +37,7 @@ constexpr uint64_t kMostGrowth = uint64_t{48} << 20;
 #endif
 
 struct Options {
-    uint32_t seconds = 10, workers = 3;
+    uint32_t seconds = 10, frames = 0, workers = 3;  // frames: presentations; 0 for as long as the seconds last
     uint32_t seed = static_cast<uint32_t>(Clock::now().time_since_epoch().count());
 };
 
@@ -46,7 +47,10 @@ bool read(int argc, char** argv, Options& options) {
         const struct {
             const char* name;
             uint32_t& value;
-        } known[] = {{"--seconds", options.seconds}, {"--workers", options.workers}, {"--seed", options.seed}};
+        } known[] = {{"--seconds", options.seconds},
+                     {"--frames", options.frames},
+                     {"--workers", options.workers},
+                     {"--seed", options.seed}};
         const auto* found = std::find_if(std::begin(known), std::end(known),
                                          [&](const auto& one) { return std::strcmp(one.name, argv[i]) == 0; });
         if (found == std::end(known) || i + 1 == argc) return false;
@@ -57,23 +61,49 @@ bool read(int argc, char** argv, Options& options) {
     return options.workers > 0;
 }
 
+struct Memory {
+    uint64_t first = 0, most = 0;  // in the first quarter of the run, and ever; bytes
+};
+
+/// Looks at the memory until the run is over: so many seconds, or so many frames.
+Memory watch(const Options& options, Context& context) {
+    Memory memory;
+    const Clock::time_point start = Clock::now();
+    double done = 0;
+    while (!context.verdict.failed() && done < 1) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        const uint64_t resident = residentBytes();
+        done = options.frames != 0 ? static_cast<double>(context.presentations) / options.frames
+                                   : std::chrono::duration<double>(Clock::now() - start).count() / options.seconds;
+        if (done < 0.25 || memory.first == 0) memory.first = std::max(memory.first, resident);
+        memory.most = std::max(memory.most, resident);
+        if (memory.most > memory.first + kMostGrowth && done > 0.25) {
+            context.verdict.fail("memory grew from " + std::to_string(memory.first >> 20) + " to " +
+                                 std::to_string(memory.most >> 20) + " MiB");
+        }
+    }
+    return memory;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     Options options;
     if (!read(argc, argv, options)) {
-        std::fprintf(stderr, "usage: vernier-soak [--seconds N] [--seed N] [--workers N]\n");
+        std::fprintf(stderr, "usage: vernier-soak [--seconds N | --frames N] [--seed N] [--workers N]\n");
         return 64;
     }
-    const uint32_t seconds = options.seconds, workers = options.workers, seed = options.seed;
+    const uint32_t workers = options.workers, seed = options.seed;
     setenv("VK_DRIVER_FILES", VERNIER_ICD_JSON, 0);
     setenv("VK_ICD_FILENAMES", VERNIER_ICD_JSON, 0);
     setenv("VERNIER_REFRESH", "0", 0);
-    std::printf("soak: --seed %u --seconds %u --workers %u\n", seed, seconds, workers);
+    std::printf("soak: --seed %u --workers %u %s %u\n", seed, workers, options.frames != 0 ? "--frames" : "--seconds",
+                options.frames != 0 ? options.frames : options.seconds);
     std::fflush(stdout);
     vnRetainGlslCompiler();
     Verdict verdict;
-    uint64_t submissions = 0, presentations = 0, devices = 0, first = 0, most = 0;
+    Memory memory;
+    uint64_t submissions = 0, presentations = 0, devices = 0;
     {
         Context context(verdict);
         std::vector<uint64_t> counts(workers);
@@ -81,27 +111,19 @@ int main(int argc, char** argv) {
         for (uint32_t i = 0; i < workers && !verdict.failed(); ++i)
             threads.emplace_back([&, i] { counts[i] = work(context, seed + i); });
         if (!verdict.failed()) {
-            threads.emplace_back([&] { presentations = present(context, seed + 1000); });
+            threads.emplace_back([&] { present(context, seed + 1000); });
             threads.emplace_back([&] { devices = makeDevices(verdict, seed + 2000); });
         }
-        const Clock::time_point start = Clock::now(), end = start + std::chrono::seconds(seconds);
-        while (!verdict.failed() && Clock::now() < end) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(100));
-            const uint64_t resident = residentBytes();
-            if (Clock::now() - start < std::chrono::seconds(seconds) / 4) first = std::max(first, resident);
-            most = std::max(most, resident);
-            if (first != 0 && most > first + kMostGrowth && Clock::now() - start > std::chrono::seconds(seconds) / 4)
-                verdict.fail("memory grew from " + std::to_string(first >> 20) + " to " + std::to_string(most >> 20) +
-                             " MiB");
-        }
+        memory = watch(options, context);
         verdict.stop();
         for (std::thread& thread : threads) thread.join();
         for (const uint64_t count : counts) submissions += count;
+        presentations = context.presentations;
     }
     vnReleaseGlslCompiler();
     std::printf("soak: %llu submissions, %llu presentations, %llu devices; %llu MiB after a quarter, %llu at most\n",
                 static_cast<unsigned long long>(submissions), static_cast<unsigned long long>(presentations),
-                static_cast<unsigned long long>(devices), static_cast<unsigned long long>(first >> 20),
-                static_cast<unsigned long long>(most >> 20));
+                static_cast<unsigned long long>(devices), static_cast<unsigned long long>(memory.first >> 20),
+                static_cast<unsigned long long>(memory.most >> 20));
     return verdict.failed() || submissions == 0 ? 1 : 0;
 }

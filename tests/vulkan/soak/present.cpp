@@ -48,17 +48,16 @@ class Presentation {
         vkDestroyCommandPool(context_.device, pool_, nullptr);
     }
 
-    uint64_t run() {
-        uint64_t count = 0;
+    void run() {
         for (uint32_t left = 0; !verdict_.stopped(); --left) {
             if (left == 0) {
                 renew();
                 left = 1 + below(random_, 40);
             }
-            if (!verdict_.failed()) frame();
-            ++count;
+            if (verdict_.failed()) break;
+            frame();
+            ++context_.presentations;
         }
-        return count;
     }
 
   private:
@@ -154,8 +153,8 @@ class Presentation {
 
 }  // namespace
 
-uint64_t present(Context& context, uint32_t seed) {
-    return Presentation(context, seed).run();
+void present(Context& context, uint32_t seed) {
+    Presentation(context, seed).run();
 }
 
 uint64_t makeDevices(Verdict& verdict, uint32_t seed) {
