@@ -8,6 +8,7 @@
 #include <array>
 
 #include "spirv_interp/front/lowering.h"
+#include "spirv_interp/ir/halves.h"
 #include "spirv_interp/ir/ops.h"
 
 namespace vernier {
@@ -57,27 +58,6 @@ bool staysNarrow(Op op) {
     }
 }
 
-/// Whether halves as operands give a half.
-bool staysHalf(Op op) {
-    switch (op) {
-        case Op::fneg:
-        case Op::fabs:
-        case Op::fsign:
-        case Op::ffloor:
-        case Op::fceil:
-        case Op::ftrunc:
-        case Op::froundEven:
-        case Op::fmin:
-        case Op::fmax:
-        case Op::fclamp:
-        case Op::fstep:
-        case Op::ffrexpMantissa:
-            return true;
-        default:
-            return false;
-    }
-}
-
 constexpr float kHalfBelowOne = 0x1.ffcp-1f;
 
 }  // namespace
@@ -100,7 +80,7 @@ ir::ValueId Lowering::emitTyped(Op op, const LeafType& to, Leaves operands, cons
         if (op == Op::bitReverse) return binary(Op::lshr, result, emitter_.constantI32(32u - to.bits));
         return staysNarrow(op) ? result : normalised(result, to);
     }
-    if (!to.isHalf() || staysHalf(op)) return result;
+    if (!to.isHalf() || ir::keepsHalves(op)) return result;
     result = normalised(result, to);
     // As with other floats, the fraction of a number just below an integer stays below 1.
     if (op == Op::ffract) result = binary(Op::fmin, result, emitter_.constantFloat(ir::Type::f32, kHalfBelowOne));

@@ -6,6 +6,7 @@
 
 #include "spirv_interp/ir/cfg.h"
 #include "spirv_interp/ir/fold.h"
+#include "spirv_interp/ir/halves.h"
 #include "spirv_interp/ir/ops.h"
 #include "spirv_interp/ir/passes.h"
 
@@ -122,23 +123,18 @@ class Folder {
                 const uint64_t magnitude = inst->imm & 0x7FFFFFFF;
                 return magnitude == 0 || (magnitude >= 0x38800000 && magnitude < 0x47800000 && magnitude % 0x2000 == 0);
             }
-            case Op::fneg:
-            case Op::fabs:
-            case Op::ffloor:
-            case Op::fceil:
-            case Op::ftrunc:
-            case Op::froundEven:
-            case Op::fmin:
-            case Op::fmax:
-            case Op::fclamp:
             case Op::select:
-                for (uint32_t i = inst->op == Op::select ? 1 : 0; i < inst->operandCount; ++i) {
-                    if (depth == 0 || !isHalf(operand(*inst, i), depth - 1)) return false;
-                }
-                return true;
+                return areHalves(*inst, 1, depth);
             default:
-                return false;
+                return keepsHalves(inst->op) && areHalves(*inst, 0, depth);
         }
+    }
+    bool areHalves(const Inst& inst, uint32_t firstOperand, int depth) const {
+        if (depth == 0) return false;
+        for (uint32_t i = firstOperand; i < inst.operandCount; ++i) {
+            if (!isHalf(operand(inst, i), depth - 1)) return false;
+        }
+        return true;
     }
 
     const Inst* definedBy(ValueId value, Op op) const {
