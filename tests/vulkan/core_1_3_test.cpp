@@ -15,20 +15,6 @@ class Core13Test : public ComputeTest {
         thirteen_.synchronization2 = thirteen_.dynamicRendering = thirteen_.maintenance4 = VK_TRUE;
         return &thirteen_;
     }
-    template <class T>
-    T features(VkStructureType type) {
-        T result = make<T>(type);
-        auto query = make<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &result);
-        vkGetPhysicalDeviceFeatures2(physicalDevice, &query);
-        return result;
-    }
-    template <class T>
-    T properties(VkStructureType type) {
-        T result = make<T>(type);
-        auto query = make<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &result);
-        vkGetPhysicalDeviceProperties2(physicalDevice, &query);
-        return result;
-    }
 
   private:
     VkPhysicalDeviceVulkan13Features thirteen_ =
@@ -94,7 +80,12 @@ TEST_F(Core13Test, propertiesAreThoseOfTheExtensions) {
     EXPECT_GE(eleven.maxMultiviewViewCount, 6u);
     EXPECT_GE(eleven.maxPerSetDescriptors, 1024u);
     EXPECT_GE(eleven.maxMemoryAllocationSize, VkDeviceSize{1} << 30);
-    EXPECT_STREQ(twelve.driverName, "Vernier");
+    const auto driver =
+        properties<VkPhysicalDeviceDriverProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES);
+    EXPECT_STREQ(driver.driverName, "Vernier");
+    EXPECT_STREQ(twelve.driverName, driver.driverName);
+    EXPECT_STREQ(twelve.driverInfo, driver.driverInfo);
+    EXPECT_EQ(twelve.driverID, driver.driverID);
     EXPECT_EQ(twelve.conformanceVersion.major, 0);
     EXPECT_TRUE(twelve.shaderDenormPreserveFloat32);
     EXPECT_TRUE(twelve.shaderRoundingModeRTEFloat64);
