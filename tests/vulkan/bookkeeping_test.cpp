@@ -37,13 +37,6 @@ class BookkeepingTest : public ComputeTest {
         zero_.pNext = &sync_;
         return &private_;
     }
-    template <class T>
-    T property(VkStructureType type) {
-        T result = make<T>(type);
-        auto properties = make<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &result);
-        vkGetPhysicalDeviceProperties2(physicalDevice, &properties);
-        return result;
-    }
 
   private:
     VkPhysicalDevicePrivateDataFeatures private_ =
@@ -151,7 +144,7 @@ TEST_F(BookkeepingTest, requirementsOfWhatDoesNotExistYet) {
         device, &aboutImage, &count, nullptr);
     EXPECT_EQ(count, 0u);
     EXPECT_GE(
-        property<VkPhysicalDeviceMaintenance4Properties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES)
+        properties<VkPhysicalDeviceMaintenance4Properties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES)
             .maxBufferSize,
         VkDeviceSize{1} << 30);
 }
@@ -211,7 +204,7 @@ TEST_F(BookkeepingTest, pipelinesTellOfTheirMaking) {
 }
 
 TEST_F(BookkeepingTest, subgroupsHaveOneSize) {
-    const auto sizes = property<VkPhysicalDeviceSubgroupSizeControlProperties>(
+    const auto sizes = properties<VkPhysicalDeviceSubgroupSizeControlProperties>(
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_SIZE_CONTROL_PROPERTIES);
     EXPECT_EQ(sizes.minSubgroupSize, sizes.maxSubgroupSize);
     EXPECT_EQ(sizes.maxComputeWorkgroupSubgroups * sizes.maxSubgroupSize, 1024u);
@@ -316,7 +309,7 @@ void main() {
 
 // Views may begin at any texel.
 TEST_F(BookkeepingTest, texelBuffersAtAnyTexel) {
-    const auto alignment = property<VkPhysicalDeviceTexelBufferAlignmentProperties>(
+    const auto alignment = properties<VkPhysicalDeviceTexelBufferAlignmentProperties>(
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TEXEL_BUFFER_ALIGNMENT_PROPERTIES);
     EXPECT_TRUE(alignment.uniformTexelBufferOffsetSingleTexelAlignment);
     EXPECT_TRUE(alignment.storageTexelBufferOffsetSingleTexelAlignment);

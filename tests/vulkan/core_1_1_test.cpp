@@ -9,20 +9,6 @@ namespace {
 class Core11Test : public DrawTest {
   protected:
     uint32_t apiVersion() override { return VK_API_VERSION_1_1; }
-    template <class T>
-    T properties(VkStructureType type) const {
-        auto part = make<T>(type);
-        auto all = make<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &part);
-        vkGetPhysicalDeviceProperties2(physicalDevice, &all);
-        return part;
-    }
-    template <class T>
-    T features(VkStructureType type) const {
-        auto part = make<T>(type);
-        auto all = make<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &part);
-        vkGetPhysicalDeviceFeatures2(physicalDevice, &all);
-        return part;
-    }
 };
 
 TEST_F(Core11Test, everyCommandIsThere) {

@@ -386,10 +386,8 @@ void main() {
 
 // As many descriptors in a set as may be updated after it is bound; all but two of them are never written.
 TEST_F(DescriptorIndexingTest, updatesAfterBindingByTheMillion) {
-    auto limits = make<VkPhysicalDeviceDescriptorIndexingProperties>(
+    const auto limits = properties<VkPhysicalDeviceDescriptorIndexingProperties>(
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DESCRIPTOR_INDEXING_PROPERTIES);
-    auto all = make<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &limits);
-    vkGetPhysicalDeviceProperties2(physicalDevice, &all);
     const uint32_t count = limits.maxPerStageUpdateAfterBindResources;
     for (const uint32_t other :
          {limits.maxPerStageDescriptorUpdateAfterBindSamplers,

@@ -118,11 +118,8 @@ TEST_F(ExternalMemoryTest, wrongDescriptorsAreRefused) {
 }
 
 TEST_F(ExternalMemoryTest, hostMemoryIsUsedWhereItLies) {
-    auto limits = make<VkPhysicalDeviceExternalMemoryHostPropertiesEXT>(
+    const auto limits = properties<VkPhysicalDeviceExternalMemoryHostPropertiesEXT>(
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_EXTERNAL_MEMORY_HOST_PROPERTIES_EXT);
-    auto properties = make<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
-    properties.pNext = &limits;
-    vkGetPhysicalDeviceProperties2(physicalDevice, &properties);
     const VkDeviceSize alignment = limits.minImportedHostPointerAlignment;
     ASSERT_GE(alignment, 4096u);
     const VkDeviceSize bytes = 4 * alignment;

@@ -89,10 +89,7 @@ class SubgroupTest : public ComputeTest {
         return &extended_;
     }
     VkPhysicalDeviceSubgroupProperties subgroups() const {
-        auto part = make<VkPhysicalDeviceSubgroupProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES);
-        auto all = make<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &part);
-        vkGetPhysicalDeviceProperties2(physicalDevice, &all);
-        return part;
+        return properties<VkPhysicalDeviceSubgroupProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES);
     }
     /// Runs two subgroups, each invocation of which stores the value of an expression over `i`, its place among 64.
     std::vector<uint32_t> evaluate(const std::string& expression) {

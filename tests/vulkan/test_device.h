@@ -87,6 +87,23 @@ class VulkanTest : public testing::Test {
         return reinterpret_cast<Function>(vkGetInstanceProcAddr(instance, name));
     }
 
+    /// A structure of features, as the device fills it in.
+    template <class T>
+    T features(VkStructureType type) const {
+        T part = make<T>(type);
+        auto all = make<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &part);
+        vkGetPhysicalDeviceFeatures2(physicalDevice, &all);
+        return part;
+    }
+    /// Likewise, of properties.
+    template <class T>
+    T properties(VkStructureType type) const {
+        T part = make<T>(type);
+        auto all = make<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &part);
+        vkGetPhysicalDeviceProperties2(physicalDevice, &all);
+        return part;
+    }
+
     /// Remembers how to destroy something; done in reverse order at the end.
     void defer(std::function<void()> destroy) { deferred_.push_back(std::move(destroy)); }
 
