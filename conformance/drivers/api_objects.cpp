@@ -30,6 +30,66 @@ bool allFactorsZero(const VkPipelineColorBlendAttachmentState& state) {
            state.srcAlphaBlendFactor == kZero && state.dstAlphaBlendFactor == kZero;
 }
 
+VnRasterStateDesc rasterState(const ScenePipeline& scene) {
+    VnRasterStateDesc raster{};
+    raster.polygonMode = scene.polygonMode;
+    raster.cullMode = scene.cullMode;
+    raster.frontFace = scene.frontFace;
+    raster.lineWidth = scene.lineWidth;
+    raster.depthClamp = scene.depthClamp;
+    raster.depthClip = !scene.depthClip ? 0 : *scene.depthClip ? 1 : -1;
+    raster.depthBias = scene.depthBias;
+    raster.depthBiasConstant = scene.depthBiasConstant;
+    raster.depthBiasSlope = scene.depthBiasSlope;
+    raster.depthBiasClamp = scene.depthBiasClamp;
+    raster.sampleMaskOff = ~scene.sampleMask;
+    raster.alphaToCoverage = scene.alphaToCoverage;
+    raster.alphaToOne = scene.alphaToOne;
+    raster.minSampleShading = scene.sampleShading ? scene.minSampleShading : 0;
+    raster.provokingVertexLast = scene.provokingVertexLast;
+    raster.depthNegativeOneToOne = scene.depthNegativeOneToOne;
+    raster.domainLowerLeft = scene.domainLowerLeft;
+    raster.lineMode = scene.lineMode;
+    raster.lineStippleFactor = scene.stippleFactor;
+    raster.lineStipplePattern = scene.stipplePattern;
+    raster.programmableSamples = !scene.sampleLocations.empty();
+    for (size_t i = 0; i < scene.sampleLocations.size(); ++i) {
+        std::copy_n(scene.sampleLocations[i].begin(), 2, std::begin(raster.sampleLocations[i]));
+    }
+    return raster;
+}
+
+VnDepthStencilStateDesc depthStencilState(const ScenePipeline& scene) {
+    VnDepthStencilStateDesc depth{};
+    depth.depthTest = scene.depthTest;
+    depth.depthWrite = scene.depthTest && scene.depthWrite;  // Vulkan ignores the second without the first
+    depth.depthCompare = explicitCompare(scene.depthCompare);
+    depth.depthBoundsTest = scene.depthBoundsTest;
+    depth.minDepth = scene.minDepthBounds;
+    depth.maxDepth = scene.maxDepthBounds;
+    depth.stencilTest = scene.stencilTest;
+    depth.front = stencilFace(scene.front);
+    depth.back = stencilFace(scene.back);
+    return depth;
+}
+
+Result<VnBlendStateDesc> blendState(const ScenePipeline& scene) {
+    VnBlendStateDesc blend{};
+    blend.independent = 1;
+    blend.logicOpEnable = scene.logicOpEnable;
+    blend.logicOp = scene.logicOp;
+    for (size_t i = 0; i < scene.blend.size(); ++i) {
+        const VkPipelineColorBlendAttachmentState& from = scene.blend[i];
+        if (from.blendEnable == VK_TRUE && allFactorsZero(from)) {
+            return unsupported("blending with four factors ZERO cannot be said in the API");
+        }
+        blend.attachments[i] = {from.blendEnable == VK_TRUE, from.srcColorBlendFactor,  from.dstColorBlendFactor,
+                                from.colorBlendOp,           from.srcAlphaBlendFactor,  from.dstAlphaBlendFactor,
+                                from.alphaBlendOp,           ~from.colorWriteMask & 0xf};
+    }
+    return blend;
+}
+
 }  // namespace
 
 Error apiError(VnDevice device, std::string_view call, VnResult result) {
@@ -186,7 +246,18 @@ Result<ApiPipeline> ApiObjects::createPipeline(const ScenePipeline& scene) {
     if (scene.geometryShader != kNone) program.geometry = shaders_[scene.geometryShader];
     if (scene.fragmentShader != kNone) program.fragment = shaders_[scene.fragmentShader];
     VERNIER_TRY_API(vnCreateProgram(device_, &program, &pipeline.program));
+    VERNIER_TRY(createVertexLayout(scene, pipeline.layout));
+    const VnRasterStateDesc raster = rasterState(scene);
+    VERNIER_TRY_API(vnCreateRasterState(device_, &raster, &pipeline.raster));
+    const VnDepthStencilStateDesc depth = depthStencilState(scene);
+    VERNIER_TRY_API(vnCreateDepthStencilState(device_, &depth, &pipeline.depthStencil));
+    const Result<VnBlendStateDesc> blend = blendState(scene);
+    if (!blend) return blend.error();
+    VERNIER_TRY_API(vnCreateBlendState(device_, &*blend, &pipeline.blend));
+    return pipeline;
+}
 
+Status ApiObjects::createVertexLayout(const ScenePipeline& scene, VnVertexLayout& made) {
     std::vector<VnVertexBinding> bindings;
     for (const VkVertexInputBindingDescription& each : scene.vertexBindings) {
         if (bindings.size() <= each.binding) bindings.resize(each.binding + 1);
@@ -201,62 +272,8 @@ Result<ApiPipeline> ApiObjects::createPipeline(const ScenePipeline& scene) {
     layout.attributeCount = static_cast<uint32_t>(attributes.size());
     layout.bindings = bindings.data();
     layout.bindingCount = static_cast<uint32_t>(bindings.size());
-    VERNIER_TRY_API(vnCreateVertexLayout(device_, &layout, &pipeline.layout));
-
-    VnRasterStateDesc raster{};
-    raster.polygonMode = scene.polygonMode;
-    raster.cullMode = scene.cullMode;
-    raster.frontFace = scene.frontFace;
-    raster.lineWidth = scene.lineWidth;
-    raster.depthClamp = scene.depthClamp;
-    raster.depthClip = !scene.depthClip ? 0 : *scene.depthClip ? 1 : -1;
-    raster.depthBias = scene.depthBias;
-    raster.depthBiasConstant = scene.depthBiasConstant;
-    raster.depthBiasSlope = scene.depthBiasSlope;
-    raster.depthBiasClamp = scene.depthBiasClamp;
-    raster.sampleMaskOff = ~scene.sampleMask;
-    raster.alphaToCoverage = scene.alphaToCoverage;
-    raster.alphaToOne = scene.alphaToOne;
-    raster.minSampleShading = scene.sampleShading ? scene.minSampleShading : 0;
-    raster.provokingVertexLast = scene.provokingVertexLast;
-    raster.depthNegativeOneToOne = scene.depthNegativeOneToOne;
-    raster.domainLowerLeft = scene.domainLowerLeft;
-    raster.lineMode = scene.lineMode;
-    raster.lineStippleFactor = scene.stippleFactor;
-    raster.lineStipplePattern = scene.stipplePattern;
-    raster.programmableSamples = !scene.sampleLocations.empty();
-    for (size_t i = 0; i < scene.sampleLocations.size(); ++i) {
-        std::copy_n(scene.sampleLocations[i].begin(), 2, std::begin(raster.sampleLocations[i]));
-    }
-    VERNIER_TRY_API(vnCreateRasterState(device_, &raster, &pipeline.raster));
-
-    VnDepthStencilStateDesc depth{};
-    depth.depthTest = scene.depthTest;
-    depth.depthWrite = scene.depthTest && scene.depthWrite;  // Vulkan ignores the second without the first
-    depth.depthCompare = explicitCompare(scene.depthCompare);
-    depth.depthBoundsTest = scene.depthBoundsTest;
-    depth.minDepth = scene.minDepthBounds;
-    depth.maxDepth = scene.maxDepthBounds;
-    depth.stencilTest = scene.stencilTest;
-    depth.front = stencilFace(scene.front);
-    depth.back = stencilFace(scene.back);
-    VERNIER_TRY_API(vnCreateDepthStencilState(device_, &depth, &pipeline.depthStencil));
-
-    VnBlendStateDesc blend{};
-    blend.independent = 1;
-    blend.logicOpEnable = scene.logicOpEnable;
-    blend.logicOp = scene.logicOp;
-    for (size_t i = 0; i < scene.blend.size(); ++i) {
-        const VkPipelineColorBlendAttachmentState& from = scene.blend[i];
-        if (from.blendEnable == VK_TRUE && allFactorsZero(from)) {
-            return unsupported("blending with four factors ZERO cannot be said in the API");
-        }
-        blend.attachments[i] = {from.blendEnable == VK_TRUE, from.srcColorBlendFactor,  from.dstColorBlendFactor,
-                                from.colorBlendOp,           from.srcAlphaBlendFactor,  from.dstAlphaBlendFactor,
-                                from.alphaBlendOp,           ~from.colorWriteMask & 0xf};
-    }
-    VERNIER_TRY_API(vnCreateBlendState(device_, &blend, &pipeline.blend));
-    return pipeline;
+    VERNIER_TRY_API(vnCreateVertexLayout(device_, &layout, &made));
+    return {};
 }
 
 Result<VnView> ApiObjects::attachmentView(const Scene& scene, uint32_t image, uint32_t mipLevel, uint32_t layer,

@@ -56,6 +56,7 @@ class ApiObjects {
     Status createSampler(const SceneSampler& scene);
     Status createShader(const SceneShader& scene);
     Result<ApiPipeline> createPipeline(const ScenePipeline& scene);
+    Status createVertexLayout(const ScenePipeline& scene, VnVertexLayout& made);
     Result<VnView> view(const VnViewDesc& desc);
 
     VnDevice device_;

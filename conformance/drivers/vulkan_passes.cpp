@@ -34,7 +34,10 @@ PipelineKey pipelineKey(const SceneDraw& draw) {
 Result<VulkanPass> VulkanPassBuilder::build(const ScenePass& scenePass) {
     modules_.resize(scene_.shaders.size());
     VulkanPass pass;
-    VERNIER_TRY(createRenderPass(scenePass, pass));
+    Attachments attachments;
+    VERNIER_TRY(createAttachments(scenePass, pass, attachments));
+    VERNIER_TRY(createRenderPass(scenePass, attachments, pass));
+    VERNIER_TRY(createFramebuffer(scenePass, attachments, pass));
     std::map<PipelineKey, size_t> known;
     for (const SceneDraw& draw : scenePass.draws) {
         const auto [entry, isNew] = known.try_emplace(pipelineKey(draw), pass.pipelines.size());
@@ -53,92 +56,85 @@ Result<VulkanPass> VulkanPassBuilder::build(const ScenePass& scenePass) {
     return pass;
 }
 
-Status VulkanPassBuilder::createRenderPass(const ScenePass& scenePass, VulkanPass& pass) {
-    const VkDevice device = context_.device();
-    std::vector<VkAttachmentDescription> attachments;
-    std::vector<VkImageView> views;
-    std::vector<VkAttachmentReference> colors, resolves;
-    VkAttachmentReference depth{VK_ATTACHMENT_UNUSED, VK_IMAGE_LAYOUT_UNDEFINED};
-    bool resolving = false;
-    uint32_t depthResolve = VK_ATTACHMENT_UNUSED;
-    const auto attach = [&](const SceneAttachment& attachment, uint32_t image, VkAttachmentLoadOp loadOp,
-                            VkImageLayout layout) -> Result<VkAttachmentReference> {
-        const bool resolve = image == attachment.resolveImage;
-        const Result<VkImageView> view = resources_.attachmentView(
-            image, resolve ? 0 : attachment.mipLevel, resolve ? 0 : attachment.layer, attachment.layerCount);
+Status VulkanPassBuilder::attach(const SceneAttachment& attachment, VkImageLayout layout, VulkanPass& pass,
+                                 Attachments& all, VkAttachmentReference& reference, VkAttachmentReference& resolve) {
+    const auto add = [&](uint32_t image, uint32_t level, uint32_t layer, VkAttachmentLoadOp loadOp,
+                         VkAttachmentReference& where) -> Status {
+        const Result<VkImageView> view = resources_.attachmentView(image, level, layer, attachment.layerCount);
         if (!view) return view.error();
-        views.push_back(*view);
-        attachments.push_back(attachmentDescription(scene_.images[image], loadOp, layout));
+        where = {static_cast<uint32_t>(all.views.size()), layout};
+        all.views.push_back(*view);
+        all.descriptions.push_back(attachmentDescription(scene_.images[image], loadOp, layout));
         pass.clears.push_back(attachment.clear);
-        return VkAttachmentReference{static_cast<uint32_t>(attachments.size() - 1), layout};
+        return {};
     };
-    for (const SceneAttachment& color : scenePass.colors) {
-        const auto reference = attach(color, color.image, color.loadOp, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-        if (!reference) return reference.error();
-        colors.push_back(*reference);
-        VkAttachmentReference resolve{VK_ATTACHMENT_UNUSED, VK_IMAGE_LAYOUT_UNDEFINED};
-        if (color.resolveImage != kNone) {
-            const auto resolved = attach(color, color.resolveImage, VK_ATTACHMENT_LOAD_OP_DONT_CARE,
-                                         VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-            if (!resolved) return resolved.error();
-            resolve = *resolved;
-            resolving = true;
-        }
-        resolves.push_back(resolve);
+    VERNIER_TRY(add(attachment.image, attachment.mipLevel, attachment.layer, attachment.loadOp, reference));
+    if (attachment.resolveImage == kNone) return {};
+    return add(attachment.resolveImage, 0, 0, VK_ATTACHMENT_LOAD_OP_DONT_CARE, resolve);
+}
+
+Status VulkanPassBuilder::createAttachments(const ScenePass& scene, VulkanPass& pass, Attachments& all) {
+    const VkAttachmentReference none{VK_ATTACHMENT_UNUSED, VK_IMAGE_LAYOUT_UNDEFINED};
+    all.colors.assign(scene.colors.size(), none);
+    all.resolves.assign(scene.colors.size(), none);
+    for (size_t i = 0; i < scene.colors.size(); ++i) {
+        VERNIER_TRY(attach(scene.colors[i], VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, pass, all, all.colors[i],
+                           all.resolves[i]));
     }
-    if (scenePass.depthStencil.image != kNone) {
-        const auto reference = attach(scenePass.depthStencil, scenePass.depthStencil.image,
-                                      scenePass.depthStencil.loadOp, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
-        if (!reference) return reference.error();
-        depth = *reference;
-        if (scenePass.depthStencil.resolveImage != kNone) {
-            const auto resolved =
-                attach(scenePass.depthStencil, scenePass.depthStencil.resolveImage, VK_ATTACHMENT_LOAD_OP_DONT_CARE,
-                       VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
-            if (!resolved) return resolved.error();
-            depthResolve = resolved->attachment;
-        }
-    }
+    if (scene.depthStencil.image == kNone) return {};
+    return attach(scene.depthStencil, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, pass, all, all.depth,
+                  all.depthResolve);
+}
+
+Status VulkanPassBuilder::createRenderPass(const ScenePass& scene, const Attachments& all, VulkanPass& pass) {
+    const VkDevice device = context_.device();
+    const bool resolving = std::any_of(all.resolves.begin(), all.resolves.end(),
+                                       [](const auto& each) { return each.attachment != VK_ATTACHMENT_UNUSED; });
     VkSubpassDescription subpass{};
     subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
-    subpass.colorAttachmentCount = static_cast<uint32_t>(colors.size());
-    subpass.pColorAttachments = colors.data();
-    subpass.pResolveAttachments = resolving ? resolves.data() : nullptr;
-    subpass.pDepthStencilAttachment = &depth;
+    subpass.colorAttachmentCount = static_cast<uint32_t>(all.colors.size());
+    subpass.pColorAttachments = all.colors.data();
+    subpass.pResolveAttachments = resolving ? all.resolves.data() : nullptr;
+    subpass.pDepthStencilAttachment = &all.depth;
     VkRenderPassCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO;
-    info.attachmentCount = static_cast<uint32_t>(attachments.size());
-    info.pAttachments = attachments.data();
+    info.attachmentCount = static_cast<uint32_t>(all.descriptions.size());
+    info.pAttachments = all.descriptions.data();
     info.subpassCount = 1;
     info.pSubpasses = &subpass;
     VkRenderPassMultiviewCreateInfo multiview{};
     multiview.sType = VK_STRUCTURE_TYPE_RENDER_PASS_MULTIVIEW_CREATE_INFO;
     multiview.subpassCount = 1;
-    multiview.pViewMasks = &scenePass.viewMask;
-    if (scenePass.viewMask != 0) {
+    multiview.pViewMasks = &scene.viewMask;
+    if (scene.viewMask != 0) {
         if (context_.extensions().multiview.multiview == VK_FALSE) return unsupported("the device lacks multiview");
         info.pNext = &multiview;
     }
-    if (depthResolve != VK_ATTACHMENT_UNUSED) {
+    if (all.depthResolve.attachment != VK_ATTACHMENT_UNUSED) {
         const Result<VkRenderPass> made =
-            createResolvingRenderPass(info, scenePass.viewMask, scenePass.depthStencil, depthResolve);
+            createResolvingRenderPass(info, scene.viewMask, scene.depthStencil, all.depthResolve.attachment);
         if (!made) return made.error();
         pass.renderPass = *made;
     } else {
         VERNIER_TRY_VK(vkCreateRenderPass(device, &info, nullptr, &pass.renderPass));
     }
     resources_.cleanup().add([device, handle = pass.renderPass] { vkDestroyRenderPass(device, handle, nullptr); });
-    VkFramebufferCreateInfo framebuffer{};
-    framebuffer.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
-    framebuffer.renderPass = pass.renderPass;
-    framebuffer.attachmentCount = static_cast<uint32_t>(views.size());
-    framebuffer.pAttachments = views.data();
-    framebuffer.width = scenePass.extent.width;
-    framebuffer.height = scenePass.extent.height;
-    framebuffer.layers = scenePass.viewMask != 0    ? 1
-                         : scenePass.colors.empty() ? scenePass.depthStencil.layerCount
-                                                    : scenePass.colors[0].layerCount;
-    VERNIER_TRY_VK(vkCreateFramebuffer(device, &framebuffer, nullptr, &pass.framebuffer));
+    return {};
+}
+
+Status VulkanPassBuilder::createFramebuffer(const ScenePass& scene, const Attachments& all, VulkanPass& pass) {
+    const VkDevice device = context_.device();
+    VkFramebufferCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
+    info.renderPass = pass.renderPass;
+    info.attachmentCount = static_cast<uint32_t>(all.views.size());
+    info.pAttachments = all.views.data();
+    info.width = scene.extent.width;
+    info.height = scene.extent.height;
+    info.layers = scene.viewMask != 0    ? 1
+                  : scene.colors.empty() ? scene.depthStencil.layerCount
+                                         : scene.colors[0].layerCount;
+    VERNIER_TRY_VK(vkCreateFramebuffer(device, &info, nullptr, &pass.framebuffer));
     resources_.cleanup().add([device, handle = pass.framebuffer] { vkDestroyFramebuffer(device, handle, nullptr); });
     return {};
 }

@@ -43,7 +43,20 @@ class VulkanPassBuilder {
     double pipelineTime() const { return pipelineTime_; }
 
   private:
-    Status createRenderPass(const ScenePass& scene, VulkanPass& pass);
+    /// The attachments of a pass, in the order of its clear values, and where its one subpass has them.
+    struct Attachments {
+        std::vector<VkAttachmentDescription> descriptions;
+        std::vector<VkImageView> views;
+        std::vector<VkAttachmentReference> colors, resolves;
+        VkAttachmentReference depth{VK_ATTACHMENT_UNUSED, VK_IMAGE_LAYOUT_UNDEFINED};
+        VkAttachmentReference depthResolve{VK_ATTACHMENT_UNUSED, VK_IMAGE_LAYOUT_UNDEFINED};
+    };
+    /// Adds an attachment, and what it resolves to where it does.
+    Status attach(const SceneAttachment& attachment, VkImageLayout layout, VulkanPass& pass, Attachments& all,
+                  VkAttachmentReference& reference, VkAttachmentReference& resolve);
+    Status createAttachments(const ScenePass& scene, VulkanPass& pass, Attachments& all);
+    Status createRenderPass(const ScenePass& scene, const Attachments& all, VulkanPass& pass);
+    Status createFramebuffer(const ScenePass& scene, const Attachments& all, VulkanPass& pass);
     /// The same render pass with a resolve of its depth/stencil attachment to attachment `target`.
     Result<VkRenderPass> createResolvingRenderPass(const VkRenderPassCreateInfo& info, uint32_t viewMask,
                                                    const SceneAttachment& depth, uint32_t target);
@@ -52,6 +65,7 @@ class VulkanPassBuilder {
     Result<VkShaderModule> shaderModule(uint32_t index);
     Result<std::vector<VkDescriptorSet>> createSets(const SceneDraw& draw, const VulkanPipeline& pipeline);
     Status checkFeatures(const ScenePipeline& scene, const SceneDraw& draw) const;
+    Status checkStages(const ScenePipeline& scene) const;
 
     VulkanContext& context_;
     VulkanResources& resources_;
