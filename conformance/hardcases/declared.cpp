@@ -18,11 +18,10 @@ OracleRules Declared::ownRules() const {
 }
 
 Declared vernierDeclares(int subPixelBits, std::string_view profile) {
-    if (profile == "draft" || profile == "fast") return {subPixelBits, OwnBounds{4096, 0x1p-11, 2e-6}};
-    // Attributes are interpolated in double, and rounded once.
-    if (profile == "fine") return {subPixelBits, OwnBounds{1, 0x1p-24, 0x1p-22}};
-    if (profile == "reference") return {subPixelBits, OwnBounds{0.5001, 0x1p-24, 0x1p-22}};
-    return {subPixelBits, OwnBounds{}};
+    const bool fast = profile == "draft" || profile == "fast", reference = profile == "reference";
+    const bool inDouble = profile == "fine" || reference;  // attributes, and rounded once
+    const size_t tier = fast ? 0 : reference ? 3 : inDouble ? 2 : 1;
+    return {subPixelBits, OwnBounds{precision::kUsual[tier], precision::kAngles[tier], inDouble ? 0x1p-22 : 2e-6}};
 }
 
 }  // namespace vernier::conformance::hardcases

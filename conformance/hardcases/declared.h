@@ -2,6 +2,7 @@
 #pragma once
 
 #include "conformance/oracle/oracle.h"
+#include "conformance/precision/promise.h"
 
 #include <optional>
 #include <string_view>
@@ -10,9 +11,8 @@ namespace vernier::conformance::hardcases {
 
 /// What Vernier promises beyond the specification, at a position of its dial (docs/accuracy.md, docs/precision.md).
 struct OwnBounds {
-    double functionUlps = 4;      // errors of elementary functions
-    double angleError = 0x1p-22;  // of sine and cosine, absolute
-    double interpolation = 2e-6;  // of what depends on inputs (OracleRules::interpolationError)
+    precision::Promise functions, angles;  // errors of elementary functions; of sine and cosine
+    double interpolation;                  // of what depends on inputs (OracleRules::interpolationError)
 };
 
 struct Declared {

@@ -78,7 +78,8 @@ double ulpOf(double value) {
 }
 
 double OwnTolerance::of(double exactly, const OwnBounds& bounds) const {
-    return std::max(bounds.functionUlps * scale * ulpOf(exactly), angle ? bounds.angleError : 0);
+    const precision::Promise& promise = angle ? bounds.angles : bounds.functions;
+    return std::max(promise.ulp * scale * ulpOf(exactly), promise.absolute);
 }
 
 ValueJudge floatNear(double exactly, double tolerance, OwnTolerance ownTolerance) {

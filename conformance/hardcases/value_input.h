@@ -46,8 +46,8 @@ inline uint32_t bitsOf(float value) {
 
 /// How a driver's own bounds of elementary functions apply to a result.
 struct OwnTolerance {
-    double scale = 1;    // of OwnBounds::functionUlps
-    bool angle = false;  // OwnBounds::angleError counts, too
+    double scale = 1;    // of the promised ULPs
+    bool angle = false;  // as OwnBounds::angles says, rather than functions
 
     /// By how much a driver with these bounds may be off.
     double of(double exactly, const OwnBounds& bounds) const;

@@ -9,8 +9,7 @@ namespace {
 
 using reference::Real;
 
-constexpr std::array<Promise, 4> kRounded = {{{0.5, 0}, {0.5, 0}, {0.5, 0}, {0.5, 0}}};
-constexpr std::array<Promise, 4> kExact = {{{0, 0}, {0, 0}, {0, 0}, {0, 0}}};
+constexpr Promises kExact = {{{0, 0}, {0, 0}, {0, 0}, {0, 0}}};
 
 const Row kSame = valueRow([](const double* x) { return x[0]; });
 const Row kTruncated = valueRow([](const double* x) { return std::trunc(x[0]); });
@@ -19,7 +18,7 @@ struct Conversion {
     const char *name, *glsl;
     Domain domain;
     Word operand, result;
-    const std::array<Promise, 4>& promises;
+    const Promises& promises;
     bool (*covers)(const double*) = nullptr;
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "conformance/precision/bounded.h"
+#include "conformance/precision/promise.h"
 #include "conformance/precision/word.h"
 #include "spirv_interp/program.h"
 #include "spirv_interp/reference/number.h"
@@ -18,12 +19,6 @@ inline constexpr size_t kMaxOperands = 6;
 inline constexpr std::array<MathTier, 4> kTiers = {MathTier::fast, MathTier::standard, MathTier::fine,
                                                    MathTier::reference};
 inline constexpr std::array<const char*, 4> kTierNames = {"fast", "standard", "fine", "reference"};
-
-/// What a tier promises: an error of at most `ulp` ULP, or of at most `absolute`, whichever is more. Negative: nothing
-/// beyond what Vulkan demands.
-struct Promise {
-    double ulp = -1, absolute = 0;
-};
 
 /// Which operands are tried.
 enum class Domain : uint8_t {
@@ -73,7 +68,7 @@ struct Function {
     Row permitted = nullptr;                  // the errors that Vulkan permits; nullptr: it states none
     bool cancels = false;                     // the formula loses digits: only exact() tells the error
     bool (*covers)(const double*) = nullptr;  // operands for which the result is defined; nullptr: all
-    std::array<Promise, 4> promises;          // by tier
+    Promises promises;                        // by tier
     /// Multiplies the promises: errors that grow with the operands by nature (pow).
     double (*scale)(const double*) = nullptr;
     std::string scaleText;  // in words

@@ -10,17 +10,9 @@ namespace {
 
 using reference::Real;
 
-/// Within what Vulkan demands of standard and with room to spare; fast has 11 bits.
-constexpr std::array<Promise, 4> kUsual = {{{4096, 0}, {4, 0}, {1, 0}, {0.5001, 0}}};
-/// Sine and cosine have zeros everywhere: absolute errors count.
-constexpr std::array<Promise, 4> kAngles = {{{4, 0x1p-11}, {4, 0x1p-22}, {1, 0}, {0.5001, 0}}};
-constexpr std::array<Promise, 4> kRounded = {{{0.5, 0}, {0.5, 0}, {0.5, 0}, {0.5, 0}}};
-/// The same operations in every tier: what their formula gives.
-constexpr std::array<Promise, 4> kInherited = {};
-
 template <class Exact, class Permitted>
-Function make(const char* name, const char* glsl, uint32_t operands, const char* limit,
-              const std::array<Promise, 4>& promises, Exact exact, Permitted permitted) {
+Function make(const char* name, const char* glsl, uint32_t operands, const char* limit, const Promises& promises,
+              Exact exact, Permitted permitted) {
     Function f;
     f.name = name;
     f.glsl = glsl;

@@ -9,17 +9,14 @@ namespace {
 
 using reference::Real;
 
-constexpr std::array<Promise, 4> kRounded = {{{0.5, 0}, {0.5, 0}, {0.5, 0}, {0.5, 0}}};
 /// The root and the quotient are both rounded.
-constexpr std::array<Promise, 4> kTwice = {{{1.5, 0}, {1.5, 0}, {1.5, 0}, {1.5, 0}}};
-/// What the formula gives.
-constexpr std::array<Promise, 4> kInherited = {};
+constexpr Promises kTwice = {{{1.5, 0}, {1.5, 0}, {1.5, 0}, {1.5, 0}}};
 
 struct DoubleFunction {
     const char *name, *glsl;
     uint32_t operands;
     const char* limitText;
-    const std::array<Promise, 4>& promises;
+    const Promises& promises;
     Row approximate;
     Real (*exact)(const Real*);
     Row permitted;

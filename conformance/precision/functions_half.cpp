@@ -50,9 +50,8 @@ const HalfFunction kHalfFunctions[] = {
     {"pow", "pow(p, q)", 2, "exp2(y * log2(x))", VERNIER_ALL(pow(x[0], x[1])), false, positive},
 };
 
-constexpr std::array<Promise, 4> kRounded = {{{0.5, 0}, {0.5, 0}, {0.5, 0}, {0.5, 0}}};
 /// A float of its tier, rounded once more: 2^-13 of its ULP and half one of a half's.
-constexpr std::array<Promise, 4> kOfFloat = {{{1, 0x1p-11}, {0.501, 0}, {0.5002, 0}, {0.5001, 0}}};
+constexpr Promises kOfFloat = {{{1, 0x1p-11}, {0.501, 0}, {0.5002, 0}, {0.5001, 0}}};
 
 }  // namespace
 
