@@ -62,7 +62,9 @@ class Subdivider {
         }
         if (choices_.turned) {
             std::ranges::reverse(result_.primitives);
-            for (auto& primitive : result_.primitives) std::ranges::rotate(primitive, primitive.end() - 1);
+            for (auto& primitive : result_.primitives) {
+                std::rotate(primitive.begin(), primitive.end() - 1, primitive.end());
+            }
         }
         return std::move(result_);
     }
