@@ -37,8 +37,8 @@ struct Specialization {
     std::span<const std::byte> data;
 };
 
-/// The words of a module that SPIRV-Tools has found valid (Vulkan 1.1 rules): checked once, however many programs are
-/// made from it. Immutable.
+/// The words of a module that SPIRV-Tools has found valid (Vulkan 1.1 rules), once for all programs made from it. More
+/// words than were given: it used built-in variables whose capabilities it did not declare, now it does. Immutable.
 class ValidatedModule {
   public:
     /// Thread-safe. Defined in front/.

@@ -193,8 +193,13 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateShaderModule(VkDevice device, const VkShade
                                                   VkShaderModule* pShaderModule) {
     return guarded([&] {
         std::vector<uint32_t> words(pCreateInfo->pCode, pCreateInfo->pCode + pCreateInfo->codeSize / sizeof(uint32_t));
+        const size_t given = words.size();
         Result<ValidatedModule> module = ValidatedModule::create(std::move(words));
         if (!module) return object(device)->report("vkCreateShaderModule", module.error());
+        if (module->words().size() != given && object(device)->validates()) {
+            (void)object(device)->report("vkCreateShaderModule", VK_SUCCESS,
+                                         "the module uses a built-in variable whose capability it does not declare");
+        }
         return createHandle(pAllocator, pShaderModule, std::move(module).value());
     });
 }

@@ -45,6 +45,19 @@ Status validate(std::span<const uint32_t> words, bool names) {
     return invalidArgument(std::move(message));
 }
 
+/// The module with the capabilities declared that stand for built-in variables alone: some compilers use those without
+/// (Mesa's Zink: SampleId, ViewportIndex), and every program can have them.
+std::vector<uint32_t> withBuiltinCapabilities(const std::vector<uint32_t>& words) {
+    std::vector<uint32_t> more(words.begin(), words.begin() + Module::kFirstInstruction);
+    for (const auto capability :
+         {spv::Capability::Geometry, spv::Capability::MultiViewport, spv::Capability::SampleRateShading}) {
+        more.push_back(2u << 16 | static_cast<uint32_t>(spv::Op::OpCapability));
+        more.push_back(static_cast<uint32_t>(capability));
+    }
+    more.insert(more.end(), words.begin() + Module::kFirstInstruction, words.end());
+    return more;
+}
+
 }  // namespace
 
 Status checkModule(std::span<const uint32_t> words) {
@@ -82,8 +95,12 @@ Result<ir::Program> lowerAnyModule(const ShaderSource& source) {
 }
 
 Result<ValidatedModule> ValidatedModule::create(std::vector<uint32_t> words) {
-    if (const Status valid = checkModule(words); !valid) return valid.error();
-    return ValidatedModule(std::move(words));
+    const Status valid = checkModule(words);
+    if (valid.ok()) return ValidatedModule(std::move(words));
+    if (words.size() < Module::kFirstInstruction) return valid.error();
+    std::vector<uint32_t> more = withBuiltinCapabilities(words);
+    if (!validate(more, false).ok()) return valid.error();
+    return ValidatedModule(std::move(more));
 }
 
 Result<ir::Program> loadShader(const ShaderSource& source) {

@@ -266,6 +266,59 @@ TEST_F(ValidateTest, harmlessMisuseIsTold) {
     EXPECT_TRUE(told("signalled already"));
 }
 
+std::vector<uint32_t> withoutCapabilities(const std::vector<uint32_t>& words, const std::vector<uint32_t>& which) {
+    constexpr size_t kHeader = 5;
+    std::vector<uint32_t> less(words.begin(), words.begin() + kHeader);
+    for (size_t at = kHeader; at < words.size(); at += words[at] >> 16) {
+        const bool capability = (words[at] & 0xFFFF) == 17;  // OpCapability
+        if (capability && std::find(which.begin(), which.end(), words[at + 1]) != which.end()) continue;
+        less.insert(less.end(), words.begin() + static_cast<ptrdiff_t>(at),
+                    words.begin() + static_cast<ptrdiff_t>(at + (words[at] >> 16)));
+    }
+    return less;
+}
+
+// Mesa's Zink 22.3 does so; other drivers take it.
+TEST_F(ValidateTest, builtInVariablesWithoutTheirCapabilities) {
+    VERNIER_SKIP_WHEN_VALIDATED();
+    const auto create = [&](const std::vector<uint32_t>& words, VkShaderModule& module) {
+        auto info = make<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
+        info.codeSize = 4 * words.size();
+        info.pCode = words.data();
+        const VkResult result = vkCreateShaderModule(device, &info, nullptr, &module);
+        if (result == VK_SUCCESS) defer([this, made = module] { vkDestroyShaderModule(device, made, nullptr); });
+        return result;
+    };
+    const std::vector<uint32_t> whole = compileGlsl(VK_SHADER_STAGE_FRAGMENT_BIT, R"(#version 450
+        layout(location = 0) out vec4 color;
+        void main() {
+            color = vec4(gl_SampleID + 1, gl_ViewportIndex + 2, gl_Layer + 3, gl_PrimitiveID + 4) / 255.0;
+        })");
+    constexpr uint32_t kGeometry = 2, kFloat64 = 10, kSampleRateShading = 35, kMultiViewport = 57;
+    const std::vector<uint32_t> words = withoutCapabilities(whole, {kGeometry, kSampleRateShading, kMultiViewport});
+    ASSERT_EQ(words.size(), whole.size() - 6);
+    PipelineDesc desc;
+    ASSERT_EQ(create(words, desc.fragment), VK_SUCCESS);
+    EXPECT_TRUE(told("whose capability it does not declare"));
+    messages.clear();
+    ASSERT_EQ(create(whole, desc.fragment), VK_SUCCESS);
+    EXPECT_TRUE(messages.empty());
+    ASSERT_EQ(create(words, desc.fragment), VK_SUCCESS);
+
+    const TestImage image = makeImage(VK_FORMAT_R8G8B8A8_UNORM, {4, 4}, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
+    const Pass pass = makePass(image);
+    desc.extent = image.extent;
+    desc.vertex = fullScreen();
+    drawTriangle(pass, makePipeline(pass.pass, desc));
+    EXPECT_EQ(pixelAt(readImage(image, VK_IMAGE_ASPECT_COLOR_BIT, 4), image, 2, 1), 0x04030201u);
+
+    const std::vector<uint32_t> doubles = compileGlsl(VK_SHADER_STAGE_COMPUTE_BIT, R"(#version 450
+        layout(set = 0, binding = 0) buffer Out { double value; };
+        void main() { value = 5; })");
+    VkShaderModule module = VK_NULL_HANDLE;
+    EXPECT_NE(create(withoutCapabilities(doubles, {kFloat64}), module), VK_SUCCESS) << "types need theirs";
+}
+
 /// A callback that does not return before its messenger is destroyed, or that takes long.
 struct SlowCallback {
     std::mutex mutex;
