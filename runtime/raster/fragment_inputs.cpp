@@ -1,5 +1,6 @@
 // The inputs of a batch of fragments: varyings and built-ins.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 
@@ -183,7 +184,8 @@ void FragmentStage::fillBuiltin(const FragmentBatch& batch, const BuiltinSlot& b
     }
 }
 
-/// interpolateAtCentroid, -Sample, -Offset: one lane at a time.
+/// interpolateAtCentroid, -Sample, -Offset: by the operations that the inputs themselves have, so that the same place
+/// gives the same value.
 void FragmentStage::interpolateAt(void* self, uint32_t slot, uint32_t where, uint32_t lanes, const float* a,
                                   const float* b, float* result) {
     auto& stage = *static_cast<FragmentStage*>(self);
@@ -194,33 +196,30 @@ void FragmentStage::interpolateAt(void* self, uint32_t slot, uint32_t where, uin
         std::find_if(varyings.begin(), varyings.end(), [&](const Varying& v) { return v.fragmentSlot == slot; });
     std::fill_n(result, lanes, 0.0f);
     if (found == varyings.end()) return;
-    const auto k = static_cast<size_t>(found - varyings.begin());
+    alignas(64) std::array<float, kLaneRoom> x{}, y{}, value{};
     const uint32_t full = (1u << stage.samples_) - 1;
-    for (uint32_t s = 0; s < batch.segmentCount; ++s) {
-        const FragmentSegment& part = batch.segments[s];
-        const TrianglePlanes& planes = *part.planes;
-        for (uint32_t n = part.first; n < std::min(part.first + part.count, lanes); ++n) {
-            if (found->interpolation == ir::Interpolation::flat) {
-                std::memcpy(result + n, planes.flat + k, 4);
-                continue;
-            }
-            SamplePosition position{8, 8};
-            float ox = 0, oy = 0;
-            if (where == 0 && batch.coverage[n] != full && batch.coverage[n] != 0)
-                position = stage.positions_[std::countr_zero(batch.coverage[n])];
-            if (where == 1) position = stage.positions_[std::min(std::bit_cast<uint32_t>(a[n]), stage.samples_ - 1)];
-            if (where == 2) {
-                ox = a[n];
-                oy = b[n];
-            }
-            const Barycentrics at =
-                barycentricsAt(planes, batch.x[n], batch.y[n], position.x() + ox, position.y() + oy);
-            const bool linear = found->interpolation == ir::Interpolation::noPerspective;
-            const double a0 = double{planes.attributes[0][k]};
-            const double d1 = double{planes.attributes[1][k]} - a0, d2 = double{planes.attributes[2][k]} - a0;
-            result[n] = static_cast<float>(a0 + ((linear ? at.l1 : at.b1) * d1 + (linear ? at.l2 : at.b2) * d2));
-        }
+    for (uint32_t n = 0; n < std::min(batch.count, lanes); ++n) {
+        SamplePosition position{8, 8};
+        if (where == 0 && batch.coverage[n] != full && batch.coverage[n] != 0)
+            position = stage.positions_[std::countr_zero(batch.coverage[n])];
+        if (where == 1) position = stage.positions_[std::min(std::bit_cast<uint32_t>(a[n]), stage.samples_ - 1)];
+        x[n] = position.x() + (where == 2 ? a[n] : 0.0f);
+        y[n] = position.y() + (where == 2 ? b[n] : 0.0f);
     }
+    const VaryingTarget target{static_cast<uint32_t>(found - varyings.begin()), value.data()};
+    InterpolationInput input{};
+    input.batch = &batch;
+    input.offsetX = x.data();
+    input.offsetY = y.data();
+    input.capacity = kLaneRoom;
+    const bool flat = found->interpolation == ir::Interpolation::flat;
+    input.perspective = !flat && found->interpolation != ir::Interpolation::noPerspective;
+    (flat ? input.flat : input.perspective ? input.smooth : input.linear) = {&target, 1};
+    if (stage.plan_->preciseInterpolation && !flat)
+        interpolatePrecise(input);
+    else
+        stage.interpolate_(input);
+    std::copy_n(value.begin(), std::min(batch.count, lanes), result);
 }
 
 }  // namespace vernier

@@ -1,4 +1,5 @@
-// Every sample count at the standard and at programmed positions, resolved.
+// Every sample count at the standard and at programmed positions, resolved; interpolation where it is asked for.
+#include <algorithm>
 #include <cmath>
 
 #include "runtime/plan/sample_positions.h"
@@ -174,6 +175,57 @@ void main() { color = texelFetch(image, ivec2(gl_FragCoord.xy), 3); })");
     submit(commands);
     EXPECT_EQ(pixelAt(readImage(color, VK_IMAGE_ASPECT_COLOR_BIT, 4), color, 5, 9), 0xFF996633u);
     EXPECT_TRUE(messages.empty()) << messages.front();
+}
+
+// What a shader asks to be interpolated at the place where an input is anyway has the input's bits.
+TEST_F(SampleCountTest, askedPlacesOfInputs) {
+    const std::string names[] = {"atPixel", "atPlane", "atCentroid", "atSample"};
+    const std::string qualifiers[] = {"", "noperspective ", "centroid ", "sample "};
+    std::string vertex = R"(#version 450
+        const vec2 kPlaces[9] = {{-1, -0.9}, {0.97, -0.31}, {-0.7, 1}, {0.1, 0.2}, {0.83, 0.21}, {0.3, 0.95},
+                                 {-0.31, 0.03}, {-0.11, 0.07}, {-0.23, 0.41}};
+    )";
+    std::string fragment = "#version 450\nlayout(location = 0) out vec4 color;\n", main;
+    for (uint32_t n = 0; n < 4; ++n) {
+        const std::string location = "layout(location = " + std::to_string(n) + ") ";
+        vertex += location + qualifiers[n] + "out vec3 " + names[n] + ";\n";
+        fragment += location + qualifiers[n] + "in vec3 " + names[n] + ";\n";
+        main += names[n] + " = vec3(p * vec2(3.7, 0.3), 1.1 * w);\n";
+    }
+    vertex +=
+        "void main() { vec2 p = kPlaces[gl_VertexIndex]; float w = 1 + 0.37 * (gl_VertexIndex * 5 % 9);\n"
+        "gl_Position = vec4(p * w, 0.5 * w, w);\n" +
+        main + "}";
+    PipelineDesc desc;
+    desc.extent = {64, 64};
+    desc.vertex = makeShader(VK_SHADER_STAGE_VERTEX_BIT, vertex);
+    for (const bool perSample : {false, true}) {
+        const std::string last = perSample ? "1, atSample == interpolateAtSample(atSample, gl_SampleID)"
+                                           : "atCentroid == interpolateAtCentroid(atCentroid), 1";
+        const std::string equal =
+            "atPixel == interpolateAtOffset(atPixel, vec2(0)), atPlane == interpolateAtOffset(atPlane, vec2(0)), ";
+        desc.fragment =
+            makeShader(VK_SHADER_STAGE_FRAGMENT_BIT, fragment + "void main() { color = vec4(" + equal + last + "); }");
+        for (const auto samples : {VK_SAMPLE_COUNT_1_BIT, VK_SAMPLE_COUNT_4_BIT}) {
+            const auto usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+            const TestImage color = makeImage(VK_FORMAT_R8G8B8A8_UNORM, desc.extent, usage, samples);
+            const TestImage resolved = makeImage(VK_FORMAT_R8G8B8A8_UNORM, desc.extent, usage);
+            const bool resolves = samples != VK_SAMPLE_COUNT_1_BIT;
+            Pass pass = makePass(color, nullptr, resolves ? &resolved : nullptr, samples);
+            pass.clears[0].color = {{1, 1, 1, 1}};
+            desc.samples = samples;
+            const VkPipeline pipeline = makePipeline(pass.pass, desc);
+            const VkCommandBuffer commands = begin();
+            beginPass(commands, pass);
+            vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+            vkCmdDraw(commands, 9, 1, 0, 0);
+            vkCmdEndRenderPass(commands);
+            submit(commands);
+            const std::vector<uint8_t> bytes = readImage(resolves ? resolved : color, VK_IMAGE_ASPECT_COLOR_BIT, 4);
+            EXPECT_EQ(std::count(bytes.begin(), bytes.end(), 255), static_cast<ptrdiff_t>(bytes.size()))
+                << samples << " samples, per sample: " << perSample;
+        }
+    }
 }
 
 }  // namespace
