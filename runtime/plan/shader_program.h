@@ -46,6 +46,16 @@ class ShaderProgram {
     /// Links (what the stage behind does not read is not computed) and compiles. Thread-safe.
     static Result<std::shared_ptr<const ShaderProgram>> create(const ShaderProgramDesc& desc);
 
+    /// What runs before the rasteriser, or behind it.
+    enum class Side : uint8_t { beforeRasteriser, behindRasteriser };
+    /// Links and compiles the programs of one side by themselves, for join(): nothing is left out because the other
+    /// side does not read or keep it. Of the others the description is ignored. Thread-safe.
+    static Result<std::shared_ptr<const ShaderProgram>> createSide(const ShaderProgramDesc& desc, Side side);
+    /// The program of two sides, without compiling anything; it gives the same bits as one that is linked. nullptr
+    /// where they must be linked: the fragment program reads what the other side does not write, or the accuracy in
+    /// force asks for work to be moved between them.
+    static std::shared_ptr<const ShaderProgram> join(const ShaderProgram& before, const ShaderProgram& behind);
+
     const Accuracy& accuracy() const { return accuracy_; }
     Isa isa() const { return isa_; }
     const Skips& skips() const { return skips_; }
@@ -73,7 +83,12 @@ class ShaderProgram {
     const ir::LiftFacts& lifted() const { return lifted_; }
 
   private:
-    ShaderProgram() = default;
+    explicit ShaderProgram(const ShaderProgramDesc& desc)
+        : accuracy_(desc.accuracy), isa_(desc.isa), skips_(desc.skips) {}
+    Status compileStages(std::vector<ir::Program>& stages, const ShaderProgramDesc& desc);
+    Status compileFragment(ir::Program& fragment);
+    Status compile(ir::Program& ir, uint32_t lanes, std::shared_ptr<const BatchProgram>& to) const;
+
     Accuracy accuracy_;
     Isa isa_ = kLowestIsa;
     Skips skips_;

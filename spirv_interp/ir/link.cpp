@@ -110,6 +110,14 @@ uint32_t placeOf(Stage stage) {
 
 }  // namespace
 
+bool writesAll(const Program& producer, const Program& consumer) {
+    return std::ranges::all_of(consumer.inputs, [&](const InterfaceSlot& input) {
+        if (!isVarying(consumer, input)) return true;
+        const InterfaceSlot* output = findSlot(producer.outputs, input);
+        return output != nullptr && output->type == input.type;
+    });
+}
+
 Status linkStages(Program& producer, Program& consumer, LinkFacts* facts, const LinkOptions& options) {
     if (placeOf(producer.stage) >= placeOf(consumer.stage) || consumer.stage == Stage::compute) {
         return invalidArgument("linkStages: a " + std::string(nameOf(producer.stage)) + " and a " +

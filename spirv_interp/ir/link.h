@@ -32,4 +32,8 @@ struct LinkFacts {
 /// place differ in type ("Interface Matching" in the Vulkan specification); the programs are then unchanged.
 Status linkStages(Program& producer, Program& consumer, LinkFacts* facts = nullptr, const LinkOptions& options = {});
 
+/// Whether the producer has an output of the same place and type for every input of the consumer that comes from it:
+/// both can then run as they are, unlinked.
+bool writesAll(const Program& producer, const Program& consumer);
+
 }  // namespace vernier::ir

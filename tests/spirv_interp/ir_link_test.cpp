@@ -264,5 +264,29 @@ b0:
     EXPECT_FALSE(linkStages(fragment, vertex).ok());
 }
 
+TEST(Link, TellsWhatRunsUnlinked) {
+    const auto runs = [](const std::string& input) {
+        Program vertex = read(kVertex);
+        Program fragment = read(("program fragment \"main\"\ninput 0 " + input + R"(
+input 1 f32 fragCoord 0.0 smooth center
+output 0 f32 user 0.0
+b0:
+  %0 f32 = input #1
+  storeOutput #0 %0
+  ret
+)")
+                                    .c_str());
+        const bool before = writesAll(vertex, fragment);
+        if (linkStages(vertex, fragment).ok()) {
+            EXPECT_TRUE(writesAll(vertex, fragment)) << input;
+        }
+        return before;
+    };
+    EXPECT_TRUE(runs("f32 user 0.0 smooth center"));
+    EXPECT_TRUE(runs("f32 user 3.1 flat center"));
+    EXPECT_FALSE(runs("f32 user 3.0 smooth center")) << "nobody writes it";
+    EXPECT_FALSE(runs("i32 user 0.0 flat center")) << "of another type";
+}
+
 }  // namespace
 }  // namespace vernier::ir
