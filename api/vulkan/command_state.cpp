@@ -80,6 +80,7 @@ VKAPI_ATTR void VKAPI_CALL CmdBindPipeline(VkCommandBuffer commandBuffer, VkPipe
     recording(commandBuffer, [&](CommandBuffer& buffer) {
         const Pipeline& bound = *object(pipeline);
         const std::optional<command::BindPoint> point = bindPoint(pipelineBindPoint);
+        if (bound.library != nullptr) return buffer.fail("vkCmdBindPipeline", "pipeline is a library");
         const bool isCompute = bound.compute != nullptr;
         if (!point || (*point == command::BindPoint::compute) != isCompute) {
             return buffer.fail("vkCmdBindPipeline", "pipelineBindPoint is not that of the pipeline");

@@ -3,12 +3,14 @@
 #include "api/vulkan/entry_points.h"
 #include "api/vulkan/instance.h"
 #include "api/vulkan/pipeline.h"
+#include "api/vulkan/pipeline_stages.h"
 
 namespace vernier::vulkan {
 namespace {
 
 VkResult createOne(const Device& device, const VkComputePipelineCreateInfo& info,
                    const VkAllocationCallbacks* callbacks, VkPipeline* out) {
+    if (!mayCompile(info.flags)) return VK_PIPELINE_COMPILE_REQUIRED;
     const auto fail = [&](const Error& error) { return device.report("vkCreateComputePipelines", error); };
     if (info.stage.stage != VK_SHADER_STAGE_COMPUTE_BIT)
         return fail(invalidArgument("stage.stage is " + std::to_string(info.stage.stage) + ", not COMPUTE"));

@@ -1,72 +1,19 @@
 #include "api/vulkan/pipeline.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
-#include <string>
 
 #include "api/vulkan/chain.h"
 #include "api/vulkan/device.h"
 #include "api/vulkan/entry_points.h"
 #include "api/vulkan/instance.h"
+#include "api/vulkan/pipeline_stages.h"
 #include "runtime/plan/check_state.h"
 #include "runtime/plan/plan.h"
 #include "spirv_interp/program.h"
-#include "spirv_interp/tessellation.h"
 
 namespace vernier::vulkan {
 namespace {
-
-struct StageKind {
-    VkShaderStageFlagBits bit;
-    ir::Stage stage;
-    const ir::Program* ShaderProgramDesc::*program;
-    const char* name;
-};
-/// In the order in which they run.
-constexpr StageKind kStages[] = {
-    {VK_SHADER_STAGE_VERTEX_BIT, ir::Stage::vertex, &ShaderProgramDesc::vertex, "vertex"},
-    {VK_SHADER_STAGE_TESSELLATION_CONTROL_BIT, ir::Stage::control, &ShaderProgramDesc::control, "tessellation control"},
-    {VK_SHADER_STAGE_TESSELLATION_EVALUATION_BIT, ir::Stage::evaluation, &ShaderProgramDesc::evaluation,
-     "tessellation evaluation"},
-    {VK_SHADER_STAGE_GEOMETRY_BIT, ir::Stage::geometry, &ShaderProgramDesc::geometry, "geometry"},
-    {VK_SHADER_STAGE_FRAGMENT_BIT, ir::Stage::fragment, &ShaderProgramDesc::fragment, "fragment"},
-};
-
-/// Of a stage, as the runtime's loader wants it. `entries` holds what the specialization points to.
-ShaderSource shaderSource(const VkPipelineShaderStageCreateInfo& stage, ir::Stage kind,
-                          std::vector<Specialization::Entry>& entries) {
-    ShaderSource source;
-    source.module = &object(stage.module)->module;
-    source.entryPoint = stage.pName;
-    source.stage = kind;
-    if (const VkSpecializationInfo* special = stage.pSpecializationInfo) {
-        for (uint32_t i = 0; i < special->mapEntryCount; ++i) {
-            const VkSpecializationMapEntry& entry = special->pMapEntries[i];
-            if (entry.offset > special->dataSize || entry.size > special->dataSize - entry.offset) continue;
-            entries.push_back({entry.constantID, entry.offset, static_cast<uint32_t>(entry.size)});
-        }
-        source.specialization = {entries, {static_cast<const std::byte*>(special->pData), special->dataSize}};
-    }
-    return source;
-}
-
-Result<TessellationModes> loadTessellationModes(const VkPipelineShaderStageCreateInfo& stage, ir::Stage kind) {
-    std::vector<Specialization::Entry> entries;
-    return tessellationModes(shaderSource(stage, kind, entries));
-}
-
-/// A bit per location that an attachment keeps something of; alpha to coverage needs location 0 all the same.
-uint32_t keptColors(const PipelineState& pipeline) {
-    const GraphicsState& state = pipeline.state;
-    const bool anyMask = pipeline.isDynamic(PlanState::COLOR_WRITE_MASK_EXT);
-    uint32_t kept = state.alphaToCoverage || pipeline.isDynamic(PlanState::ALPHA_TO_COVERAGE_ENABLE_EXT) ? 1 : 0;
-    for (uint32_t n = 0; n < state.colorCount; ++n) {
-        const bool writes = anyMask || state.blend[n].colorWriteMask != 0;
-        if (state.colorFormats[n] != VK_FORMAT_UNDEFINED && writes) kept |= 1u << n;
-    }
-    return kept;
-}
 
 /// Something for every input, so that the programs of a pipeline without a vertex input state can be told of.
 void inventVertexInput(const ir::Program& vertex, GraphicsState& state) {
@@ -95,87 +42,45 @@ std::unique_ptr<PlanCache> makePlanCache(const PipelineState& state, std::shared
     return std::make_unique<PlanCache>(std::move(desc));
 }
 
-Result<std::shared_ptr<const ShaderProgram>> loadProgram(const Device& device, const VkGraphicsPipelineCreateInfo& info,
-                                                         const PipelineState& state) {
-    std::array<const VkPipelineShaderStageCreateInfo*, std::size(kStages)> given{};
-    for (uint32_t i = 0; i < info.stageCount; ++i) {
-        const VkPipelineShaderStageCreateInfo& stage = info.pStages[i];
-        const auto kind = std::ranges::find(kStages, stage.stage, &StageKind::bit);
-        if (kind == std::end(kStages))
-            return unsupported("shader stage " + std::to_string(stage.stage) + " is not supported");
-        given[static_cast<size_t>(kind - kStages)] = &stage;
+Result<std::shared_ptr<const GraphicsPipeline>> makeGraphics(PipelineState& state,
+                                                             std::shared_ptr<const ShaderProgram> program) {
+    if (state.isDynamic(PlanState::VERTEX_INPUT_EXT)) inventVertexInput(program->vertexIr(), state.state);
+    // What draws set fits the stages; what stands here meanwhile need not.
+    const auto geometry = program->stage(ir::Stage::geometry);
+    if (state.isDynamic(PlanState::PRIMITIVE_TOPOLOGY)) {
+        if (program->stage(ir::Stage::control) != nullptr)
+            state.state.topology = VK_PRIMITIVE_TOPOLOGY_PATCH_LIST;
+        else if (geometry != nullptr)
+            state.state.topology = topologyOf(geometry->source().geometry.input);
     }
-    if (given.front() == nullptr) return invalidArgument("there is no vertex stage");
-    if (state.state.rasterizerDiscard) given.back() = nullptr;
-
-    ShaderProgramDesc desc;
-    std::array<ir::Program, std::size(kStages)> programs;
-    CaptureLayout capture;
-    for (size_t n = 0; n < programs.size(); ++n) {
-        if (given[n] == nullptr) continue;
-        // Transform feedback takes what the last stage before the rasteriser puts out.
-        CaptureLayout ignored;
-        const StageKind& kind = kStages[n];
-        CaptureLayout& kept = kind.stage == ir::Stage::fragment ? ignored : capture = {};
-        Result<ir::Program> program = loadStage(*given[n], kind.stage, kept);
-        if (!program)
-            return Error{program.error().code, std::string(kind.name) + " shader: " + program.error().message};
-        programs[n] = std::move(program).value();
-        desc.*kind.program = &programs[n];
-        if (kind.stage != ir::Stage::control && kind.stage != ir::Stage::evaluation) continue;
-        Result<TessellationModes> modes = loadTessellationModes(*given[n], kind.stage);
-        if (!modes) return modes.error();
-        desc.tessellation = joined(desc.tessellation, *modes);
-    }
-    if (!state.isDynamic(PlanState::PATCH_CONTROL_POINTS_EXT)) desc.patchControlPoints = state.state.patchControlPoints;
-    desc.capture = &capture;
-    desc.keptColors = keptColors(state);
-    desc.accuracy = device.physicalDevice.accuracy;
-    desc.isa = device.runtime->isa();
-    desc.skips = device.physicalDevice.configuration.skips;
-    return ShaderProgram::create(desc);
+    if (state.isDynamic(PlanState::PATCH_CONTROL_POINTS_EXT)) state.state.patchControlPoints = 1;
+    return GraphicsPipeline::create({state.state, std::move(program)});
 }
 
 VkResult createOne(const Device& device, const VkGraphicsPipelineCreateInfo& info,
                    const VkAllocationCallbacks* callbacks, VkPipeline* out) {
-    Result<PipelineState> state = pipelineState(info);
-    if (!state) return device.report("vkCreateGraphicsPipelines", state.error());
-    auto program = loadProgram(device, info, *state);
-    if (!program) return device.report("vkCreateGraphicsPipelines", program.error());
-    if (state->isDynamic(PlanState::VERTEX_INPUT_EXT)) inventVertexInput((*program)->vertexIr(), state->state);
-    // What draws set fits the stages; what stands here meanwhile need not.
-    const auto geometry = (*program)->stage(ir::Stage::geometry);
-    if (state->isDynamic(PlanState::PRIMITIVE_TOPOLOGY)) {
-        if ((*program)->stage(ir::Stage::control) != nullptr)
-            state->state.topology = VK_PRIMITIVE_TOPOLOGY_PATCH_LIST;
-        else if (geometry != nullptr)
-            state->state.topology = topologyOf(geometry->source().geometry.input);
+    const auto fail = [&](const Error& error) { return device.report("vkCreateGraphicsPipelines", error); };
+    if (!mayCompile(info.flags) && bringsShaders(info)) return VK_PIPELINE_COMPILE_REQUIRED;
+    Result<PipelineLibrary> parts = gatherParts(info);
+    if (!parts) return fail(parts.error());
+    PipelineState& state = parts->state;
+    const bool optimise = (info.flags & VK_PIPELINE_CREATE_LINK_TIME_OPTIMIZATION_BIT_EXT) != 0;
+    if (!mayCompile(info.flags) && !isCompiled(parts->shaders, state, optimise)) return VK_PIPELINE_COMPILE_REQUIRED;
+    if ((info.flags & VK_PIPELINE_CREATE_LIBRARY_BIT_KHR) != 0) {
+        if (Status s = precompile(device, parts->shaders, state, optimise); !s) return fail(s.error());
+        return createHandle(callbacks, out, std::make_shared<const PipelineLibrary>(std::move(parts).value()));
     }
-    if (state->isDynamic(PlanState::PATCH_CONTROL_POINTS_EXT)) state->state.patchControlPoints = 1;
-    auto graphics = GraphicsPipeline::create({state->state, *program});
-    if (!graphics) return device.report("vkCreateGraphicsPipelines", graphics.error());
+    if (Status s = complete(state); !s) return fail(s.error());
+    auto program = programOf(device, parts->shaders, state, optimise);
+    if (!program) return fail(program.error());
+    auto graphics = makeGraphics(state, *program);
+    if (!graphics) return fail(graphics.error());
     device.physicalDevice.instance.explainLog.pipeline("graphics", (*graphics)->plan().facts);
-    return createHandle(callbacks, out, *graphics, state->fixed, state->dynamicMask, state->viewportCountDynamic,
-                        makePlanCache(*state, std::move(program).value(), *graphics));
+    return createHandle(callbacks, out, *graphics, state.fixed, state.dynamicMask, state.viewportCountDynamic,
+                        makePlanCache(state, std::move(program).value(), *graphics));
 }
 
 }  // namespace
-
-Result<ir::Program> loadStage(const VkPipelineShaderStageCreateInfo& stage, ir::Stage kind) {
-    CaptureLayout ignored;
-    return loadStage(stage, kind, ignored);
-}
-
-Result<ir::Program> loadStage(const VkPipelineShaderStageCreateInfo& stage, ir::Stage kind, CaptureLayout& capture) {
-    if (stage.module == VK_NULL_HANDLE) return invalidArgument("a stage without a shader module");
-    const auto* subgroup = findInChain<VkPipelineShaderStageRequiredSubgroupSizeCreateInfo>(stage.pNext);
-    if (subgroup != nullptr && subgroup->requiredSubgroupSize != ir::kSubgroupSize) {
-        return unsupported("requiredSubgroupSize is " + std::to_string(subgroup->requiredSubgroupSize) +
-                           ", subgroups have " + std::to_string(ir::kSubgroupSize));
-    }
-    std::vector<Specialization::Entry> entries;
-    return loadShader(shaderSource(stage, kind, entries), capture);
-}
 
 void giveFeedback(const void* chain, bool made, std::chrono::nanoseconds duration) {
     const auto* info = findInChain<VkPipelineCreationFeedbackCreateInfo>(chain);

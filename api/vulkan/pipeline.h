@@ -9,12 +9,12 @@
 
 #include "api/vulkan/allocation.h"
 #include "api/vulkan/handle.h"
+#include "api/vulkan/pipeline_library.h"
 #include "api/vulkan/plan_cache.h"
 #include "runtime/command/access_set.h"
 #include "runtime/command/commands.h"
 #include "runtime/plan/compute_pipeline.h"
 #include "runtime/plan/pipeline.h"
-#include "spirv_interp/capture.h"
 #include "spirv_interp/program.h"
 
 namespace vernier::vulkan {
@@ -28,7 +28,7 @@ struct ShaderModule {
 /// Nothing is kept between pipelines: the data of a cache is its header alone.
 struct PipelineCache {};
 
-/// Of one of the two kinds.
+/// Of one of the three kinds.
 struct Pipeline {
     Pipeline(std::shared_ptr<const GraphicsPipeline> made, const DynamicState& values, uint32_t mask,
              bool countsViewports, std::unique_ptr<PlanCache> cache)
@@ -43,6 +43,7 @@ struct Pipeline {
           fragmentAddresses(graphics->fragmentIr() != nullptr && usesAddresses(*graphics->fragmentIr())) {}
     explicit Pipeline(std::shared_ptr<const ComputePipeline> made)
         : compute(std::move(made)), computeAddresses(usesAddresses(compute->ir())) {}
+    explicit Pipeline(std::shared_ptr<const PipelineLibrary> made) : library(std::move(made)) {}
     /// The command that binds it, with this plan.
     command::BindPipeline binding(const GraphicsPipeline& plan, const DynamicState& values) const {
         return {&plan, &values, dynamicMask, vertexAddresses, fragmentAddresses};
@@ -55,36 +56,20 @@ struct Pipeline {
     bool vertexAddresses = false, fragmentAddresses = false;  // before the rasteriser, and behind it
     std::shared_ptr<const ComputePipeline> compute;
     bool computeAddresses = false;
+    std::shared_ptr<const PipelineLibrary> library;
 };
 
-/// Loads the program of a stage with its specialization (pipeline.cpp).
-Result<ir::Program> loadStage(const VkPipelineShaderStageCreateInfo& stage, ir::Stage kind);
-/// And what transform feedback keeps of it.
-Result<ir::Program> loadStage(const VkPipelineShaderStageCreateInfo& stage, ir::Stage kind, CaptureLayout& capture);
-
-/// The state of VkGraphicsPipelineCreateInfo in the runtime's terms (pipeline_state.cpp).
-struct PipelineState {
-    GraphicsState state;
-    DynamicState fixed;
-    uint32_t dynamicMask = 0;   // of dynamicStateBit()
-    PlanStates planStates = 0;  // that are dynamic
-    bool viewportCountDynamic = false;
-    bool clipsUnlessClamped = true;  // see PlanCache::Desc
-    bool dynamicRendering = false;
-    SubpassFormats formats;  // of the attachments
-
-    bool isDynamic(PlanState one) const { return (planStates & planStateBit(one)) != 0; }
-};
-/// The sample locations of a pixel in the runtime's terms; outside sampleLocationCoordinateRange they are clamped.
-std::array<SamplePosition, kMaxSamples> sampleLocationsOf(const VkSampleLocationsInfoEXT& info);
-Result<PipelineState> pipelineState(const VkGraphicsPipelineCreateInfo& info);
+/// Whether shaders may be compiled for a pipeline; where they must be, it is else VK_PIPELINE_COMPILE_REQUIRED
+/// (VK_EXT_pipeline_creation_cache_control).
+inline bool mayCompile(VkPipelineCreateFlags flags) {
+    return (flags & VK_PIPELINE_CREATE_FAIL_ON_PIPELINE_COMPILE_REQUIRED_BIT) == 0;
+}
 
 /// Answers VkPipelineCreationFeedbackCreateInfo: of the whole pipeline, for stages are not made one by one.
 void giveFeedback(const void* chain, bool made, std::chrono::nanoseconds duration);
 
 /// Calls create(info, place) for each, which returns a VkResult; a pipeline that fails becomes VK_NULL_HANDLE and the
-/// others are made all the same ("Multiple Pipeline Creation" in the Vulkan specification). None is made of one whose
-/// flags do not allow compiling: nothing is kept that could stand in for it (VK_EXT_pipeline_creation_cache_control).
+/// others are made all the same ("Multiple Pipeline Creation" in the Vulkan specification).
 template <class Info, class Create>
 VkResult createEach(uint32_t count, const Info* infos, VkPipeline* pipelines, Create&& create) {
     VkResult result = VK_SUCCESS;
@@ -92,9 +77,7 @@ VkResult createEach(uint32_t count, const Info* infos, VkPipeline* pipelines, Cr
     for (uint32_t i = 0; i < count; ++i) {
         const Info& info = infos[i];
         const auto start = std::chrono::steady_clock::now();
-        const bool mayCompile = (info.flags & VK_PIPELINE_CREATE_FAIL_ON_PIPELINE_COMPILE_REQUIRED_BIT) == 0;
-        const VkResult one =
-            mayCompile ? guarded([&] { return create(info, &pipelines[i]); }) : VK_PIPELINE_COMPILE_REQUIRED;
+        const VkResult one = guarded([&] { return create(info, &pipelines[i]); });
         giveFeedback(info.pNext, one == VK_SUCCESS, std::chrono::steady_clock::now() - start);
         if (one == VK_SUCCESS) continue;
         if (result >= VK_SUCCESS) result = one;  // errors are negative, and count more

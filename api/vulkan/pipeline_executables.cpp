@@ -39,7 +39,9 @@ Executable executableOf(const StageProgram& stage) {
     }
 }
 
+/// None of a library: what runs belongs to the pipelines that are linked from it.
 std::vector<Executable> executablesOf(const Pipeline& pipeline) {
+    if (pipeline.library) return {};
     if (pipeline.compute)
         return {{"compute", "The compute program, a batch of invocations at a time", VK_SHADER_STAGE_COMPUTE_BIT,
                  pipeline.compute->program().get()}};

@@ -1,11 +1,11 @@
 // From VkGraphicsPipelineCreateInfo to the runtime's state. Parts that the specification says are ignored
 // (without rasterisation, without attachments) are not looked at: their pointers may be anything.
+#include "api/vulkan/pipeline_state.h"
+
 #include <algorithm>
 #include <string>
 
 #include "api/vulkan/chain.h"
-#include "api/vulkan/pipeline.h"
-#include "api/vulkan/render_pass.h"
 #include "api/vulkan/resource_limits.h"
 #include "runtime/limits.h"
 
@@ -26,17 +26,18 @@ bool areDynamic(const PipelineState& result, std::initializer_list<PlanState> st
     return std::ranges::all_of(states, [&](PlanState state) { return result.isDynamic(state); });
 }
 
+/// Those of other parts are ignored.
 Status readDynamicStates(const VkPipelineDynamicStateCreateInfo* info, PipelineState& result) {
     for (uint32_t i = 0; info != nullptr && i < info->dynamicStateCount; ++i) {
         VkDynamicState state = info->pDynamicStates[i];
+        const PipelineParts part = partOf(state);
+        if (part == 0) return unsupported("dynamic state " + std::to_string(state) + " is not supported");
+        if ((part & result.parts) == 0) continue;
         if (state == VK_DYNAMIC_STATE_VIEWPORT_WITH_COUNT) {
             state = VK_DYNAMIC_STATE_VIEWPORT;
             result.viewportCountDynamic = true;
         }
         if (state == VK_DYNAMIC_STATE_SCISSOR_WITH_COUNT) state = VK_DYNAMIC_STATE_SCISSOR;
-        if (dynamicStateBit(state) == 0 && planStateBit(state) == 0) {
-            return unsupported("dynamic state " + std::to_string(state) + " is not supported");
-        }
         result.dynamicMask |= dynamicStateBit(state);
         result.planStates |= planStateBit(state);
     }
@@ -255,24 +256,46 @@ Status readRendering(const VkPipelineRenderingCreateInfo& info, SubpassFormats& 
     return {};
 }
 
-/// The attachments that the pipeline is made for: of a subpass, or of dynamic rendering.
+/// The attachments that the parts are made for: of a subpass, or of dynamic rendering.
 Status readFormats(const VkGraphicsPipelineCreateInfo& info, PipelineState& result) {
+    if ((result.parts & ~kVertexInput) == 0) return {};
     if (info.renderPass != VK_NULL_HANDLE) {
         if (info.subpass >= object(info.renderPass)->subpasses.size()) {
             return invalidArgument("subpass must name a subpass of renderPass");
         }
         result.formats = object(info.renderPass)->formats(info.subpass);
-    } else {
-        result.dynamicRendering = true;
-        if (const auto* rendering = findInChain<VkPipelineRenderingCreateInfo>(info.pNext)) {
-            if (Status s = readRendering(*rendering, result.formats); !s) return s;
-        }
+        result.dynamicRendering = false;
+        result.hasFormats = true;
+    } else if ((result.parts & kFragmentOutput) != 0) {
+        result.hasFormats = true;
+        if (const auto* rendering = findInChain<VkPipelineRenderingCreateInfo>(info.pNext))
+            return readRendering(*rendering, result.formats);
     }
-    GraphicsState& state = result.state;
-    state.colorCount = result.formats.colorCount;
-    std::copy_n(result.formats.colors, state.colorCount, state.colorFormats.begin());
-    state.depthStencilFormat = result.formats.depthStencil();
     return {};
+}
+
+Status readPreRasterization(const VkGraphicsPipelineCreateInfo& info, PipelineState& result) {
+    if (info.pRasterizationState == nullptr) return invalidArgument("pRasterizationState must be given");
+    if (Status s = readTessellation(info, result); !s) return s;
+    readRasterization(*info.pRasterizationState, result);
+    if (result.isDynamic(PlanState::RASTERIZER_DISCARD_ENABLE)) result.state.rasterizerDiscard = false;
+    return result.state.rasterizerDiscard ? Status() : readViewports(info.pViewportState, result);
+}
+
+/// Without the part of the outputs it may be that nobody knows whether there is a depth or stencil attachment: then
+/// there is a description for the case.
+Status readFragmentShader(const VkGraphicsPipelineCreateInfo& info, PipelineState& result) {
+    const bool described =
+        result.hasFormats ? result.formats.depthStencil() != VK_FORMAT_UNDEFINED : info.pDepthStencilState != nullptr;
+    return described ? readDepthStencil(info.pDepthStencilState, result) : Status();
+}
+
+Status readFragmentOutput(const VkGraphicsPipelineCreateInfo& info, PipelineState& result) {
+    if (Status s = readMultisample(info.pMultisampleState, result); !s) return s;
+    const SubpassFormats& formats = result.formats;
+    const bool anyColor = std::any_of(formats.colors, formats.colors + formats.colorCount,
+                                      [](VkFormat format) { return format != VK_FORMAT_UNDEFINED; });
+    return anyColor ? readBlend(info.pColorBlendState, result) : Status();
 }
 
 }  // namespace
@@ -291,38 +314,25 @@ std::array<SamplePosition, kMaxSamples> sampleLocationsOf(const VkSampleLocation
     return locations;
 }
 
-Result<PipelineState> pipelineState(const VkGraphicsPipelineCreateInfo& info) {
+Result<PipelineState> readParts(const VkGraphicsPipelineCreateInfo& info, PipelineParts parts, bool discards) {
     PipelineState result;
-    if (info.pRasterizationState == nullptr) return invalidArgument("pRasterizationState must be given");
+    result.parts = parts;
+    const auto has = [parts](PipelineParts part) { return (parts & part) != 0; };
     if (Status s = readFormats(info, result); !s) return s.error();
-    const SubpassFormats& formats = result.formats;
     if (Status s = readDynamicStates(info.pDynamicState, result); !s) return s.error();
-    if (Status s = readVertexInput(info.pVertexInputState, result); !s) return s.error();
-    if (Status s = readAssembly(info.pInputAssemblyState, result); !s) return s.error();
-    if (Status s = readTessellation(info, result); !s) return s.error();
-    readRasterization(*info.pRasterizationState, result);
-    if (result.isDynamic(PlanState::RASTERIZER_DISCARD_ENABLE)) result.state.rasterizerDiscard = false;
-    if (result.state.rasterizerDiscard) {
-        if (formats.samples != 0) result.state.samples = formats.samples;
-        return result;
+    if (has(kVertexInput)) {
+        if (Status s = readVertexInput(info.pVertexInputState, result); !s) return s.error();
+        if (Status s = readAssembly(info.pInputAssemblyState, result); !s) return s.error();
     }
-    if (Status s = readViewports(info.pViewportState, result); !s) return s.error();
-    if (Status s = readMultisample(info.pMultisampleState, result); !s) return s.error();
-    if (formats.samples != 0 && formats.samples != result.state.samples) {
-        return invalidArgument("rasterizationSamples is " + std::to_string(result.state.samples) +
-                               "; the attachments have " + std::to_string(formats.samples));
+    if (has(kPreRasterization)) {
+        if (Status s = readPreRasterization(info, result); !s) return s.error();
     }
-    if (formats.depthStencil() != VK_FORMAT_UNDEFINED) {
-        if (Status s = readDepthStencil(info.pDepthStencilState, result); !s) return s.error();
+    if (discards || result.state.rasterizerDiscard) return result;
+    if (has(kFragmentShader)) {
+        if (Status s = readFragmentShader(info, result); !s) return s.error();
     }
-    // "If there is no depth attachment, then the depth test is skipped"; the image may have the aspect all the same.
-    if (formats.depth == VK_FORMAT_UNDEFINED)
-        result.state.depthTest = result.state.depthWrite = result.state.depthBoundsTest = false;
-    if (formats.stencil == VK_FORMAT_UNDEFINED) result.state.stencilTest = false;
-    const bool anyColor = std::any_of(formats.colors, formats.colors + formats.colorCount,
-                                      [](VkFormat format) { return format != VK_FORMAT_UNDEFINED; });
-    if (anyColor) {
-        if (Status s = readBlend(info.pColorBlendState, result); !s) return s.error();
+    if (has(kFragmentOutput)) {
+        if (Status s = readFragmentOutput(info, result); !s) return s.error();
     }
     return result;
 }

@@ -31,7 +31,7 @@ class KeyWords {
 template <class To, class Visit>
 void visitState(PlanStates states, const GraphicsState& from, To& to, Visit&& visit) {
     const auto has = [states](PlanState state) { return (states & planStateBit(state)) != 0; };
-#define VERNIER_PLAN_STATE(name, member) \
+#define VERNIER_PLAN_STATE(name, member, part) \
     if (has(PlanState::name)) visit(from.member, to.member);
 #include "api/vulkan/plan_states.def"
 #undef VERNIER_PLAN_STATE
@@ -78,16 +78,16 @@ void addVertexInput(const GraphicsState& state, KeyWords& key) {
 
 PlanStates planStateBit(VkDynamicState state) {
     switch (state) {
-#define VERNIER_PLAN_STATE(name, member) \
-    case VK_DYNAMIC_STATE_##name:        \
+#define VERNIER_PLAN_STATE(name, member, part) \
+    case VK_DYNAMIC_STATE_##name:              \
         return planStateBit(PlanState::name);
 #include "api/vulkan/plan_states.def"
-        VERNIER_PLAN_STATE(STENCIL_OP, )
-        VERNIER_PLAN_STATE(COLOR_BLEND_ENABLE_EXT, )
-        VERNIER_PLAN_STATE(COLOR_BLEND_EQUATION_EXT, )
-        VERNIER_PLAN_STATE(COLOR_WRITE_MASK_EXT, )
-        VERNIER_PLAN_STATE(VERTEX_INPUT_EXT, )
-        VERNIER_PLAN_STATE(VERTEX_INPUT_BINDING_STRIDE, )
+        VERNIER_PLAN_STATE(STENCIL_OP, , )
+        VERNIER_PLAN_STATE(COLOR_BLEND_ENABLE_EXT, , )
+        VERNIER_PLAN_STATE(COLOR_BLEND_EQUATION_EXT, , )
+        VERNIER_PLAN_STATE(COLOR_WRITE_MASK_EXT, , )
+        VERNIER_PLAN_STATE(VERTEX_INPUT_EXT, , )
+        VERNIER_PLAN_STATE(VERTEX_INPUT_BINDING_STRIDE, , )
 #undef VERNIER_PLAN_STATE
         default:
             return 0;

@@ -20,7 +20,7 @@ namespace vernier::vulkan {
 
 /// Dynamic state that plans depend on.
 enum class PlanState : uint8_t {
-#define VERNIER_PLAN_STATE(name, member) name,
+#define VERNIER_PLAN_STATE(name, member, part) name,
 #include "api/vulkan/plan_states.def"
 #undef VERNIER_PLAN_STATE
     STENCIL_OP,

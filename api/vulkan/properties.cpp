@@ -214,6 +214,12 @@ void fill(const PhysicalDevice&, VkPhysicalDeviceExtendedDynamicState3Properties
     p.dynamicPrimitiveTopologyUnrestricted = VK_TRUE;
 }
 
+void fill(const PhysicalDevice& device, VkPhysicalDeviceGraphicsPipelineLibraryPropertiesEXT& p) {
+    // Else linking moves work between shaders (ShaderProgram::join()).
+    p.graphicsPipelineLibraryFastLinking = device.accuracy.math != MathTier::fast ? VK_TRUE : VK_FALSE;
+    p.graphicsPipelineLibraryIndependentInterpolationDecoration = VK_TRUE;  // those of the fragment shader count
+}
+
 void fill(const PhysicalDevice&, VkPhysicalDeviceShaderIntegerDotProductProperties& p) {
     // None of them is faster than the products and sums written out.
     VkPhysicalDeviceShaderIntegerDotProductProperties none{};
@@ -243,6 +249,7 @@ constexpr Filler kFillers[] = {
     fillerOf<VkPhysicalDeviceExternalMemoryHostPropertiesEXT>(),
     fillerOf<VkPhysicalDeviceFloatControlsProperties>(),
     fillerOf<VkPhysicalDeviceFragmentShaderBarycentricPropertiesKHR>(),
+    fillerOf<VkPhysicalDeviceGraphicsPipelineLibraryPropertiesEXT>(),
     fillerOf<VkPhysicalDeviceIDProperties>(),
     fillerOf<VkPhysicalDeviceInlineUniformBlockProperties>(),
     fillerOf<VkPhysicalDeviceLineRasterizationPropertiesEXT>(),

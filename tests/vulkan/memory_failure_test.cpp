@@ -8,6 +8,7 @@
 #include <vulkan/vulkan.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <cstring>
 #include <string>
@@ -276,7 +277,25 @@ class SmallProgram {
         const VkPipelineShaderStageCreateInfo stages[] = {stageOf(VK_SHADER_STAGE_VERTEX_BIT, vertex_),
                                                           stageOf(VK_SHADER_STAGE_FRAGMENT_BIT, fragment_)};
         const PlainStates states({kSize, kSize});
-        const auto info = states.with(stages, layout_, pass_);
+        auto info = states.with(stages, layout_, pass_);
+        TRY(api_.CreateGraphicsPipelines(device_, VK_NULL_HANDLE, 1, &info, nullptr, &whole_));
+        // The same again, from libraries of both sides of the rasteriser.
+        auto parts =
+            make<VkGraphicsPipelineLibraryCreateInfoEXT>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_LIBRARY_CREATE_INFO_EXT);
+        for (size_t n = 0; n < libraries_.size(); ++n) {
+            parts.flags = n == 0 ? VK_GRAPHICS_PIPELINE_LIBRARY_VERTEX_INPUT_INTERFACE_BIT_EXT |
+                                       VK_GRAPHICS_PIPELINE_LIBRARY_PRE_RASTERIZATION_SHADERS_BIT_EXT
+                                 : VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_SHADER_BIT_EXT |
+                                       VK_GRAPHICS_PIPELINE_LIBRARY_FRAGMENT_OUTPUT_INTERFACE_BIT_EXT;
+            info.pNext = &parts;
+            info.flags = VK_PIPELINE_CREATE_LIBRARY_BIT_KHR;
+            TRY(api_.CreateGraphicsPipelines(device_, VK_NULL_HANDLE, 1, &info, nullptr, &libraries_[n]));
+        }
+        auto linked = make<VkPipelineLibraryCreateInfoKHR>(VK_STRUCTURE_TYPE_PIPELINE_LIBRARY_CREATE_INFO_KHR);
+        linked.libraryCount = static_cast<uint32_t>(libraries_.size());
+        linked.pLibraries = libraries_.data();
+        info.pNext = &linked;
+        info.flags = 0;
         return api_.CreateGraphicsPipelines(device_, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline_);
     }
 
@@ -362,7 +381,8 @@ class SmallProgram {
             api_.DestroySwapchainKHR(device_, swapchain_, nullptr);
             api_.DestroyFence(device_, fence_, nullptr);
             api_.DestroyCommandPool(device_, commands_, nullptr);
-            api_.DestroyPipeline(device_, pipeline_, nullptr);
+            for (const VkPipeline pipeline : {pipeline_, whole_, libraries_[0], libraries_[1]})
+                api_.DestroyPipeline(device_, pipeline, nullptr);
             api_.DestroyShaderModule(device_, vertex_, nullptr);
             api_.DestroyShaderModule(device_, fragment_, nullptr);
             api_.DestroyDescriptorPool(device_, descriptors_, nullptr);
@@ -398,7 +418,8 @@ class SmallProgram {
     VkDescriptorSet set_ = VK_NULL_HANDLE;
     VkPipelineLayout layout_ = VK_NULL_HANDLE;
     VkShaderModule vertex_ = VK_NULL_HANDLE, fragment_ = VK_NULL_HANDLE;
-    VkPipeline pipeline_ = VK_NULL_HANDLE;
+    VkPipeline pipeline_ = VK_NULL_HANDLE, whole_ = VK_NULL_HANDLE;
+    std::array<VkPipeline, 2> libraries_{};
     VkCommandPool commands_ = VK_NULL_HANDLE;
     VkFence fence_ = VK_NULL_HANDLE;
     VkSurfaceKHR surface_ = VK_NULL_HANDLE;

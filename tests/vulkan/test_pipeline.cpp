@@ -162,10 +162,13 @@ VkPipeline DrawTest::makePipeline(VkRenderPass pass, const PipelineDesc& desc, V
     info.pDynamicState = &dynamic;
     info.subpass = desc.subpass;
     VkPipeline pipeline = VK_NULL_HANDLE;
-    EXPECT_EQ(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline), expected)
-        << (messages.empty() ? "" : messages.back());
+    EXPECT_EQ(createPipeline(info, &pipeline), expected) << (messages.empty() ? "" : messages.back());
     defer([this, pipeline] { vkDestroyPipeline(device, pipeline, nullptr); });
     return pipeline;
+}
+
+VkResult DrawTest::createPipeline(const VkGraphicsPipelineCreateInfo& info, VkPipeline* pipeline) {
+    return vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, pipeline);
 }
 
 void DrawTest::beginPass(VkCommandBuffer commands, const Pass& pass, VkSubpassContents contents) {

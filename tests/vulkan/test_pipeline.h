@@ -60,6 +60,8 @@ class DrawTest : public VulkanTest {
         const void* next = nullptr;  // chain of the pipeline's description
     };
     VkPipeline makePipeline(VkRenderPass pass, const PipelineDesc& desc, VkResult expected = VK_SUCCESS);
+    /// Makes the pipeline that makePipeline() has described.
+    virtual VkResult createPipeline(const VkGraphicsPipelineCreateInfo& info, VkPipeline* pipeline);
 
     VkPipelineLayout makeLayout(const std::vector<VkDescriptorSetLayout>& sets, uint32_t pushBytes,
                                 VkShaderStageFlags pushStages = VK_SHADER_STAGE_VERTEX_BIT |
