@@ -1,5 +1,5 @@
 // VK_LAYER_VERNIER_frames: writes what a program presents into files, on whatever driver it runs, for
-// `vernier run --diff`. Loader and layer speak by vk_layer.h.
+// `vernier run --diff`.
 //
 //   VERNIER_FRAMES_DIR   the folder: frame-0000.ppm, frame-0001.ppm, ... in the order of presentation
 //   VERNIER_FRAMES       after so many the program is ended, with success
@@ -8,9 +8,6 @@
 //
 // Frames of formats that it cannot write are counted, and named once.
 // Each presentation waits for the device, so that the picture is complete: the layer is for comparing, not for speed.
-#include <vulkan/vk_layer.h>
-#include <vulkan/vulkan_core.h>
-
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -23,6 +20,9 @@
 #include <thread>
 #include <vector>
 
+#include "api/vulkan/run/layer.h"
+
+namespace vernier::layer {
 namespace {
 
 struct SwapchainData {
@@ -44,7 +44,6 @@ struct SwapchainData {
     X(CreateSwapchainKHR)          \
     X(DestroyBuffer)               \
     X(DestroyCommandPool)          \
-    X(DestroyDevice)               \
     X(DestroySwapchainKHR)         \
     X(DeviceWaitIdle)              \
     X(EndCommandBuffer)            \
@@ -60,7 +59,6 @@ struct SwapchainData {
 
 struct DeviceData {
     VkDevice device = VK_NULL_HANDLE;
-    PFN_vkGetDeviceProcAddr next = nullptr;
     PFN_vkSetDeviceLoaderData setLoaderData = nullptr;
     VkPhysicalDeviceMemoryProperties memory{};
 #define FRAMES_MEMBER(name) PFN_vk##name name = nullptr;
@@ -70,28 +68,15 @@ struct DeviceData {
     std::map<VkSwapchainKHR, SwapchainData> swapchains;
 };
 
-struct InstanceData {
-    VkInstance instance = VK_NULL_HANDLE;
-    PFN_vkGetInstanceProcAddr next = nullptr;
-};
-
-/// Handles belong to others and have no room for what a layer knows: it is kept beside them, by the pointer that all
-/// dispatchable handles of an instance or device start with.
 struct Registry {
     std::mutex mutex;
-    std::map<void*, InstanceData> instances;
-    std::map<void*, std::unique_ptr<DeviceData>> devices;
+    std::map<void*, std::unique_ptr<DeviceData>> devices;  // by keyOf()
     uint32_t frames = 0;
 };
 
 Registry& registry() {
     static Registry one;
     return one;
-}
-
-template <class Handle>
-void* keyOf(Handle handle) {
-    return *reinterpret_cast<void**>(handle);
 }
 
 DeviceData* find(void* key) {
@@ -105,15 +90,6 @@ T make(VkStructureType type) {
     T structure{};
     structure.sType = type;
     return structure;
-}
-
-/// The link of the loader's that is in the chain of a creation; nullptr: the loader is older than the layer.
-template <class Link>
-Link* findLink(const void* chain, VkStructureType type, VkLayerFunction function) {
-    auto* link = static_cast<Link*>(const_cast<void*>(chain));
-    while (link != nullptr && !(link->sType == type && link->function == function))
-        link = static_cast<Link*>(const_cast<void*>(link->pNext));
-    return link;
 }
 
 // --- Pictures
@@ -286,58 +262,18 @@ struct FrameTaken {
 
 // --- Commands that the layer takes part in
 
-VKAPI_ATTR VkResult VKAPI_CALL createInstance(const VkInstanceCreateInfo* info, const VkAllocationCallbacks* callbacks,
-                                              VkInstance* instance) {
-    auto* const link = findLink<VkLayerInstanceCreateInfo>(info->pNext, VK_STRUCTURE_TYPE_LOADER_INSTANCE_CREATE_INFO,
-                                                           VK_LAYER_LINK_INFO);
-    if (link == nullptr) return VK_ERROR_INITIALIZATION_FAILED;
-    const PFN_vkGetInstanceProcAddr next = link->u.pLayerInfo->pfnNextGetInstanceProcAddr;
-    link->u.pLayerInfo = link->u.pLayerInfo->pNext;
-    const auto create = reinterpret_cast<PFN_vkCreateInstance>(next(VK_NULL_HANDLE, "vkCreateInstance"));
-    const VkResult result = create(info, callbacks, instance);
-    if (result != VK_SUCCESS) return result;
-    const std::lock_guard lock(registry().mutex);
-    registry().instances[keyOf(*instance)] = {*instance, next};
-    return VK_SUCCESS;
-}
-
-VKAPI_ATTR void VKAPI_CALL destroyInstance(VkInstance instance, const VkAllocationCallbacks* callbacks) {
-    if (instance == VK_NULL_HANDLE) return;
-    InstanceData data;
-    {
-        const std::lock_guard lock(registry().mutex);
-        data = registry().instances[keyOf(instance)];
-        registry().instances.erase(keyOf(instance));
-    }
-    reinterpret_cast<PFN_vkDestroyInstance>(data.next(instance, "vkDestroyInstance"))(instance, callbacks);
-}
-
 VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physicalDevice, const VkDeviceCreateInfo* info,
                                             const VkAllocationCallbacks* callbacks, VkDevice* device) {
-    auto* const link =
-        findLink<VkLayerDeviceCreateInfo>(info->pNext, VK_STRUCTURE_TYPE_LOADER_DEVICE_CREATE_INFO, VK_LAYER_LINK_INFO);
-    if (link == nullptr) return VK_ERROR_INITIALIZATION_FAILED;
-    auto* const loader = findLink<VkLayerDeviceCreateInfo>(info->pNext, VK_STRUCTURE_TYPE_LOADER_DEVICE_CREATE_INFO,
-                                                           VK_LOADER_DATA_CALLBACK);
-    const VkLayerDeviceLink nexts = *link->u.pLayerInfo;
-    link->u.pLayerInfo = link->u.pLayerInfo->pNext;
-    InstanceData instance;
-    {
-        const std::lock_guard lock(registry().mutex);
-        instance = registry().instances[keyOf(physicalDevice)];
-    }
-    const auto create =
-        reinterpret_cast<PFN_vkCreateDevice>(nexts.pfnNextGetInstanceProcAddr(instance.instance, "vkCreateDevice"));
-    const VkResult result = create(physicalDevice, info, callbacks, device);
+    Next next;
+    const VkResult result = createDeviceOfNext(physicalDevice, *info, callbacks, device, next);
     if (result != VK_SUCCESS) return result;
     auto data = std::make_unique<DeviceData>();
     data->device = *device;
-    data->next = nexts.pfnNextGetDeviceProcAddr;
-    if (loader != nullptr) data->setLoaderData = loader->u.pfnSetDeviceLoaderData;
+    data->setLoaderData = next.setLoaderData;
     const auto memory = reinterpret_cast<PFN_vkGetPhysicalDeviceMemoryProperties>(
-        nexts.pfnNextGetInstanceProcAddr(instance.instance, "vkGetPhysicalDeviceMemoryProperties"));
+        next.ofInstance(next.instance, "vkGetPhysicalDeviceMemoryProperties"));
     memory(physicalDevice, &data->memory);
-#define FRAMES_LOAD(name) data->name = reinterpret_cast<PFN_vk##name>(data->next(*device, "vk" #name));
+#define FRAMES_LOAD(name) data->name = reinterpret_cast<PFN_vk##name>(next.ofDevice(*device, "vk" #name));
     FRAMES_DEVICE_COMMANDS(FRAMES_LOAD)
 #undef FRAMES_LOAD
     const std::lock_guard lock(registry().mutex);
@@ -347,13 +283,11 @@ VKAPI_ATTR VkResult VKAPI_CALL createDevice(VkPhysicalDevice physicalDevice, con
 
 VKAPI_ATTR void VKAPI_CALL destroyDevice(VkDevice device, const VkAllocationCallbacks* callbacks) {
     if (device == VK_NULL_HANDLE) return;
-    std::unique_ptr<DeviceData> data;
     {
         const std::lock_guard lock(registry().mutex);
-        data = std::move(registry().devices[keyOf(device)]);
         registry().devices.erase(keyOf(device));
     }
-    data->DestroyDevice(device, callbacks);
+    destroyDeviceOfNext(device, callbacks);
 }
 
 VKAPI_ATTR void VKAPI_CALL getDeviceQueue(VkDevice device, uint32_t family, uint32_t index, VkQueue* queue) {
@@ -419,39 +353,13 @@ VKAPI_ATTR VkResult VKAPI_CALL queuePresent(VkQueue queue, const VkPresentInfoKH
     return data.QueuePresentKHR(queue, info);
 }
 
-struct Intercepted {
-    const char* name;
-    PFN_vkVoidFunction function;
-    bool ofDevice;
-};
+}  // namespace
 
-PFN_vkVoidFunction intercepted(const char* name, bool devicesOnly);
-
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getDeviceProcAddr(VkDevice device, const char* name) {
-    if (const PFN_vkVoidFunction own = intercepted(name, true)) return own;
-    return find(keyOf(device))->next(device, name);
-}
-
-VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL getInstanceProcAddr(VkInstance instance, const char* name) {
-    if (const PFN_vkVoidFunction own = intercepted(name, false)) return own;
-    if (instance == VK_NULL_HANDLE) return nullptr;
-    InstanceData data;
-    {
-        const std::lock_guard lock(registry().mutex);
-        data = registry().instances[keyOf(instance)];
-    }
-    return data.next != nullptr ? data.next(instance, name) : nullptr;
-}
-
-PFN_vkVoidFunction intercepted(const char* name, bool devicesOnly) {
+std::span<const OwnCommand> ownCommands() {
 #define FRAMES_OWN(command, function, ofDevice) \
     { command, reinterpret_cast<PFN_vkVoidFunction>(&function), ofDevice }
-    static const Intercepted kOwn[] = {
-        FRAMES_OWN("vkCreateInstance", createInstance, false),
-        FRAMES_OWN("vkDestroyInstance", destroyInstance, false),
+    static const OwnCommand kOwn[] = {
         FRAMES_OWN("vkCreateDevice", createDevice, false),
-        FRAMES_OWN("vkGetInstanceProcAddr", getInstanceProcAddr, false),
-        FRAMES_OWN("vkGetDeviceProcAddr", getDeviceProcAddr, true),
         FRAMES_OWN("vkDestroyDevice", destroyDevice, true),
         FRAMES_OWN("vkGetDeviceQueue", getDeviceQueue, true),
         FRAMES_OWN("vkGetDeviceQueue2", getDeviceQueue2, true),
@@ -460,22 +368,7 @@ PFN_vkVoidFunction intercepted(const char* name, bool devicesOnly) {
         FRAMES_OWN("vkQueuePresentKHR", queuePresent, true),
     };
 #undef FRAMES_OWN
-    for (const Intercepted& own : kOwn) {
-        if (std::strcmp(own.name, name) == 0 && (own.ofDevice || !devicesOnly)) return own.function;
-    }
-    return nullptr;
+    return kOwn;
 }
 
-}  // namespace
-
-extern "C" VK_LAYER_EXPORT VKAPI_ATTR VkResult VKAPI_CALL
-vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* version);
-
-VkResult vkNegotiateLoaderLayerInterfaceVersion(VkNegotiateLayerInterface* version) {
-    if (version == nullptr || version->sType != LAYER_NEGOTIATE_INTERFACE_STRUCT) return VK_ERROR_INITIALIZATION_FAILED;
-    version->loaderLayerInterfaceVersion = 2;
-    version->pfnGetInstanceProcAddr = getInstanceProcAddr;
-    version->pfnGetDeviceProcAddr = getDeviceProcAddr;
-    version->pfnGetPhysicalDeviceProcAddr = nullptr;
-    return VK_SUCCESS;
-}
+}  // namespace vernier::layer
