@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -11,14 +10,10 @@
 #include "conformance/drivers/vulkan_driver.h"
 #include "conformance/scenes/scenes.h"
 #include "conformance/tool/driver_choice.h"
+#include "tests/vulkan/validated.h"
 
 namespace vernier::conformance {
 namespace {
-
-bool validated() {
-    const char* const layers = std::getenv("VK_INSTANCE_LAYERS");
-    return layers != nullptr && std::string(layers).find("khronos_validation") != std::string::npos;
-}
 
 /// The first byte in which two images differ, in words; empty: none.
 std::string difference(const RenderedImage& one, const RenderedImage& other) {
@@ -31,12 +26,14 @@ std::string difference(const RenderedImage& one, const RenderedImage& other) {
            " and " + std::to_string(std::to_integer<int>(*right));
 }
 
-TEST(DriverBits, AreThoseOfTheApi) {
+class DriverBits : public testing::TestWithParam<SceneEntry> {};
+
+TEST_P(DriverBits, areThoseOfTheApi) {
     const std::vector<DriverChoice> choices = driverChoices({});
     const auto own = std::find_if(choices.begin(), choices.end(), [](const auto& each) { return each.name == "icd"; });
     ASSERT_TRUE(selectVulkanDriver(*own).ok());
     VulkanOptions options;
-    options.validate = validated();
+    options.validate = test::validated();
     const auto driver = VulkanDriver::create(options);
     if (!driver && driver.error().message.find("LAYER_NOT_PRESENT") != std::string::npos) {
         GTEST_SKIP() << "no validation layer";
@@ -44,22 +41,21 @@ TEST(DriverBits, AreThoseOfTheApi) {
     ASSERT_TRUE(driver.ok()) << driver.error().message;
     const auto api = ApiDriver::create({});
     ASSERT_TRUE(api.ok()) << api.error().message;
-    for (const SceneEntry& entry : allScenes()) {
-        SCOPED_TRACE(entry.name);
-        const Result<Scene> scene = entry.build();
-        ASSERT_TRUE(scene.ok()) << scene.error().message;
-        const auto throughApi = (*api)->render(*scene, nullptr);
-        const auto throughDriver = (*driver)->render(*scene, nullptr);
-        EXPECT_TRUE(throughApi.ok()) << throughApi.error().message;
-        EXPECT_TRUE(throughDriver.ok()) << throughDriver.error().message;
-        if (!throughApi || !throughDriver) continue;
-        ASSERT_EQ(throughApi->size(), throughDriver->size());
-        ASSERT_FALSE(throughApi->empty());
-        for (size_t i = 0; i < throughApi->size(); ++i) {
-            EXPECT_EQ(difference((*throughApi)[i], (*throughDriver)[i]), "") << "output " << i;
-        }
+    const Result<Scene> scene = GetParam().build();
+    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    const auto throughApi = (*api)->render(*scene, nullptr);
+    const auto throughDriver = (*driver)->render(*scene, nullptr);
+    ASSERT_TRUE(throughApi.ok()) << throughApi.error().message;
+    ASSERT_TRUE(throughDriver.ok()) << throughDriver.error().message;
+    ASSERT_EQ(throughApi->size(), throughDriver->size());
+    ASSERT_FALSE(throughApi->empty());
+    for (size_t i = 0; i < throughApi->size(); ++i) {
+        EXPECT_EQ(difference((*throughApi)[i], (*throughDriver)[i]), "") << "output " << i;
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(Scenes, DriverBits, testing::ValuesIn(allScenes().begin(), allScenes().end()),
+                         [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace
 }  // namespace vernier::conformance

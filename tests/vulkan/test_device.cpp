@@ -11,9 +11,16 @@ VKAPI_ATTR VkBool32 VKAPI_CALL keepMessage(VkDebugUtilsMessageSeverityFlagBitsEX
                                            const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
     // With validation switched on in the environment, every test is also a test of clean use.
     const std::string id = data->pMessageIdName != nullptr ? data->pMessageIdName : "";
-    if (id.find("VUID") != std::string::npos) ADD_FAILURE() << data->pMessage;
+    if (id.find("VUID") != std::string::npos || id.find("InconsistentSpirv") != std::string::npos)
+        ADD_FAILURE() << data->pMessage;
     static_cast<std::vector<std::string>*>(user)->push_back(data->pMessage);
     return VK_FALSE;
+}
+
+bool hasFeaturesOf12(const void* chain) {
+    const auto* node = static_cast<const VkBaseInStructure*>(chain);
+    while (node != nullptr && node->sType != VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES) node = node->pNext;
+    return node != nullptr;
 }
 
 }  // namespace
@@ -25,10 +32,6 @@ void useDriver(const char* manifest) {
 
 void useOwnDriver() {
     useDriver(VERNIER_ICD_JSON);
-}
-
-bool validated() {
-    return std::getenv("VK_INSTANCE_LAYERS") != nullptr;
 }
 
 std::vector<uint32_t> compileGlsl(VkShaderStageFlagBits stage, const std::string& source, uint32_t apiVersion) {
@@ -101,7 +104,8 @@ void VulkanTest::SetUp() {
     timeline.timelineSemaphore = VK_TRUE;
     timeline.pNext = moreFeatures();
     auto deviceInfo = make<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
-    deviceInfo.pNext = &timeline;
+    // A feature may not be asked for twice, and all of Vulkan 1.2 are in one structure.
+    deviceInfo.pNext = hasFeaturesOf12(timeline.pNext) ? timeline.pNext : &timeline;
     deviceInfo.queueCreateInfoCount = 1;
     deviceInfo.pQueueCreateInfos = &queueInfo;
     deviceInfo.enabledExtensionCount = static_cast<uint32_t>(deviceExtensions.size());
@@ -204,12 +208,16 @@ TestImage VulkanTest::makeImage(VkFormat format, VkExtent2D extent, VkImageUsage
 }
 
 VkShaderModule VulkanTest::makeShader(VkShaderStageFlagBits stage, const std::string& glsl) {
-    const std::vector<uint32_t> words = compileGlsl(stage, glsl, apiVersion());
+    return makeShader(compileGlsl(stage, glsl, apiVersion()));
+}
+
+VkShaderModule VulkanTest::makeShader(const std::vector<uint32_t>& words) {
     auto info = make<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
     info.codeSize = words.size() * sizeof(uint32_t);
     info.pCode = words.data();
     VkShaderModule module = VK_NULL_HANDLE;
-    EXPECT_EQ(vkCreateShaderModule(device, &info, nullptr, &module), VK_SUCCESS);
+    EXPECT_EQ(vkCreateShaderModule(device, &info, nullptr, &module), VK_SUCCESS)
+        << (messages.empty() ? "" : messages.back());
     defer([this, module] { vkDestroyShaderModule(device, module, nullptr); });
     return module;
 }

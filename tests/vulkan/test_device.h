@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "tests/vulkan/structures.h"
+#include "tests/vulkan/validated.h"
 
 namespace vernier::test {
 
@@ -38,8 +39,6 @@ struct TestImage {
     VkExtent2D extent{};
 };
 
-/// Whether the validation layer stands between: tests of invalid use then have nothing to see.
-bool validated();
 #define VERNIER_SKIP_WHEN_VALIDATED() \
     if (::vernier::test::validated()) GTEST_SKIP() << "invalid use, or questions to the driver alone"
 
@@ -68,6 +67,8 @@ class VulkanTest : public testing::Test {
     /// Memory that is freed at the end, where it is `expected` to be had.
     VkDeviceMemory allocate(VkDeviceSize size, const void* chain = nullptr, VkResult expected = VK_SUCCESS);
     VkShaderModule makeShader(VkShaderStageFlagBits stage, const std::string& glsl);
+    /// Of SPIR-V.
+    VkShaderModule makeShader(const std::vector<uint32_t>& words);
     /// `statistics`: of queries that count those.
     VkQueryPool makeQueries(VkQueryType type, uint32_t count = 1, VkQueryPipelineStatisticFlags statistics = 0);
     VkCommandBuffer begin();
