@@ -205,7 +205,7 @@ TextureLab::Texture TextureLab::makeTexture(const LabImage& image, const LabSamp
     view.viewType = image.viewType;
     view.format = image.viewFormat != VK_FORMAT_UNDEFINED ? image.viewFormat : image.format;
     view.components = image.swizzle;
-    view.subresourceRange = {image.aspect, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
+    view.subresourceRange = {image.aspect, 0, image.levels, 0, VK_REMAINING_ARRAY_LAYERS};
     if (image.viewType == VK_IMAGE_VIEW_TYPE_2D) view.subresourceRange.layerCount = 1;
     LAB_CHECK(vkCreateImageView(device_, &view, nullptr, &texture.view));
 

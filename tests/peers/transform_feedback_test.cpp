@@ -161,7 +161,7 @@ std::string randomGeometry(std::mt19937& random, const GeometryKind& kind, bool 
            kOutputs[output] + ", max_vertices = " + (streams ? "18" : room) + R"() out;
 layout(location = 0) flat in ivec2 numbers[];
 layout(location = 0, xfb_buffer = 0, xfb_offset = 0, xfb_stride = 28) flat out ivec3 what;
-layout(xfb_buffer = 0, xfb_offset = 12) out gl_PerVertex { vec4 gl_Position; };
+layout(xfb_buffer = 0) out gl_PerVertex { layout(xfb_offset = 12) vec4 gl_Position; float gl_PointSize; };
 layout(location = 1, xfb_buffer = 1, xfb_offset = 4, xfb_stride = 12)" +
            stream + R"() out vec2 halves;
 layout(location = 2) out vec4 color;
@@ -176,6 +176,7 @@ void main() {
            vertices + R"(].x, gl_PrimitiveIDIn, v);
         gl_Position = gl_in[(v + 1) % )" +
            vertices + R"(].gl_Position;
+        gl_PointSize = 1.0;
         color = vec4(1.0);
 )" + (streams ? "        EmitStreamVertex(0);\n" : "") +
            R"(        halves = vec2(float(numbers[v % )" + vertices + R"(].y), float(gl_InvocationID)) * 0.5;

@@ -229,7 +229,7 @@ void main() {
                    gl_SemanticsAcquireRelease | gl_SemanticsMakeAvailable | gl_SemanticsMakeVisible);
     v[gl_GlobalInvocationID.x] = values[63 - n];
     memoryBarrier(gl_ScopeQueueFamily, gl_StorageSemanticsBuffer, gl_SemanticsRelease | gl_SemanticsMakeAvailable);
-    uint before = atomicAdd(arrived, 1, gl_ScopeQueueFamily, 0, 0);
+    uint before = atomicAdd(arrived, 1, gl_ScopeDevice, 0, 0);
     // The last invocation of all sees what everybody wrote.
     if (before == 64 * 8 - 1) {
         memoryBarrier(gl_ScopeQueueFamily, gl_StorageSemanticsBuffer, gl_SemanticsAcquire | gl_SemanticsMakeVisible);
@@ -284,35 +284,6 @@ OpStore %pb %sum
         for (uint32_t i = 0; i < 4; ++i) words(a)[i] = i;
         run(makeAssembled(module.text(), environment, {storageBuffer(a), storageBuffer(b)}), 1);
         EXPECT_EQ(std::vector<uint32_t>(words(b), words(b) + 4), (std::vector<uint32_t>{100, 101, 202, 203}));
-    }
-}
-
-// From SPIR-V 1.5 on the invocation that broadcasts may be computed (subgroupBroadcastDynamicId).
-TEST_F(AddressTest, broadcastsFromAnyInvocation) {
-    TwoBufferModule module;
-    module.head = R"(
-OpCapability GroupNonUniform
-OpCapability GroupNonUniformBallot
-)";
-    module.localSize = 32;
-    module.constants = R"(
-%c3 = OpConstant %uint 3
-%c7 = OpConstant %uint 7
-)";
-    module.body = R"(
-%pa = OpAccessChain %pu %a %c0 %c0
-%pb = OpAccessChain %pu %b %c0 %i
-%who = OpLoad %uint %pa
-%mine = OpIMul %uint %i %c7
-%got = OpGroupNonUniformBroadcast %uint %c3 %mine %who
-OpStore %pb %got
-)";
-    const TestBuffer a = makeStorage(1), b = makeStorage(32);
-    const Compute compute = makeAssembled(module.text(), SPV_ENV_UNIVERSAL_1_5, {storageBuffer(a), storageBuffer(b)});
-    for (const uint32_t who : {0u, 11u, 31u}) {
-        *words(a) = who;
-        run(compute, 1);
-        for (uint32_t n = 0; n < 32; ++n) EXPECT_EQ(words(b)[n], who * 7) << n;
     }
 }
 

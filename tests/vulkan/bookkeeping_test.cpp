@@ -185,7 +185,12 @@ TEST_F(BookkeepingTest, pipelinesTellOfTheirMaking) {
     info.pNext = &feedback;
     std::array<VkComputePipelineCreateInfo, 3> three{info, info, info};
     std::array<VkPipeline, 3> pipelines{};
-    ASSERT_EQ(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, pipelines.data()), VK_SUCCESS);
+    auto cacheInfo = make<VkPipelineCacheCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO);
+    cacheInfo.flags = VK_PIPELINE_CACHE_CREATE_EXTERNALLY_SYNCHRONIZED_BIT;
+    VkPipelineCache cache = VK_NULL_HANDLE;
+    ASSERT_EQ(vkCreatePipelineCache(device, &cacheInfo, nullptr, &cache), VK_SUCCESS);
+    ASSERT_EQ(vkCreateComputePipelines(device, cache, 1, &info, nullptr, pipelines.data()), VK_SUCCESS);
+    vkDestroyPipelineCache(device, cache, nullptr);
     EXPECT_EQ(whole.flags, VkPipelineCreationFeedbackFlags{VK_PIPELINE_CREATION_FEEDBACK_VALID_BIT});
     EXPECT_GT(whole.duration, 0u);
     EXPECT_EQ(stage.flags, 0u);

@@ -1,12 +1,12 @@
 // Vulkan 1.2 and 1.3 as core versions: what they make mandatory, their structures, their commands by their own names.
 #include <array>
 
-#include "tests/vulkan/test_compute.h"
+#include "tests/vulkan/test_assembly.h"
 
 namespace vernier::test {
 namespace {
 
-class Core13Test : public ComputeTest {
+class Core13Test : public AssemblyTest {
   protected:
     uint32_t apiVersion() override { return VK_API_VERSION_1_3; }
     std::vector<const char*> moreExtensions() override { return {}; }
@@ -143,6 +143,47 @@ TEST_F(Core13Test, commandsHaveTheirCoreNames) {
     EXPECT_EQ(vkGetDeviceProcAddr(device, "vkCmdBeginRenderingKHR"), nullptr) << "its extension is not enabled";
     uint32_t count = 9;
     EXPECT_EQ(vkGetPhysicalDeviceToolProperties(physicalDevice, &count, nullptr), VK_SUCCESS);
+}
+
+// The fragment stage may take fewer components than the stage before gives (maintenance4).
+TEST_F(Core13Test, stagesTakeTheFirstComponents) {
+    const TestImage color = makeImage(VK_FORMAT_R8G8B8A8_UNORM, {4, 4}, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
+    const Pass pass = makePass(color);
+    PipelineDesc desc;
+    desc.vertex = makeShader(VK_SHADER_STAGE_VERTEX_BIT, R"(#version 450
+layout(location = 0) out vec4 four;
+void main() {
+    gl_Position = vec4(gl_VertexIndex == 1 ? 3 : -1, gl_VertexIndex == 2 ? 3 : -1, 0.5, 1);
+    four = vec4(0.2, 0.4, 0.6, 0.8);
+})");
+    desc.fragment = makeShader(VK_SHADER_STAGE_FRAGMENT_BIT, R"(#version 450
+layout(location = 0) in vec2 two;
+layout(location = 0) out vec4 o;
+void main() { o = vec4(two, 0, 1); })");
+    desc.extent = color.extent;
+    drawTriangle(pass, makePipeline(pass.pass, desc));
+    EXPECT_EQ(pixelAt(readImage(color, VK_IMAGE_ASPECT_COLOR_BIT, 4), color, 2, 1), 0xFF006633u);
+}
+
+// Work groups as large as constants say (maintenance4).
+TEST_F(Core13Test, localSizesByConstants) {
+    TwoBufferModule module;
+    module.constants = R"(
+%c1 = OpConstant %uint 1
+%size = OpSpecConstant %uint 4
+)";
+    module.body = R"(
+%pb = OpAccessChain %pu %b %c0 %i
+%next = OpIAdd %uint %i %c1
+OpStore %pb %next
+)";
+    std::string text = module.text();
+    const std::string fixed = "OpExecutionMode %main LocalSize 1 1 1";
+    text.replace(text.find(fixed), fixed.size(), "OpExecutionModeId %main LocalSizeId %size %c1 %c1");
+    const TestBuffer a = makeStorage(1), b = makeStorage(8);
+    std::memset(b.data, 0, b.size);
+    run(makeAssembled(text, SPV_ENV_UNIVERSAL_1_5, {storageBuffer(a), storageBuffer(b)}), 1);
+    EXPECT_EQ(std::vector<uint32_t>(words(b), words(b) + 8), (std::vector<uint32_t>{1, 2, 3, 4, 0, 0, 0, 0}));
 }
 
 // The core commands of the extended dynamic state need no feature.

@@ -134,7 +134,9 @@ class DescriptorIndexingTest : public ComputeTest {
 
 TEST_F(DescriptorIndexingTest, inlineUniformBlocks) {
     const VkDescriptorSetLayout layout =
-        makeSetLayout({{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, {VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK, 32}}, 0);
+        makeSetLayout({{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+                       {VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK, 32, VK_DESCRIPTOR_BINDING_UPDATE_AFTER_BIND_BIT}},
+                      VK_DESCRIPTOR_SET_LAYOUT_CREATE_UPDATE_AFTER_BIND_POOL_BIT);
     const VkDescriptorPool from =
         makePool({{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 8}, {VK_DESCRIPTOR_TYPE_INLINE_UNIFORM_BLOCK, 96}}, 2);
     const std::array<VkDescriptorSet, 2> sets{allocate(from, layout), allocate(from, layout)};
@@ -146,8 +148,10 @@ layout(set = 0, binding = 1) uniform Block { uvec4 a, b; };
 void main() { v[0] = a; v[1] = b; })",
                                            layout, sets[0]);
     writeBlock(sets[0], 0, {1, 2, 3, 4, 5, 6, 7, 8});
-    writeBlock(sets[0], 12, {40, 50});
-    run(compute, 1);
+    const VkCommandBuffer commands = begin();
+    dispatch(commands, compute, 1);
+    writeBlock(sets[0], 12, {40, 50});  // after it is bound
+    submit(commands);
     EXPECT_EQ(std::vector<uint32_t>(words(out), words(out) + 8), (std::vector<uint32_t>{1, 2, 3, 40, 50, 6, 7, 8}));
     // Copied, with another part written through a template.
     auto copy = make<VkCopyDescriptorSet>(VK_STRUCTURE_TYPE_COPY_DESCRIPTOR_SET);

@@ -97,8 +97,9 @@ TEST_F(DescriptorKindsTest, everyKindByAnyIndex) {
         const VkDescriptorSetLayout setLayout = makeArrayLayout(
             kind.type, VK_DESCRIPTOR_BINDING_UPDATE_AFTER_BIND_BIT | VK_DESCRIPTOR_BINDING_PARTIALLY_BOUND_BIT);
         const VkDescriptorSet set = makeArraySet(kind.type, setLayout);
-        std::string value = kind.value;
+        std::string value = kind.value, same = kind.value;
         value.replace(value.find('I'), 1, "nonuniformEXT(i)");
+        same.replace(same.find('I'), 1, "i");
         const bool isStorageImage = kind.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
         const bool isStorageTexels = kind.type == VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
         const std::string format = isStorageImage || isStorageTexels ? ", r32ui" : "";
@@ -109,11 +110,13 @@ TEST_F(DescriptorKindsTest, everyKindByAnyIndex) {
 #extension GL_EXT_nonuniform_qualifier : require
 #extension GL_EXT_samplerless_texture_functions : require
 layout(local_size_x = 32) in;
-layout(set = 0, binding = 0) buffer Out { uint v[32]; };
+layout(set = 0, binding = 0) buffer Out { uint v[34]; };
 layout(set = 0, binding = 1)" + format + ") " + kind.declaration + R"(;
 void main() {
     uint i = (gl_LocalInvocationIndex * 7) % 5;
     v[gl_LocalInvocationIndex] = )" + value + R"(;
+    i = v[32];
+    v[33] = )" + same + R"(;
 })");
         info.stage.pName = "main";
         Compute compute;
@@ -133,13 +136,15 @@ void main() {
                                           VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT)
                                        .view;
         }
-        const TestBuffer out = makeStorage(32);
+        const TestBuffer out = makeStorage(34);
+        words(out)[32] = 3;  // the same for all invocations
         const VkCommandBuffer commands = begin();
         dispatch(commands, compute, 1);
         write(set, 0, 0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, storageBuffer(out), VK_NULL_HANDLE);
         for (uint32_t n = 0; n < kCount; ++n) write(set, 1, n, kind.type, descriptors[n], sampler);
         submit(commands);
         for (uint32_t n = 0; n < 32; ++n) EXPECT_EQ(words(out)[n], 100 + n * 7 % 5) << n;
+        EXPECT_EQ(words(out)[33], 103u);
     }
 }
 
@@ -194,13 +199,20 @@ TEST_F(DescriptorKindsTest, inputAttachmentsByAnyIndex) {
 #extension GL_EXT_nonuniform_qualifier : require
 layout(input_attachment_index = 0, set = 0, binding = 1) uniform subpassInput inputs[2];
 layout(location = 0) out vec4 color;
-void main() { color = subpassLoad(inputs[nonuniformEXT((int(gl_FragCoord.x) + int(gl_FragCoord.y)) & 1)]); })");
+layout(set = 0, binding = 0) readonly buffer In { uint one; };
+void main() {
+    color = subpassLoad(inputs[nonuniformEXT((int(gl_FragCoord.x) + int(gl_FragCoord.y)) & 1)]);
+    color.b = subpassLoad(inputs[one]).g;
+})");
     desc.layout = makeLayout({setLayout}, 0);
+    const TestBuffer in = makeStorage(1);
+    *words(in) = 1;
+    write(set, 0, 0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, storageBuffer(in), VK_NULL_HANDLE);
     drawTriangle(pass, makePipeline(pass.pass, desc), desc.layout, set);
     const auto texels = readImage(color, VK_IMAGE_ASPECT_COLOR_BIT, 4);
     for (uint32_t y = 0; y < 4; ++y)
         for (uint32_t x = 0; x < 4; ++x)
-            EXPECT_EQ(pixelAt(texels, color, x, y), (x + y) % 2 != 0 ? 0xFF00FF00u : 0xFF0000FFu) << x << ", " << y;
+            EXPECT_EQ(pixelAt(texels, color, x, y), (x + y) % 2 != 0 ? 0xFFFFFF00u : 0xFFFF00FFu) << x << ", " << y;
 }
 
 TEST_F(DescriptorKindsTest, poolSizesAddUpToMoreThan32Bits) {

@@ -31,7 +31,8 @@ class DynamicStateTest : public DrawTest {
         ask(physicalDevice, &query);
         input_.vertexInputDynamicState = provoking_.provokingVertexLast = clip_.depthClipEnable = VK_TRUE;
         control_.depthClipControl = lines_.rectangularLines = lines_.bresenhamLines = VK_TRUE;
-        lines_.stippledRectangularLines = divisors_.vertexAttributeInstanceRateDivisor = VK_TRUE;
+        lines_.smoothLines = lines_.stippledSmoothLines = lines_.stippledRectangularLines = VK_TRUE;
+        divisors_.vertexAttributeInstanceRateDivisor = VK_TRUE;
         one_.pNext = &two_;
         two_.pNext = &three_;
         three_.pNext = &input_;
@@ -45,7 +46,13 @@ class DynamicStateTest : public DrawTest {
     void SetUp() override {
         DrawTest::SetUp();
         samples = makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, kSamples);
-        depth = makeImage(VK_FORMAT_D32_SFLOAT_S8_UINT, kExtent, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, kSamples);
+        auto depthInfo = flatImage(VK_FORMAT_D32_SFLOAT_S8_UINT, kExtent,
+                                   VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
+        depthInfo.flags = VK_IMAGE_CREATE_SAMPLE_LOCATIONS_COMPATIBLE_DEPTH_BIT_EXT;
+        depthInfo.samples = kSamples;
+        depth = makeImage(depthInfo);
+        depth.view = makeView(depth.image, VK_IMAGE_VIEW_TYPE_2D, depth.format,
+                              {VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT, 0, 1, 0, 1});
         color = makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
         pass = makePass(samples, &depth, &color, kSamples);
         indices = makeBuffer(64, VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
@@ -260,6 +267,17 @@ TEST_F(DynamicStateTest, lines) {
     expectSame(
         "stipple", {VK_DYNAMIC_STATE_LINE_STIPPLE_ENABLE_EXT}, [&](S s) { s.raster.pNext = &stippled; },
         call<PFN_vkCmdSetLineStippleEnableEXT>("vkCmdSetLineStippleEnableEXT", VK_TRUE), common);
+    auto smooth = line, smoothStippled = stippled;
+    smooth.lineRasterizationMode = smoothStippled.lineRasterizationMode =
+        VK_LINE_RASTERIZATION_MODE_RECTANGULAR_SMOOTH_EXT;
+    expectSame(
+        "stipple of smooth lines", {VK_DYNAMIC_STATE_LINE_STIPPLE_ENABLE_EXT},
+        [&](S s) { s.raster.pNext = &smoothStippled; },
+        call<PFN_vkCmdSetLineStippleEnableEXT>("vkCmdSetLineStippleEnableEXT", VK_TRUE),
+        [&](S s) {
+            s.assembly.topology = VK_PRIMITIVE_TOPOLOGY_LINE_LIST;
+            s.raster.pNext = &smooth;
+        });
 }
 
 TEST_F(DynamicStateTest, depthAndStencil) {
@@ -306,7 +324,9 @@ TEST_F(DynamicStateTest, samples) {
         "alpha to one", {VK_DYNAMIC_STATE_ALPHA_TO_ONE_ENABLE_EXT},
         [](S s) { s.multisample.alphaToOneEnable = VK_TRUE; },
         call<PFN_vkCmdSetAlphaToOneEnableEXT>("vkCmdSetAlphaToOneEnableEXT", VK_TRUE));
-    if (validated()) return;  // the depth image would need a flag of its own
+    EXPECT_EQ(render(pipelineWith({}, {}, {VK_DYNAMIC_STATE_RASTERIZATION_SAMPLES_EXT}),
+                     call<PFN_vkCmdSetRasterizationSamplesEXT>("vkCmdSetRasterizationSamplesEXT", kSamples)),
+              render(pipelineWith({}, {}, {}), {}));
     std::array<VkSampleLocationEXT, 4> corner;
     corner.fill({0.0625f, 0.0625f});
     auto locations = make<VkPipelineSampleLocationsStateCreateInfoEXT>(

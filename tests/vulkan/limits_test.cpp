@@ -1,5 +1,6 @@
 // Resources, descriptors and dispatches as large, and as many, as the limits of the device allow.
 #include <numeric>
+#include <spirv/unified1/spirv.hpp>
 
 #include "tests/vulkan/test_compute.h"
 
@@ -51,10 +52,12 @@ class LimitsTest : public ComputeTest {
         vkFreeMemory(device, image.memory, nullptr);
     }
 
-    /// A pipeline of one shader with one set, whose descriptors are written by `write`.
+    /// A pipeline of one shader with one set, whose descriptors are written by `write`. The capabilities are declared
+    /// besides those that the compiler declares.
     void runWith(const std::string& glsl, const std::vector<VkDescriptorSetLayoutBinding>& bindings,
                  const std::function<std::vector<VkWriteDescriptorSet>(VkDescriptorSet)>& write,
-                 const std::vector<uint32_t>& dynamicOffsets = {}) {
+                 const std::vector<uint32_t>& dynamicOffsets = {},
+                 const std::vector<spv::Capability>& capabilities = {}) {
         const VkDescriptorSetLayout setLayout = makeSetLayout(bindings);
         std::vector<VkDescriptorPoolSize> sizes;
         for (const auto& binding : bindings) sizes.push_back({binding.descriptorType, binding.descriptorCount});
@@ -63,7 +66,12 @@ class LimitsTest : public ComputeTest {
         vkUpdateDescriptorSets(device, static_cast<uint32_t>(writes.size()), writes.data(), 0, nullptr);
 
         const VkPipelineLayout layout = makeLayout({setLayout}, 0);
-        const VkPipeline pipeline = makeComputePipeline(layout, glsl);
+        std::vector<uint32_t> shader = compileGlsl(VK_SHADER_STAGE_COMPUTE_BIT, glsl);
+        for (const spv::Capability capability : capabilities) {
+            constexpr uint32_t kHeaderWords = 5, kWordCount = 2 << spv::WordCountShift;
+            shader.insert(shader.begin() + kHeaderWords, {kWordCount | spv::OpCapability, capability});
+        }
+        const VkPipeline pipeline = makeComputePipeline(layout, makeShader(shader));
         const VkCommandBuffer commands = begin();
         vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
         vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1, &set,
@@ -188,7 +196,11 @@ TEST_F(LimitsTest, descriptorsByTheThousand) {
             writes[1].pBufferInfo = uniforms.data();
             writes[2].pImageInfo = writes[3].pImageInfo = images.data();
             return writes;
-        });
+        },
+        {},
+        // Glslang leaves out what indices that are not constant need (SPIR-V, Capability).
+        {spv::CapabilityStorageBufferArrayDynamicIndexing, spv::CapabilityUniformBufferArrayDynamicIndexing,
+         spv::CapabilitySampledImageArrayDynamicIndexing, spv::CapabilityStorageImageArrayDynamicIndexing});
     EXPECT_EQ(words(last)[0], 577u);
 }
 

@@ -1,5 +1,6 @@
 // Features of shaders beyond the core of Vulkan 1.0: scalars of other widths and their storage, atomics, pointers,
 // layouts, ways to end an invocation. Each is reported, and each is used through the whole driver.
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -132,6 +133,7 @@ TEST_F(ShaderFeaturesTest, everyWidthComputesAndIsStored) {
     for (uint32_t i = 0; i < 256; ++i) static_cast<uint8_t*>(bytes.data)[i] = static_cast<uint8_t>(i * 5);
     for (uint32_t i = 0; i < 128; ++i) static_cast<uint16_t*>(shorts.data)[i] = static_cast<uint16_t>(0x3C00 + i);
     run(makeCompute(std::string(kTypes) + R"(
+#pragma use_storage_buffer
 layout(set = 0, binding = 0) buffer Bytes { int8_t b[]; };
 layout(set = 0, binding = 1) buffer Shorts { float16_t h[]; };
 layout(set = 0, binding = 2) buffer Wide { int64_t l[64]; double d[64]; };
@@ -246,6 +248,81 @@ void main() {
     EXPECT_EQ(texel[3], 0.125f);
 }
 
+TEST_F(ShaderFeaturesTest, narrowTypesInUniformsAndPushConstants) {
+    TestDescriptor uniform;
+    uniform.type = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    const TestBuffer in = makeBuffer(16, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT), out = makeStorage(6);
+    uniform.buffer = in.buffer;
+    struct Uniform {
+        uint16_t x;
+        int16_t number;
+        int8_t byte;
+    };
+    struct Pushed {
+        int16_t number;
+        std::array<int8_t, 2> bytes;
+    };
+    *static_cast<Uniform*>(in.data) = {0x3E00, -1234, -7};  // 1.5
+    const Pushed pushed{4321, {-7, 100}};
+    const Compute compute = makeCompute(std::string(kTypes) + R"(
+layout(set = 0, binding = 0) uniform In { float16_t x; int16_t number; int8_t byte; } u;
+layout(set = 0, binding = 1) buffer Out { int o[]; };
+layout(push_constant) uniform Push { int16_t number; int8_t bytes[2]; } p;
+void main() {
+    if (gl_LocalInvocationIndex != 0) return;
+    o[0] = int(float(u.x) * 2.0);
+    o[1] = u.number;
+    o[2] = u.byte;
+    o[3] = p.number;
+    o[4] = p.bytes[0];
+    o[5] = p.bytes[1];
+})",
+                                        {uniform, storageBuffer(out)}, 4);
+    const VkCommandBuffer commands = begin();
+    vkCmdPushConstants(commands, compute.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof pushed, &pushed);
+    dispatch(commands, compute, 1);
+    submit(commands);
+    const auto* o = static_cast<const int32_t*>(out.data);
+    EXPECT_EQ(std::vector<int32_t>(o, o + 6), (std::vector<int32_t>{3, -1234, -7, 4321, -7, 100}));
+}
+
+// Halves that are interpolated and a short that is not, from one stage to the next.
+TEST_F(ShaderFeaturesTest, narrowTypesBetweenStages) {
+    constexpr VkExtent2D kExtent{8, 4};
+    const TestImage color = makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
+    const Pass pass = makePass(color);
+    PipelineDesc desc;
+    desc.extent = kExtent;
+    const std::string head =
+        "#version 450\n#extension GL_EXT_shader_explicit_arithmetic_types : require\n"
+        "#extension GL_EXT_shader_16bit_storage : require\n";
+    desc.vertex = makeShader(VK_SHADER_STAGE_VERTEX_BIT, head + R"(
+layout(location = 0) out f16vec2 place;
+layout(location = 1) flat out int16_t number;
+void main() {
+    vec2 corner = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 2.0;
+    gl_Position = vec4(corner * 2.0 - 1.0, 0.5, 1);
+    place = f16vec2(corner);
+    number = int16_t(-300);
+})");
+    desc.fragment = makeShader(VK_SHADER_STAGE_FRAGMENT_BIT, head + R"(
+layout(location = 0) in f16vec2 place;
+layout(location = 1) flat in int16_t number;
+layout(location = 0) out vec4 o;
+void main() { o = vec4(place, float(number) / -600.0, 1); })");
+    drawTriangle(pass, makePipeline(pass.pass, desc));
+    const auto texels = readImage(color, VK_IMAGE_ASPECT_COLOR_BIT, 4);
+    for (uint32_t y = 0; y < kExtent.height; ++y) {
+        for (uint32_t x = 0; x < kExtent.width; ++x) {
+            const auto at = [](uint32_t pixel, uint32_t count) {
+                return static_cast<uint32_t>(std::lround(255.0 * (2 * pixel + 1) / (2 * count)));
+            };
+            const uint32_t expected = 0xFF800000u | at(y, kExtent.height) << 8 | at(x, kExtent.width);
+            EXPECT_EQ(pixelAt(texels, color, x, y), expected) << x << ", " << y;
+        }
+    }
+}
+
 TEST_F(ShaderFeaturesTest, layoutsAreTakenAsTheyAre) {
     const TestBuffer in = makeBuffer(64, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT), out = makeStorage(64);
     const float values[] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
@@ -298,6 +375,69 @@ OpStore %p %d
     for (uint32_t i = 0; i < 32; ++i) {
         EXPECT_EQ(words(a)[i], i % 2 != 0 ? 10 * i : 0x01010101u * i);
         EXPECT_EQ(words(b)[i], i % 2 != 0 ? 0x01000000u * (i + 100) : 4 * (i + 100));
+    }
+}
+
+// Of pointers into one buffer: the weaker capability.
+TEST_F(ShaderFeaturesTest, pointersIntoOneBuffer) {
+    TwoBufferModule module;
+    module.head = R"(
+OpCapability VariablePointersStorageBuffer
+OpExtension "SPV_KHR_storage_buffer_storage_class"
+OpExtension "SPV_KHR_variable_pointers"
+)";
+    module.interface = "%id";
+    module.localSize = 4;
+    module.constants = R"(
+%c1 = OpConstant %uint 1
+%c7 = OpConstant %uint 7
+)";
+    module.body = R"(
+%bit = OpBitwiseAnd %uint %i %c1
+%odd = OpINotEqual %bool %bit %c0
+%mirror = OpISub %uint %c7 %i
+%low = OpAccessChain %pu %a %c0 %i
+%high = OpAccessChain %pu %a %c0 %mirror
+%p = OpSelect %pu %odd %low %high
+%v = OpLoad %uint %p
+%pb = OpAccessChain %pu %b %c0 %i
+OpStore %pb %v
+)";
+    const TestBuffer a = makeStorage(8), b = makeStorage(4);
+    for (uint32_t i = 0; i < 8; ++i) words(a)[i] = 10 * i;
+    run(makeAssembled(module.text(), SPV_ENV_VULKAN_1_0, {storageBuffer(a), storageBuffer(b)}), 1);
+    EXPECT_EQ(std::vector<uint32_t>(words(b), words(b) + 4), (std::vector<uint32_t>{70, 10, 50, 30}));
+}
+
+// Formats beside those that every device has: stores convert, loads give back.
+TEST_F(ShaderFeaturesTest, extendedFormatsOfStorageImages) {
+    const TestImage halves = makeImage(VK_FORMAT_R16G16_SFLOAT, {4, 1}, VK_IMAGE_USAGE_STORAGE_BIT);
+    const TestImage bytes = makeImage(VK_FORMAT_R8_UINT, {4, 1}, VK_IMAGE_USAGE_STORAGE_BIT);
+    const TestBuffer out = makeStorage(12);
+    const Compute compute = makeCompute(R"(#version 450
+layout(local_size_x = 4) in;
+layout(set = 0, binding = 0, rg16f) uniform image2D halves;
+layout(set = 0, binding = 1, r8ui) uniform uimage2D bytes;
+layout(set = 0, binding = 2) buffer Out { uint v[12]; };
+void main() {
+    uint i = gl_LocalInvocationIndex;
+    imageStore(halves, ivec2(i, 0), vec4(1.0 + i / 1024.0, 0.5 * i, 7, 7));
+    imageStore(bytes, ivec2(i, 0), uvec4(i + 5));
+    vec4 loaded = imageLoad(halves, ivec2(i, 0));
+    v[i] = uint((loaded.x - 1.0) * 4096.0);
+    v[4 + i] = uint(loaded.y * 2.0);
+    v[8 + i] = imageLoad(bytes, ivec2(i, 0)).x;
+})",
+                                        {storageImage(halves), storageImage(bytes), storageBuffer(out)});
+    const VkCommandBuffer commands = begin();
+    toGeneral(commands, halves);
+    toGeneral(commands, bytes);
+    dispatch(commands, compute, 1);
+    submit(commands);
+    for (uint32_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(words(out)[i], 4 * i);
+        EXPECT_EQ(words(out)[4 + i], i);
+        EXPECT_EQ(words(out)[8 + i], i + 5);
     }
 }
 

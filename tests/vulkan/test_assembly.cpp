@@ -44,35 +44,23 @@ OpFunctionEnd
 )";
 }
 
-AssemblyTest::Compute AssemblyTest::makeAssembled(const std::string& text, spv_target_env environment,
-                                                  const std::vector<TestDescriptor>& descriptors) {
+VkShaderModule AssemblyTest::makeAssembledShader(const std::string& text, spv_target_env environment) {
     const spv_context context = spvContextCreate(environment);
     spv_binary binary = nullptr;
     EXPECT_EQ(spvTextToBinary(context, text.data(), text.size(), &binary, nullptr), SPV_SUCCESS) << text;
-    auto moduleInfo = make<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
-    moduleInfo.codeSize = binary->wordCount * 4;
-    moduleInfo.pCode = binary->code;
-    VkShaderModule module = VK_NULL_HANDLE;
-    EXPECT_EQ(vkCreateShaderModule(device, &moduleInfo, nullptr, &module), VK_SUCCESS)
-        << (messages.empty() ? "" : messages.back());
+    const std::vector<uint32_t> words(binary->code, binary->code + binary->wordCount);
     spvBinaryDestroy(binary);
     spvContextDestroy(context);
+    return makeShader(words);
+}
+
+AssemblyTest::Compute AssemblyTest::makeAssembled(const std::string& text, spv_target_env environment,
+                                                  const std::vector<TestDescriptor>& descriptors) {
     Compute compute;
     VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
     compute.set = makeSet(descriptors, &setLayout);
     compute.layout = makeLayout({setLayout}, 0);
-    auto info = make<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
-    info.stage = make<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
-    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-    info.stage.module = module;
-    info.stage.pName = "main";
-    info.layout = compute.layout;
-    EXPECT_EQ(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &compute.pipeline), VK_SUCCESS)
-        << (messages.empty() ? "" : messages.back());
-    defer([this, compute, module] {
-        vkDestroyPipeline(device, compute.pipeline, nullptr);
-        vkDestroyShaderModule(device, module, nullptr);
-    });
+    compute.pipeline = makeComputePipeline(compute.layout, makeAssembledShader(text, environment));
     return compute;
 }
 

@@ -22,6 +22,7 @@ struct TwoBufferModule {
 class AssemblyTest : public ComputeTest {
   protected:
     /// The test fails when the text is no module.
+    VkShaderModule makeAssembledShader(const std::string& text, spv_target_env environment);
     Compute makeAssembled(const std::string& text, spv_target_env environment,
                           const std::vector<TestDescriptor>& descriptors);
 };

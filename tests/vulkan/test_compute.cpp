@@ -47,12 +47,19 @@ ComputeTest::Compute ComputeTest::makeCompute(const std::string& glsl, const std
 VkPipeline ComputeTest::makeComputePipeline(VkPipelineLayout layout, const std::string& glsl,
                                             const VkSpecializationInfo* specialization, VkResult expected,
                                             VkPipelineCreateFlags flags) {
+    return makeComputePipeline(layout, makeShader(VK_SHADER_STAGE_COMPUTE_BIT, glsl), specialization, expected, flags);
+}
+
+VkPipeline ComputeTest::makeComputePipeline(VkPipelineLayout layout, VkShaderModule shader,
+                                            const VkSpecializationInfo* specialization, VkResult expected,
+                                            VkPipelineCreateFlags flags) {
     auto info = make<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
     info.flags = flags;
-    info.stage = stageOf(VK_SHADER_STAGE_COMPUTE_BIT, makeShader(VK_SHADER_STAGE_COMPUTE_BIT, glsl), specialization);
+    info.stage = stageOf(VK_SHADER_STAGE_COMPUTE_BIT, shader, specialization);
     info.layout = layout;
     VkPipeline pipeline = VK_NULL_HANDLE;
-    EXPECT_EQ(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline), expected);
+    EXPECT_EQ(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline), expected)
+        << (messages.empty() ? "" : messages.back());
     defer([this, pipeline] { vkDestroyPipeline(device, pipeline, nullptr); });
     return pipeline;
 }

@@ -64,6 +64,9 @@ class ComputeTest : public DrawTest {
     Compute makeCompute(const std::string& glsl, const std::vector<TestDescriptor>& descriptors, uint32_t pushBytes = 0,
                         const VkSpecializationInfo* specialization = nullptr, VkResult expected = VK_SUCCESS,
                         VkPipelineCreateFlags flags = 0);
+    VkPipeline makeComputePipeline(VkPipelineLayout layout, VkShaderModule shader,
+                                   const VkSpecializationInfo* specialization = nullptr, VkResult expected = VK_SUCCESS,
+                                   VkPipelineCreateFlags flags = 0);
     VkPipeline makeComputePipeline(VkPipelineLayout layout, const std::string& glsl,
                                    const VkSpecializationInfo* specialization = nullptr, VkResult expected = VK_SUCCESS,
                                    VkPipelineCreateFlags flags = 0);
