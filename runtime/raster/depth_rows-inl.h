@@ -88,23 +88,26 @@ struct Float32Stencil8 {
     }
 };
 
-/// VkCompareOp as three masks: what it lets through when less, equal, greater.
+/// VkCompareOp as masks: what it lets through when less, equal, greater, and unequal, as a NaN is, which undefined
+/// contents of an attachment may hold.
 template <class D>
 struct Comparison {
     using M = hn::Mask<D>;
-    M ifLess, ifEqual, ifGreater;
+    M ifLess, ifEqual, ifGreater, ifUnequal;
 
     explicit Comparison(uint32_t op) {
         const auto zero = hn::Zero(D());
-        const auto enable = [&](uint32_t bit)
-                                HWY_ATTR { return (op & bit) != 0 ? hn::Eq(zero, zero) : hn::Ne(zero, zero); };
+        const auto enable = [&](uint32_t bits)
+                                HWY_ATTR { return (op & bits) != 0 ? hn::Eq(zero, zero) : hn::Ne(zero, zero); };
         ifLess = enable(1);
         ifEqual = enable(2);
         ifGreater = enable(4);
+        ifUnequal = enable((op & 5) == 5 ? op : 0);
     }
     HWY_INLINE M operator()(hn::Vec<D> a, hn::Vec<D> b) const {
-        return hn::Or(hn::Or(hn::And(hn::Lt(a, b), ifLess), hn::And(hn::Eq(a, b), ifEqual)),
-                      hn::And(hn::Gt(a, b), ifGreater));
+        const M equal = hn::Eq(a, b);  // hn::Ne() is false for NaN on some targets
+        return hn::Or(hn::Or(hn::And(hn::Lt(a, b), ifLess), hn::And(equal, ifEqual)),
+                      hn::Or(hn::And(hn::Gt(a, b), ifGreater), hn::AndNot(equal, ifUnequal)));
     }
 };
 

@@ -18,7 +18,8 @@ constexpr uint32_t kMask24 = 0xFFFFFF;
 /// VkCompareOp as three bits: less, equal, greater.
 template <class T>
 bool passes(uint32_t compare, T value, T reference) {
-    return ((compare & 1) != 0 && value < reference) || ((compare & 2) != 0 && value == reference) ||
+    const bool unequal = (compare & 5) == 5 && value != reference;  // NaN, too: undefined contents may be one
+    return unequal || ((compare & 1) != 0 && value < reference) || ((compare & 2) != 0 && value == reference) ||
            ((compare & 4) != 0 && value > reference);
 }
 
