@@ -271,7 +271,7 @@ class Sampler {
     HWY_INLINE VU extreme(VU a, VU b) const {
         const VF fa = floatOf(a), fb = floatOf(b);
         const Mask better = sampler_.reduction == VK_SAMPLER_REDUCTION_MODE_MIN ? hn::Lt(fb, fa) : hn::Gt(fb, fa);
-        return hn::IfThenElse(hn::RebindMask(U32(), hn::Or(better, hn::Ne(fa, fa))), b, a);
+        return hn::IfThenElse(hn::RebindMask(U32(), hn::Or(better, hn::IsNaN(fa))), b, a);
     }
 
     // --- Filters and levels

@@ -287,7 +287,7 @@ HWY_INLINE VU compareTexel(VkCompareOp op, VF dref, VF texel) {
             pass = hn::Gt(dref, texel);
             break;
         case VK_COMPARE_OP_NOT_EQUAL:
-            pass = hn::Ne(dref, texel);
+            pass = hn::Not(hn::Eq(dref, texel));  // hn::Ne() is false for NaN on some targets
             break;
         case VK_COMPARE_OP_GREATER_OR_EQUAL:
             pass = hn::Ge(dref, texel);

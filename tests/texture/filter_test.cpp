@@ -317,6 +317,32 @@ TEST(Filter, InfinitiesAndNaNs) {
     EXPECT_EQ(sampleOne(image, sampler, 0.5f, 0.5f)[0], 0.0);
 }
 
+// A NaN is unequal to whatever it is compared with, and neither the least nor the greatest of several texels.
+TEST(Filter, NaNsOnEveryInstructionSet) {
+    Image depth(VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_D32_SFLOAT, 1, 1, 1, 1, 1, VK_IMAGE_ASPECT_DEPTH_BIT);
+    depth.setAll({.float32 = {kNaN}});
+    SamplerState compare = makeSampler(VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_REPEAT);
+    compare.compareEnable = true;
+    Image row(VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R32_SFLOAT, 2, 1, 1, 1, 1);
+    SamplerState extreme = makeSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE);
+    for (const Isa isa : availableIsas()) {
+        for (uint32_t op = VK_COMPARE_OP_NEVER; op <= VK_COMPARE_OP_ALWAYS; ++op) {
+            compare.compareOp = static_cast<VkCompareOp>(op);
+            const bool passes = op == VK_COMPARE_OP_NOT_EQUAL || op == VK_COMPARE_OP_ALWAYS;
+            EXPECT_EQ(sampleOne(depth, compare, 0.5f, 0.5f, 0, 0, 0.5f, isa)[0], passes ? 1 : 0)
+                << isaName(isa) << ", operation " << op;
+        }
+        for (const auto mode : {VK_SAMPLER_REDUCTION_MODE_MIN, VK_SAMPLER_REDUCTION_MODE_MAX}) {
+            extreme.reduction = mode;
+            for (const uint32_t place : {0u, 1u}) {
+                row.set(0, place, 0, 0, {.float32 = {kNaN}});
+                row.set(0, 1 - place, 0, 0, {.float32 = {7.0f}});
+                EXPECT_EQ(sampleOne(row, extreme, 0.5f, 0.5f, 0, 0, 0, isa)[0], 7.0) << isaName(isa) << ", " << place;
+            }
+        }
+    }
+}
+
 TEST(Filter, InactiveLanesAndMissingOutputs) {
     Image image(VK_IMAGE_VIEW_TYPE_2D, VK_FORMAT_R8G8B8A8_UNORM, 4, 4, 1, 1, 1);
     image.randomize(3);
