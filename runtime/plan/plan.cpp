@@ -287,10 +287,19 @@ bool interpolates(const ir::Program& fragment) {
     });
 }
 
+bool readsSampleMask(const Plan& plan) {
+    return std::any_of(plan.fragmentBuiltins.begin(), plan.fragmentBuiltins.end(),
+                       [](const BuiltinSlot& slot) { return slot.builtin == ir::Builtin::sampleMaskIn; });
+}
+
 bool coverageIsFull(const Plan& plan) {
-    const auto readsCoverage = [](const BuiltinSlot& slot) { return slot.builtin == ir::Builtin::sampleMaskIn; };
-    return plan.samples == 1 && plan.keepsCoverage && !plan.usesQuads &&
-           std::none_of(plan.fragmentBuiltins.begin(), plan.fragmentBuiltins.end(), readsCoverage);
+    return plan.samples == 1 && plan.keepsCoverage && !plan.usesQuads && !readsSampleMask(plan);
+}
+
+/// The sample mask "reflects the coverage before the early fragment tests" (specification, "Early Fragment Test"). Of
+/// programs that run once per sample, each run has a sample that is left.
+bool maskBeforeTests(const Plan& plan) {
+    return plan.samples > 1 && !plan.perSample && (plan.depth.any() || plan.depth.write) && readsSampleMask(plan);
 }
 
 /// Whether the neighbours of a pixel matter for nothing but the level of detail of an image.
@@ -337,6 +346,7 @@ void planFragments(const GraphicsState& state, const ir::Program& fragment, Isa 
     for (const BuiltinSlot& builtin : plan.fragmentBuiltins)
         plan.usesFragCoord |= builtin.builtin == ir::Builtin::fragCoord;
     plan.coverageIsFull = coverageIsFull(plan);
+    plan.maskBeforeTests = maskBeforeTests(plan);
     plan.interpolates = interpolates(fragment);
     plan.ordered = std::any_of(plan.colors.begin(), plan.colors.end(),
                                [](const ColorPlan& color) { return color.readsDestination; });

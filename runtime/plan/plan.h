@@ -157,6 +157,7 @@ struct Plan {
     bool preciseInterpolation = false;  // double
     bool keepsCoverage = true;          // nothing after the early tests drops a sample
     bool countsEarly = false;           // samples are counted before the program may drop them (EarlyFragmentTests)
+    bool maskBeforeTests = false;       // the program reads the sample mask as it was before the early tests
     bool coverageIsFull = false;        // every lane of a batch is one covered sample, and stays so
     bool usesFragCoord = false;
     bool interpolates = false;  // the program itself asks for inputs at other places

@@ -11,10 +11,13 @@ namespace vernier {
 
 inline constexpr uint32_t kBlocksPerTile = (kTileSize / kBlockSize) * (kTileSize / kBlockSize);
 
-/// Bit y * 8 + x of masks[s]: pixel (x, y) of the block at sample s.
+/// Of the samples that the draw has; the others are not set. Bit y * 8 + x of mask s: pixel (x, y) of a block at sample
+/// s.
+using SampleMasks = std::array<uint64_t, kMaxSamples>;
+
 struct BlockCoverage {
-    int32_t x, y;                             // first pixel of the block, relative to the tile
-    std::array<uint64_t, kMaxSamples> masks;  // of the samples that the draw has; the others are not set
+    int32_t x, y;  // first pixel of the block, relative to the tile
+    SampleMasks masks;
 };
 
 /// The number of a block in its tile, row by row.

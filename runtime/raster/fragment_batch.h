@@ -47,9 +47,11 @@ struct FragmentBatch {
     alignas(64) std::array<float, kLaneRoom> offsetX,
         offsetY;                                           // place inside the pixel, when it is not the centre
     alignas(64) std::array<uint32_t, kLaneRoom> coverage;  // samples the lane stands for
-    alignas(64) std::array<uint32_t, kLaneRoom> sample;    // when run per sample
-    bool apart = false;                                    // spans only: some lanes are in no span
-    uint32_t spanCount = 0;                                // spans only
+    alignas(
+        64) std::array<uint32_t, kLaneRoom> rasterized;  // of Plan::maskBeforeTests: what they were before the tests
+    alignas(64) std::array<uint32_t, kLaneRoom> sample;  // when run per sample
+    bool apart = false;                                  // spans only: some lanes are in no span
+    uint32_t spanCount = 0;                              // spans only
     std::array<FragmentSpan, kMaxFragmentLanes> spans;
     uint32_t segmentCount = 0;
     std::array<FragmentSegment, kMaxFragmentLanes> segments;

@@ -162,7 +162,9 @@ void FragmentStage::fillBuiltin(const FragmentBatch& batch, const BuiltinSlot& b
             eachLane([&](uint32_t n) { return c == 0 ? batch.offsetX[n] : batch.offsetY[n]; });
             return;
         case ir::Builtin::sampleMaskIn:
-            eachLane([&](uint32_t n) { return c == 0 ? batch.coverage[n] : 0u; });
+            eachLane([&](uint32_t n) {
+                return c != 0 ? 0u : plan_->maskBeforeTests ? batch.rasterized[n] : batch.coverage[n];
+            });
             return;
         case ir::Builtin::helperInvocation:
             eachLane([&](uint32_t n) { return ~batch.store[n]; });

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <span>
 
 #include "runtime/geometry/shapes.h"
 #include "runtime/raster/bits.h"
@@ -21,9 +22,9 @@ bool inTwoRows(uint64_t pixels) {
 }
 
 /// The samples of one pixel of a block.
-uint32_t coverageOf(const BlockCoverage& block, uint32_t bit, uint32_t samples) {
+uint32_t coverageOf(const SampleMasks& masks, uint32_t bit, uint32_t samples) {
     uint32_t coverage = 0;
-    for (uint32_t s = 0; s < samples; ++s) coverage |= static_cast<uint32_t>(block.masks[s] >> bit & 1) << s;
+    for (uint32_t s = 0; s < samples; ++s) coverage |= static_cast<uint32_t>(masks[s] >> bit & 1) << s;
     return coverage;
 }
 
@@ -37,6 +38,7 @@ FragmentBatch::FragmentBatch() {
     offsetX.fill(0.5f);
     offsetY.fill(0.5f);
     coverage.fill(0);
+    rasterized.fill(0);
     sample.fill(0);
 }
 
@@ -136,6 +138,12 @@ TrianglePlanes& FragmentStage::startPrimitive() {
     return planes_[planesCount_ - 1];
 }
 
+void FragmentStage::keepCoverage(const BlockCoverage* blocks, uint32_t count) {
+    for (const BlockCoverage& block : std::span(blocks, count)) {
+        std::copy_n(block.masks.begin(), samples_, rasterized_[blockIndex(block)].begin());
+    }
+}
+
 void FragmentStage::reserve(uint32_t lanes) {
     if (batch_.count + lanes > capacity_) flushBatch();
 }
@@ -162,7 +170,8 @@ void FragmentStage::add(const BlockCoverage& block) {
     for (uint32_t s = 0; s < samples_; ++s) any |= block.masks[s];
     if (plan_->coarse) return addCoarse(block, any);
     const uint32_t index = blockIndex(block);
-    const bool atOnce = !plan_->perSample && countBits(any) >= (inTwoRows(any) ? kMostOfTwoRows : kMostOfABlock);
+    const bool atOnce = !plan_->perSample && !plan_->maskBeforeTests &&
+                        countBits(any) >= (inTwoRows(any) ? kMostOfTwoRows : kMostOfABlock);
     // What waits for these pixels comes first.
     if ((plan_->ordered || atOnce) && (inBatch_[index] & any) != 0) flushBatch();
     if (isHeld(index)) {
@@ -198,8 +207,13 @@ void FragmentStage::addPixels(const BlockCoverage& block, uint64_t any) {
                                           tileY_ + block.y + static_cast<int32_t>(bit >> 3), lanes);
         any &= ~(((uint64_t{1} << lanes) - 1) << bit);
         if (samples_ == 1) continue;
-        for (uint32_t n = 0; n < lanes; ++n) batch_.coverage[first + n] = coverageOf(block, bit + n, samples_);
+        for (uint32_t n = 0; n < lanes; ++n) setCoverage(block, bit + n, first + n);
     }
+}
+
+void FragmentStage::setCoverage(const BlockCoverage& block, uint32_t bit, uint32_t lane) {
+    batch_.coverage[lane] = coverageOf(block.masks, bit, samples_);
+    if (plan_->maskBeforeTests) batch_.rasterized[lane] = coverageOf(rasterized_[blockIndex(block)], bit, samples_);
 }
 
 /// Quads with a covered pixel, four lanes each: upper left, upper right, lower left, lower right.
@@ -211,7 +225,7 @@ void FragmentStage::addQuads(const BlockCoverage& block, uint64_t any) {
             const uint32_t first = appendSpan(tileX_ + block.x + static_cast<int32_t>(bit & 7),
                                               tileY_ + block.y + static_cast<int32_t>(bit >> 3), 2);
             for (uint32_t n = 0; n < 2; ++n) {
-                batch_.coverage[first + n] = coverageOf(block, bit + n, samples_);
+                setCoverage(block, bit + n, first + n);
                 batch_.store[first + n] = batch_.coverage[first + n] != 0 ? ~0u : 0u;
             }
         }

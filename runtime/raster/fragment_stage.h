@@ -31,6 +31,8 @@ class FragmentStage {
     void bind(const PreparedDraw& draw, uint64_t token);
     /// The planes of the primitive whose blocks come next: to be filled by the caller.
     TrianglePlanes& startPrimitive();
+    /// What the primitive covers before any test: of Plan::maskBeforeTests.
+    void keepCoverage(const BlockCoverage* blocks, uint32_t count);
     /// Pixels of the current primitive that passed the early tests.
     void add(const BlockCoverage& block);
     /// Room for what waitsFor() and add() need to know of fragments that come later: pixels of a block of the tile.
@@ -64,6 +66,7 @@ class FragmentStage {
     void reserve(uint32_t lanes);
     void addPixels(const BlockCoverage& block, uint64_t any);
     void addQuads(const BlockCoverage& block, uint64_t any);
+    void setCoverage(const BlockCoverage& block, uint32_t bit, uint32_t lane);
     BatchContext* begin(const PreparedDraw& draw, const std::shared_ptr<const BatchProgram>& program);
     void bindInputs();
     void bindInterpolation();
@@ -184,6 +187,7 @@ class FragmentStage {
     alignas(64) std::array<float, kLaneRoom> smoothAlpha_;  // of colour 0, times the area that a smooth line covers
     std::array<uint64_t, kBlocksPerTile> inBatch_{};        // pixels of the tile that wait in batch_
     uint64_t blocksInBatch_ = 0;                            // blocks that have some
+    std::array<SampleMasks, kBlocksPerTile> rasterized_{};  // of the current primitive, where the program reads them
     /// Part of a block, which waits for a primitive that has the rest: none of it waits in batch_.
     struct HeldBlock {
         uint64_t pixels = 0;

@@ -283,6 +283,7 @@ void TileRenderer::draw(const Primitive& primitive, const Chunk& chunk, const Pr
         makePlanes(primitive, chunk.attributes.data(), draw.subPixelBits, plan.preciseInterpolation, viewport.depthLow,
                    viewport.depthHigh, planes);
     }
+    if (plan.maskBeforeTests) fragments_.keepCoverage(blocks_.data(), count);
     if (fragments_.testsDepth() && plan.depth.early) count = testEarly(draw, planes, count);
     if (fragments_.testsDepth() && plan.depth.rejects) count = rejectEarly(draw, planes, count);
     if (plan.depth.write && !plan.depth.early) {
