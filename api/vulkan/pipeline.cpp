@@ -61,7 +61,7 @@ VkResult createOne(const Device& device, const VkGraphicsPipelineCreateInfo& inf
                    const VkAllocationCallbacks* callbacks, VkPipeline* out) {
     const auto fail = [&](const Error& error) { return device.report("vkCreateGraphicsPipelines", error); };
     if (!mayCompile(info.flags) && bringsShaders(info)) return VK_PIPELINE_COMPILE_REQUIRED;
-    Result<PipelineLibrary> parts = gatherParts(info);
+    Result<PipelineLibrary> parts = gatherParts(device, info);
     if (!parts) return fail(parts.error());
     PipelineState& state = parts->state;
     const bool optimise = (info.flags & VK_PIPELINE_CREATE_LINK_TIME_OPTIMIZATION_BIT_EXT) != 0;

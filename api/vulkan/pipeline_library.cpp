@@ -27,7 +27,7 @@ bool bringsShaders(const VkGraphicsPipelineCreateInfo& info) {
     return (ownParts(info) & (kPreRasterization | kFragmentShader)) != 0;
 }
 
-Result<PipelineLibrary> gatherParts(const VkGraphicsPipelineCreateInfo& info) {
+Result<PipelineLibrary> gatherParts(const Device& device, const VkGraphicsPipelineCreateInfo& info) {
     PipelineLibrary gathered;
     const auto* libraries = findInChain<VkPipelineLibraryCreateInfoKHR>(info.pNext);
     for (uint32_t i = 0; libraries != nullptr && i < libraries->libraryCount; ++i) {
@@ -38,7 +38,7 @@ Result<PipelineLibrary> gatherParts(const VkGraphicsPipelineCreateInfo& info) {
     }
     const PipelineParts parts = ownParts(info);
     if (parts == 0) return gathered;
-    const auto state = readParts(info, parts, gathered.state.state.rasterizerDiscard);
+    const auto state = readParts(device, info, parts, gathered.state.state.rasterizerDiscard);
     if (!state) return state.error();
     const bool discards = gathered.state.state.rasterizerDiscard || state->state.rasterizerDiscard;
     const auto shaders = loadStages(info, parts, discards);

@@ -18,6 +18,6 @@ struct PipelineLibrary {
 /// Whether a description has a part with shaders itself, not in libraries.
 bool bringsShaders(const VkGraphicsPipelineCreateInfo& info);
 /// All parts of a description: those of the libraries that it names, and its own.
-Result<PipelineLibrary> gatherParts(const VkGraphicsPipelineCreateInfo& info);
+Result<PipelineLibrary> gatherParts(const Device& device, const VkGraphicsPipelineCreateInfo& info);
 
 }  // namespace vernier::vulkan

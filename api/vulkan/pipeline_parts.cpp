@@ -98,6 +98,7 @@ PipelineParts partOf(VkDynamicState state) {
 void takeParts(PipelineState& to, const PipelineState& from) {
     takeValues(to, from, from.parts);
     to.parts |= from.parts;
+    to.state.depthUnrestricted |= from.state.depthUnrestricted;
     to.dynamicMask |= from.dynamicMask;
     to.planStates |= from.planStates;
     // In dynamic rendering the part of the outputs alone knows the attachments; all that have a render pass agree.

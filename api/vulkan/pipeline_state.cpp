@@ -6,6 +6,7 @@
 #include <string>
 
 #include "api/vulkan/chain.h"
+#include "api/vulkan/device.h"
 #include "api/vulkan/resource_limits.h"
 #include "runtime/limits.h"
 
@@ -195,9 +196,9 @@ Status readDepthStencil(const VkPipelineDepthStencilStateCreateInfo* info, Pipel
     state.depthTest = info->depthTestEnable != VK_FALSE;
     state.depthWrite = info->depthWriteEnable != VK_FALSE;
     state.depthCompare = info->depthCompareOp;
-    // Depths lie in 0..1: without VK_EXT_depth_range_unrestricted nothing else may get into an attachment.
-    const bool cutsDepths =
-        isDynamic(result, VK_DYNAMIC_STATE_DEPTH_BOUNDS) || info->minDepthBounds > 0 || info->maxDepthBounds < 1;
+    // Without VK_EXT_depth_range_unrestricted nothing but 0..1 may get into an attachment.
+    const bool cutsDepths = isDynamic(result, VK_DYNAMIC_STATE_DEPTH_BOUNDS) || state.depthUnrestricted ||
+                            info->minDepthBounds > 0 || info->maxDepthBounds < 1;
     state.depthBoundsTest = info->depthBoundsTestEnable != VK_FALSE && cutsDepths;
     state.stencilTest = info->stencilTestEnable != VK_FALSE;
     state.stencilFront = info->front;
@@ -314,9 +315,11 @@ std::array<SamplePosition, kMaxSamples> sampleLocationsOf(const VkSampleLocation
     return locations;
 }
 
-Result<PipelineState> readParts(const VkGraphicsPipelineCreateInfo& info, PipelineParts parts, bool discards) {
+Result<PipelineState> readParts(const Device& device, const VkGraphicsPipelineCreateInfo& info, PipelineParts parts,
+                                bool discards) {
     PipelineState result;
     result.parts = parts;
+    result.state.depthUnrestricted = device.extensions.intersects(Extension::EXT_depth_range_unrestricted);
     const auto has = [parts](PipelineParts part) { return (parts & part) != 0; };
     if (Status s = readFormats(info, result); !s) return s.error();
     if (Status s = readDynamicStates(info.pDynamicState, result); !s) return s.error();

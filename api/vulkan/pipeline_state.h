@@ -14,6 +14,8 @@
 
 namespace vernier::vulkan {
 
+struct Device;
+
 /// A set of the parts of a graphics pipeline.
 using PipelineParts = VkGraphicsPipelineLibraryFlagsEXT;
 inline constexpr PipelineParts kVertexInput = VK_GRAPHICS_PIPELINE_LIBRARY_VERTEX_INPUT_INTERFACE_BIT_EXT,
@@ -46,7 +48,8 @@ std::array<SamplePosition, kMaxSamples> sampleLocationsOf(const VkSampleLocation
 
 /// These parts of a description. Nothing behind the rasteriser is looked at where it is known that nothing gets there:
 /// because the part before says so, or, of parts that have been read elsewhere, `discards`.
-Result<PipelineState> readParts(const VkGraphicsPipelineCreateInfo& info, PipelineParts parts, bool discards);
+Result<PipelineState> readParts(const Device& device, const VkGraphicsPipelineCreateInfo& info, PipelineParts parts,
+                                bool discards);
 /// Adds the parts of `from`.
 void takeParts(PipelineState& to, const PipelineState& from);
 /// Checks that nothing is missing of a pipeline, and what the parts say together.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "runtime/geometry/chunk.h"
 
@@ -49,6 +50,19 @@ PixelRect rectOf(const VkRect2D& rect) {
             end(rect.offset.y, rect.extent.height)};
 }
 
+/// Depths outside [0, 1] have no place in a fixed-point attachment, and without VK_EXT_depth_range_unrestricted none in
+/// a float one.
+void setUpDepths(const DepthPlan& plan, const VkViewport& v, ViewportSetup& setup) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    setup.depthLow = plan.unrestricted ? -kInfinity : 0.0f;
+    setup.depthHigh = plan.unrestricted ? kInfinity : 1.0f;
+    if (!plan.clampToViewport) return;
+    const float low = setup.depthLow, high = setup.depthHigh;
+    const auto inside = [&](float value) { return value >= low ? std::min(value, high) : low; };
+    setup.depthLow = inside(std::min(v.minDepth, v.maxDepth));
+    setup.depthHigh = inside(std::max(v.minDepth, v.maxDepth));
+}
+
 ViewportSetup setUpViewport(const PreparedDraw& draw, uint32_t index, const VkRect2D& renderArea) {
     ViewportSetup setup;
     const VkViewport& v = draw.call.dynamic->viewports[index];
@@ -71,13 +85,7 @@ ViewportSetup setUpViewport(const PreparedDraw& draw, uint32_t index, const VkRe
     }
     setup.triangleArea = intersect(setup.area, setup.triangleArea);
 
-    // Depths outside [0, 1] have no place in a fixed-point attachment, and without
-    // VK_EXT_depth_range_unrestricted none in a float one.
-    const auto unit = [](float value) { return value >= 0 ? std::min(value, 1.0f) : 0.0f; };
-    if (draw.plan->depth.clampToViewport) {
-        setup.depthLow = unit(std::min(v.minDepth, v.maxDepth));
-        setup.depthHigh = unit(std::max(v.minDepth, v.maxDepth));
-    }
+    setUpDepths(draw.plan->depth, v, setup);
     return setup;
 }
 

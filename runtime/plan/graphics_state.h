@@ -23,8 +23,9 @@ struct GraphicsState {
     bool primitiveRestart = false;
 
     bool depthClampEnable = false;
-    bool negativeOneToOne = false;  // clip depths from -w to w instead of 0 to w (VK_EXT_depth_clip_control)
-    bool depthClipEnable = true;    // the specification's default: the opposite of depthClampEnable
+    bool depthUnrestricted = false;  // depths of float formats may lie outside 0..1 (VK_EXT_depth_range_unrestricted)
+    bool negativeOneToOne = false;   // clip depths from -w to w instead of 0 to w (VK_EXT_depth_clip_control)
+    bool depthClipEnable = true;     // the specification's default: the opposite of depthClampEnable
     bool rasterizerDiscard = false;
     VkPolygonMode polygonMode = VK_POLYGON_MODE_FILL;
     VkCullModeFlags cullMode = VK_CULL_MODE_NONE;

@@ -202,6 +202,7 @@ void planDepth(const GraphicsState& state, const ir::Program* fragment, Plan& pl
     depth.storage = depthStorage(state.depthStencilFormat);
     depth.hasStencil = info != nullptr && (info->aspects & VK_IMAGE_ASPECT_STENCIL_BIT) != 0;
     depth.clampToViewport = state.depthClampEnable;
+    depth.unrestricted = state.depthUnrestricted && !isFixedPoint(depth.storage);
     const bool hasDepth = depth.storage != DepthStorage::none;
     depth.test = hasDepth && state.depthTest;
     depth.write = depth.test && state.depthWrite;
@@ -386,6 +387,10 @@ DepthStorage depthStorage(VkFormat format) {
         default:
             return DepthStorage::none;
     }
+}
+
+bool isFixedPoint(DepthStorage storage) {
+    return storage == DepthStorage::d16 || storage == DepthStorage::d24;
 }
 
 Plan makePlan(const GraphicsState& state, const ShaderProgram& program) {

@@ -76,6 +76,7 @@ enum class DepthStorage : uint8_t { none, d16, d24, d32f, d32fs8 };
 
 /// none for a format without depth.
 DepthStorage depthStorage(VkFormat format);
+bool isFixedPoint(DepthStorage storage);
 
 struct DepthPlan {
     DepthStorage storage = DepthStorage::none;
@@ -85,6 +86,7 @@ struct DepthPlan {
     bool early = true;             // before the fragment program
     bool rejects = false;          // not early, but what fails before the program would fail after it, too
     bool clampToViewport = false;  // depth clamping
+    bool unrestricted = false;     // depths may lie outside 0..1
     uint8_t compare = 7;           // bit 0: passes when less, bit 1: equal, bit 2: greater (as VkCompareOp is numbered)
     bool any() const { return test || bounds || stencil; }
 };

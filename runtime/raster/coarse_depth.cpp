@@ -22,9 +22,9 @@ void CoarseDepth::forget() {
 }
 
 void CoarseDepth::setCleared(DepthStorage storage, float depth) {
-    const auto step = static_cast<float>(depthQuantum(storage));
+    const DepthRange range = clearedDepths(storage, depth);
     known_ = true;
-    blocks_.fill({depth - step, depth + step});
+    blocks_.fill({static_cast<float>(range.low), static_cast<float>(range.high)});
 }
 
 uint32_t CoarseDepth::reject(const DepthPlan& plan, const TrianglePlanes& planes, int32_t tileX, int32_t tileY,

@@ -31,6 +31,12 @@ double depthQuantum(DepthStorage storage) {
     }
 }
 
+DepthRange clearedDepths(DepthStorage storage, float depth) {
+    if (isFixedPoint(storage)) depth = depth >= 0 ? std::min(depth, 1.0f) : 0.0f;
+    const double step = depthQuantum(storage);
+    return {double{depth} - step, double{depth} + step};
+}
+
 DepthRange blockDepths(DepthStorage storage, const TrianglePlanes& p, int32_t x, int32_t y) {
     // The plane at the block's corners.
     const double dx0 = static_cast<double>(x - p.anchorX) - double{p.fractionX}, dx1 = dx0 + kBlockSize;

@@ -15,6 +15,9 @@ struct DepthRange {
 /// What conversion to the format may move a depth by.
 double depthQuantum(DepthStorage storage);
 
+/// After a clear to `depth`, which fixed-point formats take into 0..1.
+DepthRange clearedDepths(DepthStorage storage, float depth);
+
 /// In the block whose first pixel is (x, y), covered or not.
 DepthRange blockDepths(DepthStorage storage, const TrianglePlanes& planes, int32_t x, int32_t y);
 

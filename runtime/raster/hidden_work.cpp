@@ -213,8 +213,7 @@ class HiddenWork {
 
     bool beatsCleared() const {
         const RenderTarget& depth = targets_.depthStencil;
-        const double value = double{depth.clear.depthStencil.depth}, step = depthQuantum(depthStorage(depth.format));
-        return oriented({value - step, value + step}).low > farthest_;
+        return oriented(clearedDepths(depthStorage(depth.format), depth.clear.depthStencil.depth)).low > farthest_;
     }
 
     const PassTargets& targets_;
