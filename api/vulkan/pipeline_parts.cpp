@@ -30,6 +30,7 @@ void takePreRasterization(PipelineState& to, const PipelineState& from) {
 void takeFragmentShader(PipelineState& to, const PipelineState& from) {
     to.state.stencilFront = from.state.stencilFront;
     to.state.stencilBack = from.state.stencilBack;
+    to.state.readsDepthStencil.asInputs = from.state.readsDepthStencil.asInputs;
     to.fixed.stencilFront = from.fixed.stencilFront;
     to.fixed.stencilBack = from.fixed.stencilBack;
     to.fixed.minDepthBounds = from.fixed.minDepthBounds;
@@ -40,6 +41,7 @@ void takeFragmentOutput(PipelineState& to, const PipelineState& from) {
     to.state.sampleShading = from.state.sampleShading;
     to.state.minSampleShading = from.state.minSampleShading;
     to.state.blend = from.state.blend;
+    to.state.readsColors.asInputs = from.state.readsColors.asInputs;
     to.fixed.blendConstants = from.fixed.blendConstants;
     to.fixed.colorWrites = from.fixed.colorWrites;
     to.fixed.sampleLocations = from.fixed.sampleLocations;
@@ -98,7 +100,10 @@ PipelineParts partOf(VkDynamicState state) {
 void takeParts(PipelineState& to, const PipelineState& from) {
     takeValues(to, from, from.parts);
     to.parts |= from.parts;
+    // What the device and the flags of the pipeline say, whatever the part.
     to.state.depthUnrestricted |= from.state.depthUnrestricted;
+    to.state.readsColors.asTextures |= from.state.readsColors.asTextures;
+    to.state.readsDepthStencil.asTextures |= from.state.readsDepthStencil.asTextures;
     to.dynamicMask |= from.dynamicMask;
     to.planStates |= from.planStates;
     // In dynamic rendering the part of the outputs alone knows the attachments; all that have a render pass agree.

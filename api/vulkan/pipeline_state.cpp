@@ -192,7 +192,11 @@ Status readDepthStencil(const VkPipelineDepthStencilStateCreateInfo* info, Pipel
             return {};
         return invalidArgument("pDepthStencilState must be given: there is such an attachment");
     }
+    constexpr VkPipelineDepthStencilStateCreateFlags kOrderedAccess =
+        VK_PIPELINE_DEPTH_STENCIL_STATE_CREATE_RASTERIZATION_ORDER_ATTACHMENT_DEPTH_ACCESS_BIT_EXT |
+        VK_PIPELINE_DEPTH_STENCIL_STATE_CREATE_RASTERIZATION_ORDER_ATTACHMENT_STENCIL_ACCESS_BIT_EXT;
     GraphicsState& state = result.state;
+    state.readsDepthStencil.asInputs = (info->flags & kOrderedAccess) != 0;
     state.depthTest = info->depthTestEnable != VK_FALSE;
     state.depthWrite = info->depthWriteEnable != VK_FALSE;
     state.depthCompare = info->depthCompareOp;
@@ -217,6 +221,8 @@ Status readBlend(const VkPipelineColorBlendStateCreateInfo* info, PipelineState&
         if (allDynamic && areDynamic(result, {PlanState::LOGIC_OP_ENABLE_EXT, PlanState::LOGIC_OP_EXT})) return {};
         return invalidArgument("pColorBlendState must be given: there are colour attachments");
     }
+    result.state.readsColors.asInputs =
+        (info->flags & VK_PIPELINE_COLOR_BLEND_STATE_CREATE_RASTERIZATION_ORDER_ATTACHMENT_ACCESS_BIT_EXT) != 0;
     result.state.logicOpEnable = info->logicOpEnable != VK_FALSE;
     result.state.logicOp = info->logicOp;
     if (!allDynamic) {
@@ -319,7 +325,11 @@ Result<PipelineState> readParts(const Device& device, const VkGraphicsPipelineCr
                                 bool discards) {
     PipelineState result;
     result.parts = parts;
-    result.state.depthUnrestricted = device.extensions.intersects(Extension::EXT_depth_range_unrestricted);
+    GraphicsState& state = result.state;
+    state.depthUnrestricted = device.extensions.intersects(Extension::EXT_depth_range_unrestricted);
+    state.readsColors.asTextures = (info.flags & VK_PIPELINE_CREATE_COLOR_ATTACHMENT_FEEDBACK_LOOP_BIT_EXT) != 0;
+    state.readsDepthStencil.asTextures =
+        (info.flags & VK_PIPELINE_CREATE_DEPTH_STENCIL_ATTACHMENT_FEEDBACK_LOOP_BIT_EXT) != 0;
     const auto has = [parts](PipelineParts part) { return (parts & part) != 0; };
     if (Status s = readFormats(info, result); !s) return s.error();
     if (Status s = readDynamicStates(info.pDynamicState, result); !s) return s.error();

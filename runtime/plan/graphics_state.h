@@ -12,6 +12,12 @@
 
 namespace vernier {
 
+/// How the fragment program may read attachments that the same draws write, each fragment what those before it have
+/// left: VK_EXT_rasterization_order_attachment_access and VK_EXT_attachment_feedback_loop_layout.
+struct AttachmentReads {
+    bool asInputs = false, asTextures = false;
+};
+
 /// Everything fixed when a pipeline is created, shaders aside. Values that a draw takes from DynamicState are not here.
 struct GraphicsState {
     std::vector<VkVertexInputBindingDescription> vertexBindings;
@@ -53,6 +59,8 @@ struct GraphicsState {
     bool logicOpEnable = false;
     VkLogicOp logicOp = VK_LOGIC_OP_COPY;
     std::array<VkPipelineColorBlendAttachmentState, kMaxColorAttachments> blend{};
+
+    AttachmentReads readsColors, readsDepthStencil;
 
     uint32_t colorCount = 0;
     std::array<VkFormat, kMaxColorAttachments> colorFormats{};  // VK_FORMAT_UNDEFINED: unused

@@ -6,6 +6,7 @@
 
 #include "runtime/plan/facts.h"
 #include "runtime/plan/plan_stages.h"
+#include "spirv_interp/ir/ops.h"
 #include "spirv_interp/ir/primitive_inputs.h"
 #include "spirv_interp/ir/split_samples.h"
 
@@ -196,6 +197,13 @@ bool writesStencilRef(const ir::Program& fragment) {
                        [](const ir::InterfaceSlot& output) { return output.builtin == ir::Builtin::fragStencilRef; });
 }
 
+bool readsAttachments(const ir::Program& fragment, const AttachmentReads& reads) {
+    return std::any_of(fragment.resources.begin(), fragment.resources.end(), [&](const ir::Resource& resource) {
+        if (resource.kind == ir::ResourceKind::inputAttachment) return reads.asInputs || reads.asTextures;
+        return reads.asTextures && !ir::isBuffer(resource.kind) && resource.kind != ir::ResourceKind::sampler;
+    });
+}
+
 void planDepth(const GraphicsState& state, const ir::Program* fragment, Plan& plan) {
     DepthPlan& depth = plan.depth;
     const FormatInfo* info = findFormat(state.depthStencilFormat);
@@ -214,12 +222,14 @@ void planDepth(const GraphicsState& state, const ir::Program* fragment, Plan& pl
     if (skipIdle && state.depthCompare == VK_COMPARE_OP_ALWAYS && !depth.write) depth.test = false;
     if (fragment == nullptr || fragment->earlyFragmentTests) return;
     // Testing early must not be visible: not through writes for fragments that the program then drops, nor
-    // through side effects of fragments that should have run.
+    // through side effects of fragments that should have run, nor to fragments that read what is tested.
     const bool writes =
         depth.write || (depth.stencil && (changesStencil(state.stencilFront) || changesStencil(state.stencilBack)));
     const bool dropsFragments = fragment->canDiscard || fragment->writesSampleMask || state.alphaToCoverage;
     const bool exportsStencil = depth.stencil && writesStencilRef(*fragment);
-    depth.early = !fragment->writesDepth && !exportsStencil && !fragment->hasSideEffects && !(writes && dropsFragments);
+    const bool isRead = readsAttachments(*fragment, state.readsDepthStencil);
+    depth.early = !fragment->writesDepth && !exportsStencil && !fragment->hasSideEffects &&
+                  !(writes && dropsFragments) && !(writes && isRead);
     // Fragments of the draw that are yet to be tested can but move the depth away from those that fail; unless they
     // pass where depths differ.
     constexpr uint8_t kNotEqual = 5;
@@ -349,8 +359,10 @@ void planFragments(const GraphicsState& state, const ir::Program& fragment, Isa 
     plan.coverageIsFull = coverageIsFull(plan);
     plan.maskBeforeTests = maskBeforeTests(plan);
     plan.interpolates = interpolates(fragment);
-    plan.ordered = std::any_of(plan.colors.begin(), plan.colors.end(),
-                               [](const ColorPlan& color) { return color.readsDestination; });
+    plan.readsAttachments =
+        readsAttachments(fragment, state.readsColors) || readsAttachments(fragment, state.readsDepthStencil);
+    plan.ordered = plan.readsAttachments || std::any_of(plan.colors.begin(), plan.colors.end(),
+                                                        [](const ColorPlan& color) { return color.readsDestination; });
 }
 
 /// Programs that know single pixels or decide about them, and samples, keep a run for each.
@@ -360,7 +372,8 @@ bool canShadeCoarsely(const Plan& plan, const ir::Program& fragment) {
                slot.builtin == ir::Builtin::sampleId || slot.builtin == ir::Builtin::samplePosition;
     };
     return plan.samples == 1 && plan.runsFragments && plan.keepsCoverage && !plan.smoothLines &&
-           !fragment.writesDepth && plan.stencilRefSlot == kNoSlot && !fragment.hasSideEffects && !plan.interpolates &&
+           !plan.readsAttachments && !fragment.writesDepth && plan.stencilRefSlot == kNoSlot &&
+           !fragment.hasSideEffects && !plan.interpolates &&
            std::none_of(plan.fragmentBuiltins.begin(), plan.fragmentBuiltins.end(), isOfPixel);
 }
 

@@ -156,6 +156,7 @@ struct Plan {
     bool needsBarycentrics = false;
     bool needsCentroid = false;         // some input is evaluated inside the covered part of the pixel
     bool ordered = false;               // a batch holds each pixel once: colours are read back
+    bool readsAttachments = false;      // the program reads some: ordered, and nothing before it may be left out
     bool preciseInterpolation = false;  // double
     bool keepsCoverage = true;          // nothing after the early tests drops a sample
     bool countsEarly = false;           // samples are counted before the program may drop them (EarlyFragmentTests)

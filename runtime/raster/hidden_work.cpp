@@ -233,8 +233,10 @@ class HiddenWork {
 }  // namespace
 
 bool mayHideWork(const PassTargets& targets, std::span<const PreparedDraw> draws) {
-    return std::any_of(draws.begin(), draws.end(),
-                       [&](const PreparedDraw& draw) { return effectOf(targets, draw).replaces; });
+    const bool seen =
+        std::any_of(draws.begin(), draws.end(), [](const PreparedDraw& draw) { return draw.plan->readsAttachments; });
+    return !seen && std::any_of(draws.begin(), draws.end(),
+                                [&](const PreparedDraw& draw) { return effectOf(targets, draw).replaces; });
 }
 
 VisibleStart visibleStart(const PassTargets& targets, const TileInput& tile) {
