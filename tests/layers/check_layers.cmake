@@ -45,7 +45,7 @@ room(conformance/report base conformance/scene conformance/oracle conformance/di
 room(conformance/tool base conformance/scene conformance/scenes conformance/oracle conformance/differ conformance/arbiter
     conformance/drivers conformance/report)
 room(conformance/hardcases base spirv_interp/reference conformance/scene conformance/scenes conformance/oracle conformance/differ
-    conformance/drivers conformance/report conformance/tool)
+    conformance/drivers conformance/precision conformance/report conformance/tool)
 room(conformance/precision base spirv_interp spirv_interp/reference conformance/drivers api/include)
 
 # Above all of these stand bench and tests, which may know everything.
