@@ -13,7 +13,6 @@ namespace vernier::conformance::hardcases {
 namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kLeastNormal = 0x1p-14, kLargest = 65504;
 constexpr exact::Component kHalf{0, 0, 16, exact::Encoding::sfloat};
 
