@@ -1,6 +1,6 @@
 // Fragments that read the attachments they draw to, in rasterisation order
 // (VK_EXT_rasterization_order_attachment_access) and as textures (VK_EXT_attachment_feedback_loop_layout).
-#include "tests/vulkan/test_pipeline.h"
+#include "tests/vulkan/test_inputs.h"
 
 namespace vernier::test {
 namespace {
@@ -35,7 +35,7 @@ std::vector<uint32_t> asWords(const std::vector<uint8_t>& bytes) {
     return words;
 }
 
-class AttachmentAccessTest : public DrawTest {
+class AttachmentAccessTest : public InputsTest {
   protected:
     std::vector<const char*> moreExtensions() override {
         return {VK_EXT_RASTERIZATION_ORDER_ATTACHMENT_ACCESS_EXTENSION_NAME,
@@ -89,8 +89,10 @@ class AttachmentAccessTest : public DrawTest {
             return makeView(depth.image, VK_IMAGE_VIEW_TYPE_2D, kDepthStencil, {bits, 0, 1, 0, 1});
         };
         VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
-        const VkDescriptorSet set = makeInputs(
-            {color.view, aspect(VK_IMAGE_ASPECT_DEPTH_BIT), aspect(VK_IMAGE_ASPECT_STENCIL_BIT)}, &setLayout);
+        const VkDescriptorSet set = makeInputs({{color.view, VK_IMAGE_LAYOUT_GENERAL},
+                                                {aspect(VK_IMAGE_ASPECT_DEPTH_BIT), VK_IMAGE_LAYOUT_GENERAL},
+                                                {aspect(VK_IMAGE_ASPECT_STENCIL_BIT), VK_IMAGE_LAYOUT_GENERAL}},
+                                               &setLayout);
         PipelineDesc desc;
         desc.extent = kExtent;
         desc.vertex = makeShader(VK_SHADER_STAGE_VERTEX_BIT, vertex);
@@ -112,26 +114,6 @@ class AttachmentAccessTest : public DrawTest {
         vkCmdEndRenderPass(commands);
         submit(commands);
         return asWords(readImage(color, VK_IMAGE_ASPECT_COLOR_BIT, 4));
-    }
-
-    VkDescriptorSet makeInputs(const std::vector<VkImageView>& views, VkDescriptorSetLayout* layout) {
-        const auto count = static_cast<uint32_t>(views.size());
-        std::vector<VkDescriptorSetLayoutBinding> bindings;
-        for (uint32_t i = 0; i < count; ++i)
-            bindings.push_back({i, VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr});
-        *layout = makeSetLayout(bindings);
-        const VkDescriptorSet set = makeEmptySet(*layout, {{VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT, count}});
-        for (uint32_t i = 0; i < count; ++i) {
-            const VkDescriptorImageInfo image{VK_NULL_HANDLE, views[i], VK_IMAGE_LAYOUT_GENERAL};
-            auto write = make<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
-            write.dstSet = set;
-            write.dstBinding = i;
-            write.descriptorCount = 1;
-            write.descriptorType = VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT;
-            write.pImageInfo = &image;
-            vkUpdateDescriptorSets(device, 1, &write, 0, nullptr);
-        }
-        return set;
     }
 
     VkPhysicalDeviceRasterizationOrderAttachmentAccessFeaturesEXT access_{

@@ -1,12 +1,12 @@
 // Input attachments: a subpass reads, at its own pixel, what an earlier one drew.
-#include "tests/vulkan/test_pipeline.h"
+#include "tests/vulkan/test_inputs.h"
 
 namespace vernier::test {
 namespace {
 
 constexpr VkExtent2D kExtent{70, 20};  // more than one tile of the rasteriser
 
-class InputAttachmentTest : public DrawTest {
+class InputAttachmentTest : public InputsTest {
   protected:
     /// Two subpasses: the first draws to `first` and `depth`; the second reads both and draws to `second`.
     Pass makeTwoPasses(const TestImage& first, const TestImage& second, const TestImage& depth,
@@ -58,30 +58,6 @@ class InputAttachmentTest : public DrawTest {
         return pass;
     }
 
-    /// A set with an input attachment per binding.
-    VkDescriptorSet makeInputs(const std::vector<TestImage>& images, VkDescriptorSetLayout* layout) {
-        const auto count = static_cast<uint32_t>(images.size());
-        std::vector<VkDescriptorSetLayoutBinding> bindings;
-        for (uint32_t i = 0; i < count; ++i)
-            bindings.push_back({i, VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr});
-        *layout = makeSetLayout(bindings);
-        const VkDescriptorSet set = makeEmptySet(*layout, {{VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT, count}});
-        for (uint32_t i = 0; i < count; ++i) {
-            const bool depth = images[i].format == VK_FORMAT_D32_SFLOAT;
-            const VkDescriptorImageInfo image{
-                VK_NULL_HANDLE, images[i].view,
-                depth ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-            auto write = make<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
-            write.dstSet = set;
-            write.dstBinding = i;
-            write.descriptorCount = 1;
-            write.descriptorType = VK_DESCRIPTOR_TYPE_INPUT_ATTACHMENT;
-            write.pImageInfo = &image;
-            vkUpdateDescriptorSets(device, 1, &write, 0, nullptr);
-        }
-        return set;
-    }
-
     /// Draws a position-dependent colour, reads it back as an input and returns what the second subpass made of it.
     std::vector<uint8_t> run(const std::string& glsl, VkSampleCountFlagBits samples, TestImage* second) {
         const VkImageUsageFlags input = VK_IMAGE_USAGE_INPUT_ATTACHMENT_BIT;
@@ -92,7 +68,9 @@ class InputAttachmentTest : public DrawTest {
             makeImage(VK_FORMAT_D32_SFLOAT, kExtent, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | input, samples);
         const Pass pass = makeTwoPasses(first, *second, depth, samples);
         VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
-        const VkDescriptorSet set = makeInputs({first, depth}, &setLayout);
+        const VkDescriptorSet set = makeInputs({{first.view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL},
+                                                {depth.view, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL}},
+                                               &setLayout);
         PipelineDesc desc;
         desc.extent = kExtent;
         desc.samples = samples;
