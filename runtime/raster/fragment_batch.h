@@ -44,14 +44,12 @@ struct FragmentBatch {
     alignas(64) std::array<uint32_t, kLaneRoom> execute;  // ~0: the lane runs, as a helper perhaps
     alignas(64) std::array<uint32_t, kLaneRoom> store;    // ~0: its effects count
     alignas(64) std::array<uint32_t, kLaneRoom> second;   // ~0: a lane of segments[1], where that has all lanes
-    alignas(64) std::array<float, kLaneRoom> offsetX,
-        offsetY;                                           // place inside the pixel, when it is not the centre
-    alignas(64) std::array<uint32_t, kLaneRoom> coverage;  // samples the lane stands for
-    alignas(
-        64) std::array<uint32_t, kLaneRoom> rasterized;  // of Plan::maskBeforeTests: what they were before the tests
-    alignas(64) std::array<uint32_t, kLaneRoom> sample;  // when run per sample
-    bool apart = false;                                  // spans only: some lanes are in no span
-    uint32_t spanCount = 0;                              // spans only
+    alignas(64) std::array<float, kLaneRoom> offsetX, offsetY;  // place in the pixel, when it is not the centre
+    alignas(64) std::array<uint32_t, kLaneRoom> coverage;       // samples the lane stands for
+    alignas(64) std::array<uint32_t, kLaneRoom> rasterized;     // Plan::maskBeforeTests: coverage before the tests
+    alignas(64) std::array<uint32_t, kLaneRoom> sample;         // when run per sample
+    bool apart = false;                                         // spans only: some lanes are in no span
+    uint32_t spanCount = 0;                                     // spans only
     std::array<FragmentSpan, kMaxFragmentLanes> spans;
     uint32_t segmentCount = 0;
     std::array<FragmentSegment, kMaxFragmentLanes> segments;

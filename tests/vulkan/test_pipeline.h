@@ -80,5 +80,11 @@ class DrawTest : public VulkanTest {
 
 /// The colour of an RGBA8 pixel as 0xAABBGGRR.
 uint32_t pixelAt(const std::vector<uint8_t>& texels, const TestImage& image, uint32_t x, uint32_t y);
+/// Texels of 32 bits.
+inline std::vector<uint32_t> asWords(const std::vector<uint8_t>& bytes) {
+    std::vector<uint32_t> words(bytes.size() / sizeof(uint32_t));
+    std::memcpy(words.data(), bytes.data(), bytes.size());
+    return words;
+}
 
 }  // namespace vernier::test
