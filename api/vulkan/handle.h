@@ -50,6 +50,7 @@ struct Surface;
 struct Swapchain;
 struct DebugMessenger;
 struct PrivateDataSlot;
+struct ValidationCache;
 
 template <class Handle>
 struct HandleTraits;
@@ -89,6 +90,7 @@ VERNIER_HANDLE(VkSurfaceKHR, Surface)
 VERNIER_HANDLE(VkSwapchainKHR, Swapchain)
 VERNIER_HANDLE(VkDebugUtilsMessengerEXT, DebugMessenger)
 VERNIER_HANDLE(VkPrivateDataSlot, PrivateDataSlot)
+VERNIER_HANDLE(VkValidationCacheEXT, ValidationCache)
 #undef VERNIER_HANDLE
 
 template <class Handle>

@@ -8,6 +8,7 @@
 #include "api/vulkan/entry_points.h"
 #include "api/vulkan/instance.h"
 #include "api/vulkan/pipeline_stages.h"
+#include "api/vulkan/validation_cache.h"
 #include "runtime/plan/check_state.h"
 #include "runtime/plan/plan.h"
 #include "spirv_interp/program.h"
@@ -99,12 +100,19 @@ VKAPI_ATTR VkResult VKAPI_CALL CreateShaderModule(VkDevice device, const VkShade
     return guarded([&] {
         std::vector<uint32_t> words(pCreateInfo->pCode, pCreateInfo->pCode + pCreateInfo->codeSize / sizeof(uint32_t));
         const size_t given = words.size();
+        const auto* use = findInChain<VkShaderModuleValidationCacheCreateInfoEXT>(pCreateInfo->pNext);
+        ValidationCache* cache = use != nullptr ? object(use->validationCache) : nullptr;
+        const ModuleKey key = cache != nullptr ? moduleKey(words) : ModuleKey{};
+        if (cache != nullptr && cache->has(key))
+            return createHandle(pAllocator, pShaderModule, ValidatedModule::known(std::move(words)));
         Result<ValidatedModule> module = ValidatedModule::create(std::move(words));
         if (!module) return object(device)->report("vkCreateShaderModule", module.error());
-        if (module->words().size() != given && object(device)->validates()) {
+        const bool completed = module->words().size() != given;
+        if (completed && object(device)->validates()) {
             (void)object(device)->report("vkCreateShaderModule", VK_SUCCESS,
                                          "the module uses a built-in variable whose capability it does not declare");
         }
+        if (cache != nullptr && !completed) cache->add(key);
         return createHandle(pAllocator, pShaderModule, std::move(module).value());
     });
 }
