@@ -307,10 +307,13 @@ bool coverageIsFull(const Plan& plan) {
     return plan.samples == 1 && plan.keepsCoverage && !plan.usesQuads && !readsSampleMask(plan);
 }
 
-/// The sample mask "reflects the coverage before the early fragment tests" (specification, "Early Fragment Test"). Of
-/// programs that run once per sample, each run has a sample that is left.
-bool maskBeforeTests(const Plan& plan) {
-    return plan.samples > 1 && !plan.perSample && (plan.depth.any() || plan.depth.write) && readsSampleMask(plan);
+/// "If the fragment shader additionally specifies the PostDepthCoverage execution mode, the value of a variable
+/// decorated with the SampleMask built-in reflects the coverage after the early fragment tests. Otherwise, it reflects
+/// the coverage before the early fragment tests" (specification, "Early Fragment Test"). Of programs that run once per
+/// sample, each run has a sample that is left.
+bool maskBeforeTests(const Plan& plan, const ir::Program& fragment) {
+    return plan.samples > 1 && !plan.perSample && (plan.depth.any() || plan.depth.write) &&
+           !(fragment.earlyFragmentTests && fragment.postDepthCoverage) && readsSampleMask(plan);
 }
 
 /// Whether the neighbours of a pixel matter for nothing but the level of detail of an image.
@@ -357,7 +360,7 @@ void planFragments(const GraphicsState& state, const ir::Program& fragment, Isa 
     for (const BuiltinSlot& builtin : plan.fragmentBuiltins)
         plan.usesFragCoord |= builtin.builtin == ir::Builtin::fragCoord;
     plan.coverageIsFull = coverageIsFull(plan);
-    plan.maskBeforeTests = maskBeforeTests(plan);
+    plan.maskBeforeTests = maskBeforeTests(plan, fragment);
     plan.interpolates = interpolates(fragment);
     plan.readsAttachments =
         readsAttachments(fragment, state.readsColors) || readsAttachments(fragment, state.readsDepthStencil);

@@ -284,6 +284,7 @@ void addFlow(HandlerTables& tables) {
     addPlain<end>(tables, Op::end);
     addPlain<controlBarrier>(tables, Op::controlBarrier);
     addPlain<memoryBarrier>(tables, Op::memoryBarrier);
+    addPlain<readClock>(tables, Op::readClock);
     addPlain<runImage>(tables, Op::image);
     addPlain<runInterpolation>(tables, Op::interpolate);
     addPlain<subgroupInvocation>(tables, Op::subgroupInvocation);

@@ -21,7 +21,8 @@ void addAtomics(Isa isa, HandlerTables& tables);              // atomics.cpp: at
 // Plain handlers that are the same for every instruction set.
 const Inst* controlBarrier(Frame& frame, const Inst* inst);  // barrier.cpp
 const Inst* memoryBarrier(Frame& frame, const Inst* inst);
-const Inst* runImage(Frame& frame, const Inst* inst);  // images.cpp
+const Inst* readClock(Frame& frame, const Inst* inst);  // clock.cpp
+const Inst* runImage(Frame& frame, const Inst* inst);   // images.cpp
 const Inst* runInterpolation(Frame& frame, const Inst* inst);
 const Inst* subgroupInvocation(Frame& frame, const Inst* inst);  // subgroup.cpp
 const Inst* subgroupBallot(Frame& frame, const Inst* inst);

@@ -228,6 +228,9 @@ void Lowerer::lowerInst(const ir::Inst& inst) {
         case ir::Op::memoryBarrier:
             emit(Op::memoryBarrier, {});
             return;
+        case ir::Op::readClock:
+            emit(Op::readClock, {target(inst)});
+            return;
         case ir::Op::isHelper:
             emit(Op::helperLanes, {target(inst)});
             return;

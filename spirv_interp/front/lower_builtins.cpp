@@ -191,4 +191,17 @@ bool Lowering::lowerBarrier(const Instruction& inst) {
     return true;
 }
 
+/// As one number or as two words (SPV_KHR_shader_clock); all scopes have one clock.
+void Lowering::lowerClock(const Instruction& inst) {
+    const ir::ValueId now = emitter_.emit(ir::Op::readClock, ir::Type::i64, {});
+    if (leafTypes(inst[1]).size() == 1) {
+        setScalar(inst[2], inst[1], now);
+        return;
+    }
+    const NewScalars words = newLeaves(2);
+    words[0] = emitter_.emit(ir::Op::lowWord, ir::Type::i32, {now});
+    words[1] = emitter_.emit(ir::Op::highWord, ir::Type::i32, {now});
+    setValue(inst[2], inst[1], words);
+}
+
 }  // namespace vernier

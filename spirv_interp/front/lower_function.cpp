@@ -163,6 +163,9 @@ void Lowering::lowerInstruction(const Instruction& inst) {
         case spv::Op::OpIsHelperInvocationEXT:
             setScalar(inst[2], inst[1], emitter_.emit(ir::Op::isHelper, ir::Type::b1, {}));
             return;
+        case spv::Op::OpReadClockKHR:
+            lowerClock(inst);
+            return;
         case spv::Op::OpExtInst:
             if (module_.extendedSet(inst[3]) == "GLSL.std.450") break;
             lowerDebugInstruction(inst);

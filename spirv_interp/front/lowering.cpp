@@ -108,6 +108,8 @@ constexpr Capability kCapabilities[] = {
     Capability::DotProductInput4x8Bit,
     Capability::DotProductInput4x8BitPacked,
     Capability::ExpectAssumeKHR,
+    Capability::ShaderClockKHR,
+    Capability::SampleMaskPostDepthCoverage,
 };
 
 }  // namespace
@@ -198,6 +200,9 @@ void Lowering::lowerExecutionModes(const EntryPoint& entry) {
         switch (static_cast<spv::ExecutionMode>(inst[2])) {
             case spv::ExecutionMode::EarlyFragmentTests:
                 program_.earlyFragmentTests = true;
+                break;
+            case spv::ExecutionMode::PostDepthCoverage:
+                program_.postDepthCoverage = true;
                 break;
             case spv::ExecutionMode::LocalSize:
             case spv::ExecutionMode::LocalSizeId:

@@ -228,6 +228,7 @@ class Lowering {
     void setLocalSize(const Instruction& mode);
     void checkLocalSize(const EntryPoint& entry);
     bool lowerBarrier(const Instruction& inst);
+    void lowerClock(const Instruction& inst);
 
     // lower_subgroup.cpp
     bool lowerSubgroup(const Instruction& inst);

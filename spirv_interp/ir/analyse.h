@@ -6,7 +6,8 @@
 namespace vernier::ir {
 
 /// Sets the facts at the end of Program from its instructions, readOnly of every resource, and drops inputs and outputs
-/// that no instruction names (indices are renumbered). earlyFragmentTests, localWords and localSize are left alone.
+/// that no instruction names (indices are renumbered). earlyFragmentTests, postDepthCoverage, localWords and localSize
+/// are left alone.
 void analyse(Program& program);
 
 }  // namespace vernier::ir

@@ -256,8 +256,9 @@ struct Program {
     uint32_t localWords = 0;             // invocation-local memory
     // Fragment execution modes and facts that planning needs; recomputed by analyse() (ir/analyse.h) after passes.
     bool earlyFragmentTests = false;
-    bool usesQuads = false;   // derivatives or implicit LOD: helper lanes are needed
-    bool canDiscard = false;  // kill or demote
+    bool postDepthCoverage = false;  // the sample mask that it reads is what the early tests have left
+    bool usesQuads = false;          // derivatives or implicit LOD: helper lanes are needed
+    bool canDiscard = false;         // kill or demote
     bool writesDepth = false, writesSampleMask = false;
     bool hasSideEffects = false;  // stores or atomics to memory
     bool perSample = false;       // reads SampleId/SamplePosition or a sample-qualified input

@@ -254,6 +254,8 @@ uint32_t resultTypes(Op op) {
             return kInts | kFloats;
         case Op::makeWide:
             return kWide;
+        case Op::readClock:
+            return bit(Type::i64);
         case Op::ftoh:
         case Op::ftohZero:
         case Op::unpackHalfLow:

@@ -230,6 +230,7 @@ class Parser {
 
     void fact(LineReader& in) {
         const std::pair<std::string_view, bool*> facts[] = {{"earlyFragmentTests", &program_.earlyFragmentTests},
+                                                            {"postDepthCoverage", &program_.postDepthCoverage},
                                                             {"usesQuads", &program_.usesQuads},
                                                             {"canDiscard", &program_.canDiscard},
                                                             {"writesDepth", &program_.writesDepth},

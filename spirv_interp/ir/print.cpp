@@ -55,6 +55,7 @@ void printImageOp(std::string& out, size_t index, const ImageOp& op) {
 
 void printFlags(std::string& out, const Program& program) {
     const std::pair<const char*, bool> flags[] = {{"earlyFragmentTests", program.earlyFragmentTests},
+                                                  {"postDepthCoverage", program.postDepthCoverage},
                                                   {"usesQuads", program.usesQuads},
                                                   {"canDiscard", program.canDiscard},
                                                   {"writesDepth", program.writesDepth},

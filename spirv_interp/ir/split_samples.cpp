@@ -157,7 +157,7 @@ class Splitter {
         }
         straight.insts.emplace_back().op = Op::ret;
         pixel.blocks = {std::move(straight)};
-        pixel.earlyFragmentTests = false;
+        pixel.earlyFragmentTests = pixel.postDepthCoverage = false;
         return pixel;
     }
 

@@ -127,6 +127,15 @@ bool Machine<Number>::executeControl(const Instruction& i) {
         case spv::OpIsHelperInvocationEXT:
             setResult(i, Scalar<Number>::ofBits(helper_ ? 1 : 0));
             return true;
+        case spv::OpReadClockKHR: {
+            // A clock that ticks when it is looked at.
+            ++clock_;
+            const bool words = resultCount(i) == 2;
+            Scalars<Number> now{Scalar<Number>::ofBits(words ? clock_ & 0xFFFFFFFFu : clock_)};
+            if (words) now.push_back(Scalar<Number>::ofBits(clock_ >> 32));
+            setResult(i, std::move(now));
+            return true;
+        }
         case spv::OpEmitVertex:
             emitVertex(0);
             return true;

@@ -257,6 +257,7 @@ class Machine {
     bool combining_ = false;  // inside of an atomic instruction that reads and writes
     Status status_ = Status::running;
     uint64_t steps_ = 0;
+    uint64_t clock_ = 0;
     std::vector<EmittedVertex<Number>> vertices_;
     bool startsStrip_ = true;
     std::vector<Frame> frames_;

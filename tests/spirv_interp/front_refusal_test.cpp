@@ -30,10 +30,9 @@ std::string errorOfGlsl(std::string_view body, std::string_view globals = "", ir
 }
 
 TEST(Refusal, NamesInstructionIdAndLine) {
-    EXPECT_EQ(errorOfGlsl("o = uint(clockARB());",
-                          "#extension GL_ARB_shader_clock : enable\n#extension GL_ARB_gpu_shader_int64 : enable\n"
-                          "layout(location=0) out uint o;"),
-              "SPIR-V: capability ShaderClockKHR is not supported");
+    EXPECT_EQ(errorOfGlsl("o = gl_FragSizeEXT.x;",
+                          "#extension GL_EXT_fragment_invocation_density : enable\nlayout(location=0) out int o;"),
+              "SPIR-V: capability FragmentDensityEXT is not supported");
     const std::string gather =
         errorOfGlsl("o = texture(t, vec2(0));",
                     "layout(set=0,binding=0) uniform sampler2D t; layout(location=0) out vec4 o;", ir::Stage::vertex);

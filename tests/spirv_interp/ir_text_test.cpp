@@ -23,7 +23,7 @@ resource 2 sampledImage 0.0 x0 read
 resource 3 sampler 0.1 x1 read
 imageOp 0 sampleImplicit d2 image 2 sampler 3 coords 2 offsets 2 arrayed depthCompare bias
 imageOp 1 store d3 image 2 coords 3
-facts earlyFragmentTests usesQuads canDiscard hasSideEffects
+facts earlyFragmentTests postDepthCoverage usesQuads canDiscard hasSideEffects
 localSize 8 4 1
 local 12
 b0:
