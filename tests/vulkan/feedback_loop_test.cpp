@@ -160,17 +160,16 @@ TEST_F(FeedbackLoopTest, depthsAndColorsOfASubpass) {
     const TestImage depths =
         makeImage(VK_FORMAT_D32_SFLOAT, kExtent, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | kUsage);
     const Pass loop = makeLoopPass(image, depths);
-    constexpr VkPipelineCreateFlags kFlags = VK_PIPELINE_CREATE_COLOR_ATTACHMENT_FEEDBACK_LOOP_BIT_EXT |
-                                             VK_PIPELINE_CREATE_DEPTH_STENCIL_ATTACHMENT_FEEDBACK_LOOP_BIT_EXT;
     VkDescriptorSetLayout colorLayout = VK_NULL_HANDLE, depthLayout = VK_NULL_HANDLE;
     const VkDescriptorSet colorSet = makeTexture(image.view, &colorLayout);
     const VkDescriptorSet depthSet = makeTexture(depths.view, &depthLayout);
-    const PipelineDesc reader = describe(kDoubled, colorLayout, kFlags);
+    const PipelineDesc reader =
+        describe(kDoubled, colorLayout, VK_PIPELINE_CREATE_COLOR_ATTACHMENT_FEEDBACK_LOOP_BIT_EXT);
     PipelineDesc tester = describe(R"(#version 450
 layout(set = 0, binding = 0) uniform sampler2D self;
 layout(location = 0) out uint o;
 void main() { o = uint(texelFetch(self, ivec2(gl_FragCoord.xy), 0).x * 1000.0); })",
-                                   depthLayout, kFlags);
+                                   depthLayout, VK_PIPELINE_CREATE_DEPTH_STENCIL_ATTACHMENT_FEEDBACK_LOOP_BIT_EXT);
     tester.depthTest = true;  // writes 0.5
     tester.change = [](const PipelineStates& states) { states.depth.depthCompareOp = VK_COMPARE_OP_LESS; };
     const auto drawn = [&](const std::function<void(VkCommandBuffer)>& draws) {
