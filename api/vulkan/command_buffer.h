@@ -56,6 +56,8 @@ struct CommandBuffer : Dispatchable {
     void checkPipeline();
     /// The state that plans are made for is about to change: a pipeline that takes some from commands needs another.
     SetState& changePlanState();
+    /// Notes the samples that a secondary command buffer draws with, where it was not told those of its pass.
+    void takeSamples(const GraphicsState& drawn);
     /// Where the pipeline does not fit yet: looks its plan up and records it. False when it cannot draw here.
     bool choosePlan(const char* command);
 };

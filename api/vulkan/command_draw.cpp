@@ -59,7 +59,7 @@ bool mayRunIn(const CommandBuffer::Pass& recorded, const CommandBuffer::Pass& pa
     }
     const auto holds = [](VkFormat wanted, VkFormat has) { return wanted == VK_FORMAT_UNDEFINED || wanted == has; };
     return holds(from.depth, to.depth) && holds(from.stencil, to.stencil) && from.viewMask == to.viewMask &&
-           (to.samples == 0 || from.samples == to.samples);
+           (to.samples == 0 || from.samples == 0 || from.samples == to.samples);
 }
 
 }  // namespace

@@ -44,7 +44,9 @@ void inheritPass(const VkCommandBufferInheritanceInfo& inherited, CommandBuffer:
         std::copy_n(rendering->pColorAttachmentFormats, pass.formats.colorCount, pass.formats.colors);
         pass.formats.depth = rendering->depthAttachmentFormat;
         pass.formats.stencil = rendering->stencilAttachmentFormat;
-        pass.formats.samples = static_cast<uint32_t>(rendering->rasterizationSamples);
+        // The samples of the images (VUID-vkCmdExecuteCommands-pNext-06035): one may be drawn to with more.
+        const auto samples = static_cast<uint32_t>(rendering->rasterizationSamples);
+        pass.formats.samples = samples != 1 ? samples : 0;
         pass.formats.viewMask = rendering->viewMask;
     }
 }

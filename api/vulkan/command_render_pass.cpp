@@ -4,6 +4,7 @@
 #include "api/vulkan/chain.h"
 #include "api/vulkan/command_buffer.h"
 #include "api/vulkan/entry_points.h"
+#include "api/vulkan/single_sampled.h"
 
 namespace vernier::vulkan {
 namespace {
@@ -18,11 +19,19 @@ std::vector<const ImageView*> viewsOf(const Framebuffer& framebuffer, const VkRe
     return views;
 }
 
-void beginSubpass(CommandBuffer& buffer, uint32_t subpass) {
+void beginSubpass(CommandBuffer& buffer, const char* command, uint32_t subpass) {
     CommandBuffer::Pass& pass = buffer.pass;
     pass.subpass = subpass;
     pass.formats = pass.pass->formats(subpass);
-    buffer.stream.record(renderingOf(*pass.pass, pass.views, pass.layers, subpass, pass.area, pass.clears));
+    command::BeginRendering rendering =
+        renderingOf(*pass.pass, pass.views, pass.layers, subpass, pass.area, pass.clears);
+    const Subpass& description = pass.pass->subpasses[subpass];
+    std::vector<const ImageView*> inputs;
+    for (const uint32_t index : description.inputs)
+        if (description.samplesForSingle != 0 && index != VK_ATTACHMENT_UNUSED) inputs.push_back(pass.views[index]);
+    if (const Status status = drawToSamples(buffer, rendering, 0, inputs); !status)
+        buffer.fail(command, status.error().message);
+    buffer.stream.record(rendering);
     buffer.checkPipeline();
 }
 
@@ -50,7 +59,7 @@ VKAPI_ATTR void VKAPI_CALL CmdBeginRenderPass(VkCommandBuffer commandBuffer,
         buffer.pass.clears.assign(pass->attachments.size(), VkClearValue{});
         const size_t given = std::min<size_t>(pRenderPassBegin->clearValueCount, buffer.pass.clears.size());
         std::copy_n(pRenderPassBegin->pClearValues, given, buffer.pass.clears.begin());
-        beginSubpass(buffer, 0);
+        beginSubpass(buffer, "vkCmdBeginRenderPass", 0);
     });
 }
 
@@ -61,7 +70,7 @@ VKAPI_ATTR void VKAPI_CALL CmdNextSubpass(VkCommandBuffer commandBuffer, VkSubpa
             return buffer.fail("vkCmdNextSubpass", "there is no next subpass");
         }
         buffer.stream.record(command::EndRendering{});
-        beginSubpass(buffer, buffer.pass.subpass + 1);
+        beginSubpass(buffer, "vkCmdNextSubpass", buffer.pass.subpass + 1);
     });
 }
 

@@ -5,6 +5,7 @@
 
 #include "api/vulkan/command_buffer.h"
 #include "api/vulkan/entry_points.h"
+#include "api/vulkan/single_sampled.h"
 #include "runtime/raster/depth_resolve.h"
 #include "runtime/resource/image.h"
 
@@ -20,6 +21,7 @@ RenderingAttachment attachmentOf(const VkRenderingAttachmentInfo& info, VkRender
                suspends = (flags & VK_RENDERING_SUSPENDING_BIT) != 0;
     result.view = object(info.imageView);
     if (info.resolveMode != VK_RESOLVE_MODE_NONE && !suspends) result.resolve = object(info.resolveImageView);
+    result.depthResolveMode = result.stencilResolveMode = info.resolveMode;
     result.loadOp = resumes ? VK_ATTACHMENT_LOAD_OP_LOAD : info.loadOp;
     result.storeOp = suspends ? VK_ATTACHMENT_STORE_OP_STORE : info.storeOp;
     result.clear = info.clearValue;
@@ -38,8 +40,8 @@ RenderingAttachment depthStencilOf(const VkRenderingInfo& info) {
     result.stencilLoadOp = stencil.view != nullptr ? stencil.loadOp : VK_ATTACHMENT_LOAD_OP_LOAD;
     result.stencilStoreOp = stencil.view != nullptr ? stencil.storeOp : VK_ATTACHMENT_STORE_OP_STORE;
     if (stencil.view != nullptr) result.clear.depthStencil.stencil = stencil.clear.depthStencil.stencil;
-    if (depth.resolve != nullptr) result.depthResolveMode = info.pDepthAttachment->resolveMode;
-    if (stencil.resolve != nullptr) result.stencilResolveMode = info.pStencilAttachment->resolveMode;
+    result.depthResolveMode = depth.depthResolveMode;
+    result.stencilResolveMode = stencil.stencilResolveMode;
     result.resolve = depth.resolve != nullptr ? depth.resolve : stencil.resolve;
     return result;
 }
@@ -47,14 +49,17 @@ RenderingAttachment depthStencilOf(const VkRenderingInfo& info) {
 /// Collects what the attachments of a pass must have in common, and what is wrong with them.
 class Check {
   public:
-    Check(const VkRect2D& area, uint32_t layers)
-        : extent_{end(area.offset.x, area.extent.width), end(area.offset.y, area.extent.height)}, layers_(layers) {}
+    Check(const VkRect2D& area, uint32_t layers, uint32_t samplesForSingle)
+        : extent_{end(area.offset.x, area.extent.width), end(area.offset.y, area.extent.height)},
+          layers_(layers),
+          samplesForSingle_(samplesForSingle),
+          samples_(samplesForSingle) {}
 
     Status attachment(const std::string& name, const RenderingAttachment& attachment, VkFormatFeatureFlags feature) {
         if (attachment.view == nullptr) return {};
         const ImageView& view = *attachment.view;
         if (Status s = target(name, view, feature); !s) return s;
-        const uint32_t samples = view.image().info().samples;
+        const uint32_t samples = drawnSamples(view.image().info().samples, samplesForSingle_);
         if (samples_ == 0) samples_ = samples;
         if (samples != samples_) return invalidArgument(name + " has another sample count than the attachments before");
         if (attachment.resolve == nullptr) return {};
@@ -89,8 +94,7 @@ class Check {
     }
 
     VkExtent2D extent_;
-    uint32_t layers_;
-    uint32_t samples_ = 0;
+    uint32_t layers_, samplesForSingle_, samples_;
 };
 
 /// Fills the rendering and the formats that pipelines must have.
@@ -101,7 +105,8 @@ Status readRendering(const VkRenderingInfo& info, command::BeginRendering& rende
     rendering.viewMask = info.viewMask;
     rendering.layers = std::clamp(info.layerCount, 1u, kMaxArrayLayers);
     const bool views = info.viewMask != 0;
-    Check check(info.renderArea, views ? static_cast<uint32_t>(std::bit_width(info.viewMask)) : rendering.layers);
+    Check check(info.renderArea, views ? static_cast<uint32_t>(std::bit_width(info.viewMask)) : rendering.layers,
+                samplesForSingle(info.pNext));
     formats.colorCount = rendering.colorCount = info.colorAttachmentCount;
     for (uint32_t i = 0; i < info.colorAttachmentCount; ++i) {
         RenderingAttachment& color = rendering.colors[i] = attachmentOf(info.pColorAttachments[i], info.flags);
@@ -141,9 +146,9 @@ VKAPI_ATTR void VKAPI_CALL CmdBeginRendering(VkCommandBuffer commandBuffer, cons
         if (buffer.pass.inside) return buffer.fail("vkCmdBeginRendering", "not allowed inside a render pass");
         command::BeginRendering rendering;
         SubpassFormats formats;
-        if (const Status status = readRendering(*pRenderingInfo, rendering, formats); !status) {
-            return buffer.fail("vkCmdBeginRendering", status.error().message);
-        }
+        Status status = readRendering(*pRenderingInfo, rendering, formats);
+        if (status) status = drawToSamples(buffer, rendering, pRenderingInfo->flags, {});
+        if (!status) return buffer.fail("vkCmdBeginRendering", status.error().message);
         buffer.pass.inside = true;
         buffer.pass.layers = rendering.layers;
         buffer.pass.formats = formats;

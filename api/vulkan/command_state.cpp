@@ -47,6 +47,12 @@ void record(VkCommandBuffer handle, const Command& command) {
 void CommandBuffer::checkPipeline() {
     pipelineFits = pipeline != nullptr && pass.inside && pipeline->plans == nullptr &&
                    fits(pipeline->graphics->state(), pass.formats);
+    if (pipelineFits) takeSamples(pipeline->graphics->state());
+}
+
+void CommandBuffer::takeSamples(const GraphicsState& drawn) {
+    if (pass.pass == nullptr && !pass.begunHere() && pass.formats.samples == 0 && !drawn.rasterizerDiscard)
+        pass.formats.samples = drawn.samples;
 }
 
 SetState& CommandBuffer::changePlanState() {
@@ -63,6 +69,7 @@ bool CommandBuffer::choosePlan(const char* command) {
     }
     const GraphicsState& planned = (*plan)->state();
     if (pass.pass != nullptr ? !fits(planned, pass.formats) : !fitsDynamic(planned, pass.formats)) return false;
+    takeSamples(planned);
     const DynamicState* fixed = &pipeline->fixed;
     if (pipeline->viewportCountDynamic && set.viewportCount != fixed->viewportCount) {
         DynamicState counted = *fixed;

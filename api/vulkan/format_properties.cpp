@@ -46,7 +46,8 @@ constexpr VkImageCreateFlags kKnownFlags =
     VK_IMAGE_CREATE_ALIAS_BIT | VK_IMAGE_CREATE_SAMPLE_LOCATIONS_COMPATIBLE_DEPTH_BIT_EXT |
     VK_IMAGE_CREATE_MUTABLE_FORMAT_BIT | VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT | VK_IMAGE_CREATE_2D_ARRAY_COMPATIBLE_BIT |
     VK_IMAGE_CREATE_BLOCK_TEXEL_VIEW_COMPATIBLE_BIT | VK_IMAGE_CREATE_EXTENDED_USAGE_BIT |
-    VK_IMAGE_CREATE_2D_VIEW_COMPATIBLE_BIT_EXT | VK_IMAGE_CREATE_DISJOINT_BIT;
+    VK_IMAGE_CREATE_2D_VIEW_COMPATIBLE_BIT_EXT | VK_IMAGE_CREATE_DISJOINT_BIT |
+    VK_IMAGE_CREATE_MULTISAMPLED_RENDER_TO_SINGLE_SAMPLED_BIT_EXT;
 // Usages that views of another format may bring to an image whose own format has them not.
 constexpr VkImageUsageFlags kExtendedUsages = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
 
@@ -167,6 +168,8 @@ VKAPI_ATTR void VKAPI_CALL GetPhysicalDeviceFormatProperties2(VkPhysicalDevice, 
         p->optimalTilingFeatures = wideFeatures(format, plain.optimalTilingFeatures);
         p->bufferFeatures = wideFeatures(format, plain.bufferFeatures);
     }
+    // No format is better than another: samples are read again when all is drawn, as vkCmdResolveImage does.
+    if (auto* p = findInChain<VkSubpassResolvePerformanceQueryEXT>(pFormatProperties->pNext)) p->optimal = VK_FALSE;
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL GetPhysicalDeviceImageFormatProperties(VkPhysicalDevice physicalDevice, VkFormat format,

@@ -8,6 +8,7 @@
 #include "api/vulkan/chain.h"
 #include "api/vulkan/device.h"
 #include "api/vulkan/entry_points.h"
+#include "api/vulkan/single_sampled.h"
 #include "runtime/raster/depth_resolve.h"
 #include "runtime/resource/image.h"
 
@@ -39,11 +40,11 @@ Status checkSamples(const RenderPassObject& pass, uint32_t number) {
         return index == VK_ATTACHMENT_UNUSED ? nullptr : &pass.attachments[index].description;
     };
     const std::string name = "subpass " + std::to_string(number) + ": ";
-    VkFlags samples = 0;
+    uint32_t samples = subpass.samplesForSingle;
     const auto same = [&](uint32_t index) {
         const VkAttachmentDescription* one = describe(index);
-        if (one != nullptr && samples == 0) samples = one->samples;
-        return one == nullptr || one->samples == samples;
+        if (one != nullptr && samples == 0) samples = static_cast<uint32_t>(one->samples);
+        return one == nullptr || drawnSamples(static_cast<uint32_t>(one->samples), subpass.samplesForSingle) == samples;
     };
     if (!std::ranges::all_of(subpass.colors, same) || !same(subpass.depthStencil)) {
         return invalidArgument(name + "the attachments have different sample counts");
@@ -114,11 +115,13 @@ void readExtensions(const VkRenderPassCreateInfo& info, uint32_t index, Subpass&
 void readExtensions(const VkRenderPassCreateInfo2& info, uint32_t index, Subpass& to) {
     const VkSubpassDescription2& from = info.pSubpasses[index];
     to.viewMask = from.viewMask;
+    to.samplesForSingle = samplesForSingle(from.pNext);
     const auto* resolve = findInChain<VkSubpassDescriptionDepthStencilResolve>(from.pNext);
-    if (resolve == nullptr || resolve->pDepthStencilResolveAttachment == nullptr) return;
-    to.depthStencilResolve = resolve->pDepthStencilResolveAttachment->attachment;
+    if (resolve == nullptr) return;
     to.depthResolveMode = resolve->depthResolveMode;
     to.stencilResolveMode = resolve->stencilResolveMode;
+    if (resolve->pDepthStencilResolveAttachment != nullptr)
+        to.depthStencilResolve = resolve->pDepthStencilResolveAttachment->attachment;
 }
 
 template <class Info>
@@ -222,6 +225,7 @@ SubpassFormats RenderPassObject::formats(uint32_t subpass) const {
     result.colorCount = static_cast<uint32_t>(from.colors.size());
     for (uint32_t i = 0; i < result.colorCount; ++i) result.colors[i] = use(from.colors[i]);
     result.setDepthStencil(use(from.depthStencil));
+    if (from.samplesForSingle != 0) result.samples = from.samplesForSingle;
     return result;
 }
 
@@ -279,11 +283,10 @@ command::BeginRendering renderingOf(const RenderPassObject& pass, const std::vec
         }
     }
     rendering.depthStencil = attach(from.depthStencil);
-    if (from.depthStencilResolve != VK_ATTACHMENT_UNUSED && rendering.depthStencil.view != nullptr) {
+    rendering.depthStencil.depthResolveMode = from.depthResolveMode;
+    rendering.depthStencil.stencilResolveMode = from.stencilResolveMode;
+    if (from.depthStencilResolve != VK_ATTACHMENT_UNUSED && rendering.depthStencil.view != nullptr)
         rendering.depthStencil.resolve = views[from.depthStencilResolve];
-        rendering.depthStencil.depthResolveMode = from.depthResolveMode;
-        rendering.depthStencil.stencilResolveMode = from.stencilResolveMode;
-    }
     rendering.renderArea = area;
     rendering.layers = layers;
     rendering.viewMask = from.viewMask;

@@ -21,7 +21,8 @@ struct Subpass {
     uint32_t depthStencilResolve = VK_ATTACHMENT_UNUSED;
     VkResolveModeFlagBits depthResolveMode = VK_RESOLVE_MODE_NONE, stencilResolveMode = VK_RESOLVE_MODE_NONE;
     std::vector<uint32_t> inputs;
-    uint32_t viewMask = 0;  // not 0: multiview
+    uint32_t viewMask = 0;          // not 0: multiview
+    uint32_t samplesForSingle = 0;  // not 0: of attachments that have one (samplesForSingle() of its chain)
 };
 
 /// What a pipeline must have been made for to draw in a subpass ("Render Pass Compatibility").

@@ -42,6 +42,7 @@ struct BeginRendering {
     uint32_t viewMask = 0;  // not 0: multiview
     uint32_t samples = 1;
     PassStatistics* statistics = nullptr;  // where to add what was counted, or nullptr
+    std::span<const SampledInput> sampledInputs;
 };
 struct EndRendering {};
 /// Finishes the draws of the pass so far: what they wrote can be read by the draws to come.

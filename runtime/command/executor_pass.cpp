@@ -99,10 +99,12 @@ void Executor::run(const command::BeginRendering& command) {
     }
     addTarget(targets.depthStencil, layers, work.rest);
     addTarget(targets.depthStencilResolve, layers, work.rest);
+    for (const SampledInput& input : command.sampledInputs) addTarget(targetOf(input.samples), layers, work.rest);
     work.pass.begin(targets);
     for (RunningQuery* query : queries_.open()) addQueryPart(work, *query, 0);
     pass_ = &work;
     views_ = command.viewMask;
+    drawBindings_.bound.sampledInputs = command.sampledInputs;
     streamsChanged_ = drawBindings_.changed = true;
 }
 

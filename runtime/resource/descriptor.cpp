@@ -1,6 +1,7 @@
 #include "runtime/resource/descriptor.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "spirv_interp/needs_descriptor.h"
 
@@ -47,6 +48,36 @@ const TextureUnit& limitUnit(const TextureUnit& unit, const Accuracy& accuracy, 
     if (sampler == unit.sampler) return unit;
     const Result<TextureUnit> limited = makeTextureUnit(unit.view, sampler, unit.isa);
     return limited ? *arena.create(*limited) : unit;
+}
+
+/// The layer of the attachment at which the view begins; empty where it is of other memory.
+std::optional<uint32_t> firstLayerIn(const ImageView& attachment, const TextureView& view) {
+    const TextureView& whole = attachment.texture();
+    const auto from = reinterpret_cast<uintptr_t>(whole.levels[0].data);
+    const auto to = reinterpret_cast<uintptr_t>(view.levels[0].data);
+    const uint64_t pitch = whole.levels[0].slicePitch;
+    if (to < from || (to - from) % pitch != 0 || (to - from) / pitch >= whole.layerCount) return std::nullopt;
+    return static_cast<uint32_t>((to - from) / pitch);
+}
+
+/// An input attachment as the pass sees it. The descriptor may have another view of the attachment than the pass, of
+/// one of its aspects, say.
+const TextureUnit& inputUnit(const TextureUnit& unit, std::span<const SampledInput> inputs, Arena& arena) {
+    if (unit.view == nullptr) return unit;
+    for (const SampledInput& input : inputs) {
+        const std::optional<uint32_t> layer = firstLayerIn(*input.single, *unit.view);
+        if (!layer) continue;
+        const TextureView& samples = input.samples->texture();
+        TextureView* const view = arena.create(*unit.view);
+        view->samples = samples.samples;
+        view->samplePitch = samples.samplePitch;
+        view->levels[0].rowPitch = samples.levels[0].rowPitch;
+        view->levels[0].slicePitch = samples.levels[0].slicePitch;
+        view->levels[0].data = samples.levels[0].data + *layer * samples.levels[0].slicePitch;
+        const Result<TextureUnit> made = makeTextureUnit(view, nullptr, unit.isa);
+        return made ? *arena.create(*made) : unit;
+    }
+    return unit;
 }
 
 }  // namespace
@@ -232,7 +263,9 @@ ResourceBindings resolveBindings(const ir::Program& program, const BoundDescript
                     buffers[base[r] + i] = boundBuffer(found, i);
                     break;
                 case Table::images:
-                    images[base[r] + i] = bindingOf(limitUnit(found.slots[i].texture, accuracy, arena));
+                    images[base[r] + i] = bindingOf(resource.kind == ir::ResourceKind::inputAttachment
+                                                        ? inputUnit(found.slots[i].texture, bound.sampledInputs, arena)
+                                                        : limitUnit(found.slots[i].texture, accuracy, arena));
                     break;
                 case Table::samplers:
                     samplers[base[r] + i] = limitSampler(found.slots[i].sampler, accuracy, arena);

@@ -99,11 +99,18 @@ class DescriptorSet {
     std::unique_ptr<std::mutex> mutex_;        // nullptr: the layout does not ask for it
 };
 
+/// An attachment whose samples are in memory of their own while a pass draws: there input attachments find them.
+struct SampledInput {
+    const ImageView* single = nullptr;   // of the attachment
+    const ImageView* samples = nullptr;  // ImageView::withSamples()
+};
+
 /// What is bound while a draw or dispatch runs.
 struct BoundDescriptors {
     const DescriptorSet* sets[8] = {};
     std::span<const uint32_t> dynamicOffsets[8];
     std::span<const std::byte> pushConstants;
+    std::span<const SampledInput> sampledInputs;
 };
 
 /// The descriptors a resource of a program stands for, and the dynamic offsets of its set.

@@ -91,6 +91,8 @@ struct ImageViewInfo {
 /// A view of another type than 3D on a 3D image: its layers are the slices (VK_KHR_maintenance1).
 bool seesSlices(const Image& image, VkImageViewType type);
 
+class SampleViews;
+
 class ImageView {
   public:
     /// Checks the view against the image. `isa` chooses the conversion routines of the view. The image must be bound.
@@ -102,12 +104,17 @@ class ImageView {
     const TextureView& texture() const { return texture_; }
     /// The extent of the view's base level.
     VkExtent2D extent() const;
+    /// A view of memory of its own with `samples` samples for each texel of the base level: what passes draw to that
+    /// have more samples than the image (VK_EXT_multisampled_render_to_single_sampled). It is made when it is first
+    /// asked for and lives as long as this view. Thread-safe. Only of 2D images that were created for it.
+    Result<const ImageView*> withSamples(uint32_t samples, const HostAllocator& allocator, Isa isa) const;
 
   private:
     const Image* image_ = nullptr;
     ImageViewInfo info_;
     TextureView texture_;
     std::shared_ptr<const PlanarView> planar_;  // of all planes of a multi-planar image
+    std::shared_ptr<SampleViews> samples_;      // nullptr: the image was not created for withSamples()
 
     static Result<ImageView> createPlanar(const Image& image, const ImageViewInfo& info, Isa isa);
 };

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "runtime/resource/image.h"
+#include "runtime/resource/sample_views.h"
 
 namespace vernier {
 namespace {
@@ -149,12 +150,21 @@ Result<ImageView> ImageView::create(const Image& image, const ImageViewInfo& inf
                              .rowPitch = level.rowPitch,
                              .slicePitch = volume ? level.slicePitch : image.layerPitch()};
     }
+    if (image.info().type == VK_IMAGE_TYPE_2D &&
+        (image.info().flags & VK_IMAGE_CREATE_MULTISAMPLED_RENDER_TO_SINGLE_SAMPLED_BIT_EXT) != 0)
+        view.samples_ = std::make_shared<SampleViews>();
     return view;
 }
 
 VkExtent2D ImageView::extent() const {
     const VkExtent3D& extent = image_->level(info_.range.baseMipLevel).extent;
     return {extent.width, extent.height};
+}
+
+Result<const ImageView*> ImageView::withSamples(uint32_t samples, const HostAllocator& allocator, Isa isa) const {
+    if (samples_ == nullptr)
+        return wrong("not of a 2D image created with VK_IMAGE_CREATE_MULTISAMPLED_RENDER_TO_SINGLE_SAMPLED_BIT_EXT");
+    return samples_->find(*this, samples, allocator, isa);
 }
 
 }  // namespace vernier

@@ -78,21 +78,23 @@ void copyImage(const TransferContext& context, const Image& wholeSource, const I
     const VkExtent3D extent{source.format().columns(region.extent.width) * target.blockWidth(),
                             source.format().rows(region.extent.height) * target.blockHeight(), region.extent.depth};
     TexelBox to = clipBox(destination, region.dstSubresource, region.dstOffset, extent);
+    const bool spreads = source.info().samples == 1;
     if (source.format().bytesPerTexel != destination.format().bytesPerTexel ||
-        source.info().samples != destination.info().samples)
+        (source.info().samples != destination.info().samples && !spreads))
         return;
     from.width = to.width = std::min(from.width, to.width);
     from.height = to.height = std::min(from.height, to.height);
     from.depth = to.depth = std::min(from.depth, to.depth);
     const uint32_t texel = destination.format().bytesPerTexel;
-    for (uint32_t sample = 0; sample < source.info().samples; ++sample) {
+    for (uint32_t sample = 0; sample < destination.info().samples; ++sample) {
         forEachRow(context, to, [&](uint32_t y, uint32_t z) {
-            copyTexelRow(source.format(), destination.format(), region.dstSubresource.aspectMask,
-                         rowAddress(source, region.srcSubresource.mipLevel, from.y + y, from.z + z, sample) +
-                             uint64_t{from.x} * texel,
-                         rowAddress(destination, region.dstSubresource.mipLevel, to.y + y, to.z + z, sample) +
-                             uint64_t{to.x} * texel,
-                         to.width);
+            copyTexelRow(
+                source.format(), destination.format(), region.dstSubresource.aspectMask,
+                rowAddress(source, region.srcSubresource.mipLevel, from.y + y, from.z + z, spreads ? 0 : sample) +
+                    uint64_t{from.x} * texel,
+                rowAddress(destination, region.dstSubresource.mipLevel, to.y + y, to.z + z, sample) +
+                    uint64_t{to.x} * texel,
+                to.width);
         });
     }
 }

@@ -20,6 +20,7 @@ struct TransferContext {
 };
 
 void copyBuffer(const TransferContext&, const Buffer& source, const Buffer& destination, const VkBufferCopy& region);
+/// One sample is copied to all samples of a multisampled destination.
 void copyImage(const TransferContext&, const Image& source, const Image& destination, const VkImageCopy& region);
 void copyBufferToImage(const TransferContext&, const Buffer& buffer, const Image& image,
                        const VkBufferImageCopy& region);
