@@ -10,11 +10,16 @@
 namespace vernier::vulkan {
 namespace {
 
+/// Samples are nothing to pipelines that discard what they would rasterise.
+bool fitsSamples(const GraphicsState& state, const SubpassFormats& formats) {
+    return formats.samples == 0 || state.rasterizerDiscard || state.samples == formats.samples;
+}
+
 /// Whether a pipeline's state was made for these attachments. Drawing with another would write texels of one
 /// size into images of another.
 bool fits(const GraphicsState& state, const SubpassFormats& formats) {
     if (state.colorCount != formats.colorCount || state.depthStencilFormat != formats.depthStencil()) return false;
-    if (formats.samples != 0 && state.samples != formats.samples) return false;
+    if (!fitsSamples(state, formats)) return false;
     return std::equal(formats.colors, formats.colors + formats.colorCount, state.colorFormats.begin());
 }
 
@@ -27,7 +32,7 @@ bool fitsDynamic(const GraphicsState& state, const SubpassFormats& formats) {
     }
     const VkFormat depthStencil = state.depthStencilFormat;
     return (depthStencil == VK_FORMAT_UNDEFINED || depthStencil == formats.depthStencil()) &&
-           (formats.samples == 0 || state.samples == formats.samples);
+           fitsSamples(state, formats);
 }
 
 /// Empty for a bind point that does not exist here.

@@ -279,6 +279,42 @@ TEST_F(RenderingTest, missingAttachments) {
     EXPECT_EQ(colorAt(color, 50, 50), 0u) << "nothing is written to location 1";
 }
 
+TEST_F(RenderingTest, pipelinesThatDiscardFitMultisampledAttachments) {
+    // The layer (1.3.239) takes such pipelines for ones of one sample.
+    VERNIER_SKIP_WHEN_VALIDATED();
+    const TestImage samples = makeImage(kColor, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, VK_SAMPLE_COUNT_4_BIT);
+    PipelineDesc discards = filling("1, 0, 0, 1"), draws = filling("1, 0, 0, 1");
+    discards.change = [](const PipelineStates& states) { states.raster.rasterizerDiscardEnable = VK_TRUE; };
+    discards.samples = draws.samples = VK_SAMPLE_COUNT_4_BIT;
+    const VkPipeline discarding = pipelineFor(discards), drawing = pipelineFor(draws);
+    const VkQueryPool queries =
+        makeQueries(VK_QUERY_TYPE_PIPELINE_STATISTICS, 1, VK_QUERY_PIPELINE_STATISTIC_INPUT_ASSEMBLY_VERTICES_BIT);
+    const VkCommandBuffer commands = begin();
+    vkCmdResetQueryPool(commands, queries, 0, 1);
+    toColor(commands, color);
+    toColor(commands, samples);
+    VkRenderingAttachmentInfo attachment = attachColor(samples);
+    attachment.resolveMode = VK_RESOLVE_MODE_AVERAGE_BIT;
+    attachment.resolveImageView = color.view;
+    attachment.resolveImageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    const VkRenderingInfo info = rendering(attachment);
+    beginRendering(commands, &info);
+    vkCmdBeginQuery(commands, queries, 0, 0);
+    draw(commands, discarding);
+    draw(commands, drawing);
+    draw(commands, discarding);
+    vkCmdEndQuery(commands, queries, 0);
+    endRendering(commands);
+    toSource(commands, color);
+    submit(commands);
+    uint64_t vertices = 0;
+    EXPECT_EQ(vkGetQueryPoolResults(device, queries, 0, 1, sizeof vertices, &vertices, sizeof vertices,
+                                    VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+              VK_SUCCESS);
+    EXPECT_EQ(vertices, 9u);
+    EXPECT_EQ(colorAt(color, 50, 50), kRed);
+}
+
 TEST_F(RenderingTest, whatDoesNotFitIsRefused) {
     VERNIER_SKIP_WHEN_VALIDATED();
     const TestImage samples = makeImage(kColor, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, VK_SAMPLE_COUNT_4_BIT);
