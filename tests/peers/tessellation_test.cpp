@@ -24,6 +24,7 @@ class TessellationLab : public FeedbackTest {
 
   private:
     const char* driver() override { return manifest_; }
+    uint32_t apiVersion() override { return VK_API_VERSION_1_1; }  // of domain origins
     void TestBody() override {}
     const char* manifest_;
 };
@@ -116,8 +117,10 @@ TessellationLab::Feedback feedbackOf(const Modes& modes, const Levels& levels) {
     feedback.evaluation = "#version 450\nlayout(" + modes.domain + ", " + modes.spacing + ", " + modes.order +
                           (modes.points ? ", point_mode" : "") + R"() in;
 layout(location = 0, xfb_buffer = 0, xfb_stride = 12, xfb_offset = 0) out vec3 place;
-void main() { gl_Position = vec4(gl_TessCoord.xy, 0.5, 1); place = gl_TessCoord; }
-)";
+void main() {
+    gl_Position = vec4(gl_TessCoord.xy, 0.5, 1);
+    place = gl_TessCoord;
+)" + (modes.points ? "    gl_PointSize = 1;\n}" : "}");
     feedback.sizes = {12 * 3 * 8400};
     feedback.draws = {{1}};
     return feedback;

@@ -126,21 +126,6 @@ void main() { gl_Position = vec4(vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) *
         vkCmdEndRenderPass(commands);
     }
 
-    /// A barrier between everything before and after that changes the layout of one aspect.
-    static void change(VkCommandBuffer commands, VkImage image, VkImageAspectFlags aspect, VkImageLayout from,
-                       VkImageLayout to) {
-        auto barrier = make<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
-        barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
-        barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
-        barrier.oldLayout = from;
-        barrier.newLayout = to;
-        barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-        barrier.image = image;
-        barrier.subresourceRange = {aspect, 0, 1, 0, 1};
-        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0,
-                             nullptr, 0, nullptr, 1, &barrier);
-    }
-
   private:
     VkPhysicalDeviceSeparateDepthStencilLayoutsFeatures layouts_ =
         make<VkPhysicalDeviceSeparateDepthStencilLayoutsFeatures>(
@@ -219,8 +204,8 @@ void main() { color = vec4(float(texelFetch(stencil, ivec2(gl_FragCoord.xy), 0).
 
     const VkCommandBuffer commands = begin();
     draw(commands, write, writing);
-    change(commands, image.image, VK_IMAGE_ASPECT_STENCIL_BIT, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-           VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    changeLayout(commands, image.image, VK_IMAGE_ASPECT_STENCIL_BIT, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+                 VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     beginPass(commands, show);
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, showing);
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, desc.layout, 0, 1, &set, 0, nullptr);
@@ -243,8 +228,8 @@ TEST_F(AspectsTest, depthIsReadWhileStencilIsWritten) {
     const VkPipeline reading = makeStencilPipeline(second, VK_COMPARE_OP_LESS, false, 9);
     const VkCommandBuffer commands = begin();
     draw(commands, first, writing);
-    change(commands, image.image, VK_IMAGE_ASPECT_DEPTH_BIT, kDepth, kDepthRead);
-    change(commands, image.image, VK_IMAGE_ASPECT_STENCIL_BIT, kStencil, kStencil);
+    changeLayout(commands, image.image, VK_IMAGE_ASPECT_DEPTH_BIT, kDepth, kDepthRead);
+    changeLayout(commands, image.image, VK_IMAGE_ASPECT_STENCIL_BIT, kStencil, kStencil);
     draw(commands, second, reading);
     submit(commands);
     const auto depths = readImage(image, VK_IMAGE_ASPECT_DEPTH_BIT, 4);

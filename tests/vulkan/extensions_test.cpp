@@ -244,19 +244,12 @@ TEST_F(ExtensionsTest, copyCommandsTakeChains) {
         makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent,
                   VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT);
     const VkCommandBuffer commands = begin();
-    const auto barrier = [&](VkImage of) {
-        auto memory = make<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
-        memory.srcAccessMask = memory.dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
-        memory.newLayout = VK_IMAGE_LAYOUT_GENERAL;
-        memory.image = of;
-        memory.srcQueueFamilyIndex = memory.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-        memory.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0,
-                             nullptr, 1, &memory);
+    const auto barrier = [&](VkImage of, VkImageLayout old = VK_IMAGE_LAYOUT_GENERAL) {
+        changeLayout(commands, of, VK_IMAGE_ASPECT_COLOR_BIT, old, VK_IMAGE_LAYOUT_GENERAL);
     };
     const VkImageSubresourceLayers layers{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-    barrier(image.image);
-    barrier(color.image);
+    barrier(image.image, VK_IMAGE_LAYOUT_UNDEFINED);
+    barrier(color.image, VK_IMAGE_LAYOUT_UNDEFINED);
 
     auto fill = make<VkBufferImageCopy2>(VK_STRUCTURE_TYPE_BUFFER_IMAGE_COPY_2);
     fill.imageSubresource = layers;
@@ -370,16 +363,7 @@ TEST_F(ExtensionsTest, resolvesTakeChains) {
     info.pRegions = &region;
     const VkCommandBuffer commands = begin();
     const auto barrier = [&](VkImage of, VkImageLayout from, VkImageLayout to) {
-        auto memory = make<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
-        memory.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
-        memory.dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
-        memory.oldLayout = from;
-        memory.newLayout = to;
-        memory.image = of;
-        memory.srcQueueFamilyIndex = memory.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-        memory.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0,
-                             nullptr, 0, nullptr, 1, &memory);
+        changeLayout(commands, of, VK_IMAGE_ASPECT_COLOR_BIT, from, to);
     };
     beginPass(commands, sampled);
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);

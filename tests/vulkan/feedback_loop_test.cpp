@@ -136,17 +136,17 @@ TEST_F(FeedbackLoopTest, colorsAreTextures) {
     rendering.pColorAttachments = &attachment;
     const VkCommandBuffer commands = begin();
     constexpr VkImageAspectFlags kAspect = VK_IMAGE_ASPECT_COLOR_BIT;
-    move(commands, image.image, kAspect, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    changeLayout(commands, image.image, kAspect, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
     VkClearColorValue five{};
     five.uint32[0] = 5;
     const VkImageSubresourceRange range{kAspect, 0, 1, 0, 1};
     vkCmdClearColorImage(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &five, 1, &range);
-    move(commands, image.image, kAspect, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, kLoop);
+    changeLayout(commands, image.image, kAspect, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, kLoop);
     for (uint32_t n = 0; n < 3; ++n) {
         vkCmdBeginRendering(commands, &rendering);
         drawWith(commands, pipeline, desc, set);
         vkCmdEndRendering(commands);
-        move(commands, image.image, kAspect, kLoop, n < 2 ? kLoop : VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+        changeLayout(commands, image.image, kAspect, kLoop, n < 2 ? kLoop : VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
     }
     submit(commands);
     for (const uint32_t word : asWords(readImage(image, kAspect, 4))) ASSERT_EQ(word, 47u);

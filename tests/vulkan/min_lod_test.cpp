@@ -29,15 +29,7 @@ class MinLodTest : public DrawTest {
         view_ = makeView(texture_, VK_IMAGE_VIEW_TYPE_2D, info.format, all);
         const VkCommandBuffer commands = begin();
         const auto move = [&](VkImageLayout from, VkImageLayout to) {
-            auto barrier = make<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
-            barrier.dstAccessMask = barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT | VK_ACCESS_MEMORY_READ_BIT;
-            barrier.oldLayout = from;
-            barrier.newLayout = to;
-            barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-            barrier.image = texture_;
-            barrier.subresourceRange = all;
-            vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0,
-                                 nullptr, 0, nullptr, 1, &barrier);
+            changeLayout(commands, texture_, VK_IMAGE_ASPECT_COLOR_BIT, from, to);
         };
         move(VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
         for (uint32_t level = 0; level < kLevels; ++level) {

@@ -310,14 +310,14 @@ TEST_F(PipelineLibraryTest, dynamicRenderingOfViews) {
         info.pDepthAttachment = &depths;
         const VkPipeline pipeline = makePipeline(VK_NULL_HANDLE, desc);
         const VkCommandBuffer commands = begin();
-        move(commands, layers.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED, colors.imageLayout);
-        move(commands, depthLayers.image, VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT,
-             VK_IMAGE_LAYOUT_UNDEFINED, depths.imageLayout);
+        changeLayout(commands, layers.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED, colors.imageLayout);
+        changeLayout(commands, depthLayers.image, VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT,
+                     VK_IMAGE_LAYOUT_UNDEFINED, depths.imageLayout);
         vkCmdBeginRendering(commands, &info);
         drawAll(commands, pipeline);
         vkCmdEndRendering(commands);
-        move(commands, layers.image, VK_IMAGE_ASPECT_COLOR_BIT, colors.imageLayout,
-             VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+        changeLayout(commands, layers.image, VK_IMAGE_ASPECT_COLOR_BIT, colors.imageLayout,
+                     VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
         submit(commands);
         std::array<Texels, 2> pictures;
         for (uint32_t n = 0; n < 2; ++n) pictures[n] = readImage(layers, VK_IMAGE_ASPECT_COLOR_BIT, 4, n);

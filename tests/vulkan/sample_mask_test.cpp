@@ -1,4 +1,5 @@
-// The sample mask that fragments read: what was covered before the depth test, wherever the test stands.
+// The sample mask that fragments read: what was covered before the depth test, wherever the test stands, or what the
+// test has left (VK_EXT_post_depth_coverage).
 #include <array>
 
 #include "tests/vulkan/test_pipeline.h"
@@ -73,7 +74,7 @@ class SampleMaskTest : public DrawTest {
 constexpr const char* kStatements[] = {"", "    float slope = dFdx(gl_FragCoord.x); if (slope != 1) return;\n",
                                        "    if (gl_FragCoord.x < 0) discard;\n"};
 // Two of four samples that are 255 resolve to 128; alpha is 255 everywhere.
-constexpr uint32_t kRed = 0xFF0000FFu, kHalfRed = 0xFF000080u;
+constexpr uint32_t kRed = 0xFF0000FFu, kHalfRed = 0xFF000080u, kHalfGreen = 0xFF008000u;
 
 TEST_F(SampleMaskTest, isThatBeforeTests) {
     // Tested early because nobody can tell, because the program asks for it, and late.
@@ -84,6 +85,22 @@ TEST_F(SampleMaskTest, isThatBeforeTests) {
             EXPECT_EQ(left, kHalfRed);
             EXPECT_EQ(right, kRed);
         }
+    }
+}
+
+class PostDepthCoverageTest : public SampleMaskTest {
+  protected:
+    std::vector<const char*> moreExtensions() override { return {VK_EXT_POST_DEPTH_COVERAGE_EXTENSION_NAME}; }
+};
+
+TEST_F(PostDepthCoverageTest, masksAreThoseAfterTests) {
+    for (const char* const more : kStatements) {
+        SCOPED_TRACE(more);
+        const auto [left, right] = colors(
+            "#extension GL_EXT_post_depth_coverage : require\nlayout(early_fragment_tests, post_depth_coverage) in;\n",
+            more);
+        EXPECT_EQ(left, kHalfGreen);
+        EXPECT_EQ(right, kRed);
     }
 }
 

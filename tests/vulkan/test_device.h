@@ -120,4 +120,8 @@ class VulkanTest : public testing::Test {
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
 };
 
+/// All of the image, once everything before is done, and before everything after.
+void changeLayout(VkCommandBuffer commands, VkImage image, VkImageAspectFlags aspects, VkImageLayout from,
+                  VkImageLayout to);
+
 }  // namespace vernier::test

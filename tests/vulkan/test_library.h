@@ -220,18 +220,6 @@ class PipelineLibraryTest : public DrawTest {
         ADD_FAILURE() << "no number of instructions";
         return 0;
     }
-    static void move(VkCommandBuffer commands, VkImage image, VkImageAspectFlags aspects, VkImageLayout from,
-                     VkImageLayout to) {
-        auto barrier = make<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
-        barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
-        barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
-        barrier.oldLayout = from;
-        barrier.newLayout = to;
-        barrier.image = image;
-        barrier.subresourceRange = {aspects, 0, 1, 0, VK_REMAINING_ARRAY_LAYERS};
-        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0,
-                             nullptr, 0, nullptr, 1, &barrier);
-    }
     Texels draw(VkPipeline pipeline, const Pass& in, const std::function<void(VkCommandBuffer)>& first = {}) {
         const VkCommandBuffer commands = begin();
         beginPass(commands, in);

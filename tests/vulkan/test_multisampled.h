@@ -49,18 +49,8 @@ class MultisampledTest : public InputsTest {
                               {aspectsOf(format), 0, 1, 0, layers});
         return image;
     }
-    /// Everything before it is done before everything after it.
     static void barrier(VkCommandBuffer commands, const TestImage& image, VkImageLayout from, VkImageLayout to) {
-        auto info = make<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
-        info.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
-        info.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
-        info.oldLayout = from;
-        info.newLayout = to;
-        info.srcQueueFamilyIndex = info.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-        info.image = image.image;
-        info.subresourceRange = {aspectsOf(image.format), 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
-        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0,
-                             nullptr, 0, nullptr, 1, &info);
+        changeLayout(commands, image.image, aspectsOf(image.format), from, to);
     }
 
     static VkAttachmentDescription2 describe(VkFormat format, VkSampleCountFlagBits samples, VkAttachmentLoadOp load,

@@ -106,16 +106,7 @@ class PresentTest : public DrawTest {
         return index;
     }
     static void transition(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to) {
-        auto barrier = make<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
-        barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
-        barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
-        barrier.oldLayout = from;
-        barrier.newLayout = to;
-        barrier.image = image;
-        barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-        barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0,
-                             nullptr, 0, nullptr, 1, &barrier);
+        changeLayout(commands, image, VK_IMAGE_ASPECT_COLOR_BIT, from, to);
     }
     /// Fills the image with a colour and leaves it as presentation wants it.
     VkCommandBuffer recordClear(VkImage image, float red) {
