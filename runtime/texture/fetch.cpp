@@ -113,8 +113,9 @@ bool inARow(const int32_t* values, uint32_t first) {
     return differences == 0;
 }
 
-/// Of 2D images with one sample and texels of kBytes, with or without layers. As fetch(), in one pass: all lanes read,
-/// those outside the image the texel of zero bits.
+/// Of 2D images with one sample and texels of kBytes, with or without layers. As fetch(), in one pass: lanes outside
+/// the image, and those that are not active, read the texel of zero bits. What those hold may be the place of a texel
+/// that another thread writes, where fragments read the attachments they draw to.
 template <uint32_t kBytes>
 void fetchPlain(const TextureView& view, const FetchRequest& request) {
     const TextureLevel* const level = commonLevel(view, request);
@@ -130,9 +131,12 @@ void fetchPlain(const TextureView& view, const FetchRequest& request) {
         const uint64_t place = layer * level->slicePitch + uint64_t{y} * level->rowPitch + uint64_t{x} * kBytes;
         return inside ? level->data + place : nullptr;
     };
+    const auto active = [&](uint32_t lane) { return request.mask == nullptr || request.mask[lane] != 0; };
     for (uint32_t i = 0; i < request.lanes;) {
-        const bool row = i + kRun <= request.lanes && inARow<1>(request.coord[0], i) &&
-                         inARow<0>(request.coord[1], i) && (!layered || inARow<0>(request.coord[3], i));
+        // What lies between two texels of active lanes is theirs to read, too.
+        const bool row = i + kRun <= request.lanes && active(i) && active(i + kRun - 1) &&
+                         inARow<1>(request.coord[0], i) && inARow<0>(request.coord[1], i) &&
+                         (!layered || inARow<0>(request.coord[3], i));
         const std::byte* const first = row ? texelOf(i, kRun - 1) : nullptr;
         if (first != nullptr) {
             std::memcpy(texels + i * kBytes, first, kRun * kBytes);
@@ -140,7 +144,7 @@ void fetchPlain(const TextureView& view, const FetchRequest& request) {
             continue;
         }
         for (const uint32_t end = std::min(i + kRun, request.lanes); i < end; ++i) {
-            const std::byte* const texel = texelOf(i, 0);
+            const std::byte* const texel = active(i) ? texelOf(i, 0) : nullptr;
             std::memcpy(texels + i * kBytes, texel != nullptr ? texel : kZeroTexel, kBytes);
         }
     }
