@@ -303,31 +303,6 @@ b2 <- b0 b1:
 )");
 }
 
-// Of two readings of the clock none is the other, and none moves; one that nobody uses is not taken.
-TEST(Pass, ClocksAreReadWhereTheyStand) {
-    const std::string text = R"(b0:
-  %0 i64 = readClock
-  %1 f32 = input #0
-  %2 b1 = folt.f32 %1 %1
-  jump b1
-b1 loop b3 <- b0 b2:
-  %3 i64 = readClock
-  branch %2 b2 b3
-b2 <- b1:
-  %4 i64 = isub %3 %0
-  %5 i32 = lowWord %4
-  storeBuffer #0 %5 %5 %5
-  jump b1
-b3 <- b1:
-  ret
-)";
-    Program clocks = program(text);
-    EXPECT_FALSE(eliminateCommon(clocks));
-    EXPECT_FALSE(hoistInvariants(clocks));
-    EXPECT_FALSE(removeDead(clocks));
-    EXPECT_EQ(after(removeDead, "b0:\n  %0 i64 = readClock\n  ret\n"), "b0:\n  ret\n");
-}
-
 TEST(Pass, FoldBranches) {
     EXPECT_EQ(after(foldBranches, R"(b0:
   %0 f32 = input #0

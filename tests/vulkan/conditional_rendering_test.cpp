@@ -114,12 +114,7 @@ void main() { results[place] += 1u; })",
 }
 
 TEST_F(ConditionalRenderingTest, secondaryBuffersInherit) {
-    auto allocation = make<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
-    allocation.commandPool = pool;
-    allocation.level = VK_COMMAND_BUFFER_LEVEL_SECONDARY;
-    allocation.commandBufferCount = 1;
-    VkCommandBuffer secondary = VK_NULL_HANDLE;
-    ASSERT_EQ(vkAllocateCommandBuffers(device, &allocation, &secondary), VK_SUCCESS);
+    const VkCommandBuffer secondary = makeCommands(VK_COMMAND_BUFFER_LEVEL_SECONDARY);
     auto conditional = make<VkCommandBufferInheritanceConditionalRenderingInfoEXT>(
         VK_STRUCTURE_TYPE_COMMAND_BUFFER_INHERITANCE_CONDITIONAL_RENDERING_INFO_EXT);
     conditional.conditionalRenderingEnable = VK_TRUE;

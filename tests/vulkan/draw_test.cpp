@@ -225,12 +225,7 @@ TEST_F(PictureTest, secondaryCommandBuffersAndClears) {
     PipelineDesc desc = defaults();
     desc.fragment = constantColor("0, 0, 1, 1");
     const VkPipeline pipeline = makePipeline(pass.pass, desc);
-    auto allocation = make<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
-    allocation.commandPool = pool;
-    allocation.level = VK_COMMAND_BUFFER_LEVEL_SECONDARY;
-    allocation.commandBufferCount = 1;
-    VkCommandBuffer secondary = VK_NULL_HANDLE;
-    ASSERT_EQ(vkAllocateCommandBuffers(device, &allocation, &secondary), VK_SUCCESS);
+    const VkCommandBuffer secondary = makeCommands(VK_COMMAND_BUFFER_LEVEL_SECONDARY);
     auto inheritance = make<VkCommandBufferInheritanceInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_INHERITANCE_INFO);
     inheritance.renderPass = pass.pass;
     auto info = make<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);

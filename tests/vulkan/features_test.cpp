@@ -30,12 +30,7 @@ TEST_F(FeaturesTest, queriesCountInSecondaryCommandBuffers) {
     constexpr VkQueryPipelineStatisticFlags kStatistics = VK_QUERY_PIPELINE_STATISTIC_VERTEX_SHADER_INVOCATIONS_BIT;
     const VkQueryPool pools[] = {makeQueries(VK_QUERY_TYPE_OCCLUSION),
                                  makeQueries(VK_QUERY_TYPE_PIPELINE_STATISTICS, 1, kStatistics)};
-    auto allocation = make<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
-    allocation.commandPool = pool;
-    allocation.level = VK_COMMAND_BUFFER_LEVEL_SECONDARY;
-    allocation.commandBufferCount = 1;
-    VkCommandBuffer secondary = VK_NULL_HANDLE;
-    ASSERT_EQ(vkAllocateCommandBuffers(device, &allocation, &secondary), VK_SUCCESS);
+    const VkCommandBuffer secondary = makeCommands(VK_COMMAND_BUFFER_LEVEL_SECONDARY);
     auto inheritance = make<VkCommandBufferInheritanceInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_INHERITANCE_INFO);
     inheritance.renderPass = pass.pass;
     inheritance.framebuffer = pass.framebuffer;

@@ -293,12 +293,7 @@ layout(location = 0) out )" + std::string(setup.integer()
         vkCmdDraw(commands, 3, instances, 0, 1);
     }
     VkCommandBuffer beginSecondary(const Rendering& setup, const Pass& pass) {
-        auto allocation = make<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
-        allocation.commandPool = pool;
-        allocation.level = VK_COMMAND_BUFFER_LEVEL_SECONDARY;
-        allocation.commandBufferCount = 1;
-        VkCommandBuffer commands = VK_NULL_HANDLE;
-        EXPECT_EQ(vkAllocateCommandBuffers(device, &allocation, &commands), VK_SUCCESS);
+        const VkCommandBuffer commands = makeCommands(VK_COMMAND_BUFFER_LEVEL_SECONDARY);
         auto formats =
             make<VkCommandBufferInheritanceRenderingInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_INHERITANCE_RENDERING_INFO);
         formats.colorAttachmentCount = 1;

@@ -78,12 +78,7 @@ TEST_F(RenderingTest, suspendedPassesGoOn) {
 
 TEST_F(RenderingTest, secondaryCommandBuffersInheritFormats) {
     const VkPipeline red = pipelineFor(filling("1, 0, 0, 1"));
-    auto allocation = make<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
-    allocation.commandPool = pool;
-    allocation.level = VK_COMMAND_BUFFER_LEVEL_SECONDARY;
-    allocation.commandBufferCount = 1;
-    VkCommandBuffer secondary = VK_NULL_HANDLE;
-    ASSERT_EQ(vkAllocateCommandBuffers(device, &allocation, &secondary), VK_SUCCESS);
+    const VkCommandBuffer secondary = makeCommands(VK_COMMAND_BUFFER_LEVEL_SECONDARY);
     auto formats =
         make<VkCommandBufferInheritanceRenderingInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_INHERITANCE_RENDERING_INFO);
     formats.colorAttachmentCount = 1;

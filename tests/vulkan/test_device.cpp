@@ -233,12 +233,18 @@ VkQueryPool VulkanTest::makeQueries(VkQueryType type, uint32_t count, VkQueryPip
     return queries;
 }
 
-VkCommandBuffer VulkanTest::begin() {
+VkCommandBuffer VulkanTest::makeCommands(VkCommandBufferLevel level) {
     auto allocation = make<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
     allocation.commandPool = pool;
+    allocation.level = level;
     allocation.commandBufferCount = 1;
     VkCommandBuffer commands = VK_NULL_HANDLE;
     EXPECT_EQ(vkAllocateCommandBuffers(device, &allocation, &commands), VK_SUCCESS);
+    return commands;
+}
+
+VkCommandBuffer VulkanTest::begin() {
+    const VkCommandBuffer commands = makeCommands(VK_COMMAND_BUFFER_LEVEL_PRIMARY);
     const auto info = make<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
     EXPECT_EQ(vkBeginCommandBuffer(commands, &info), VK_SUCCESS);
     return commands;

@@ -71,6 +71,9 @@ class VulkanTest : public testing::Test {
     VkShaderModule makeShader(const std::vector<uint32_t>& words);
     /// `statistics`: of queries that count those.
     VkQueryPool makeQueries(VkQueryType type, uint32_t count = 1, VkQueryPipelineStatisticFlags statistics = 0);
+    /// Of the test's pool; not begun.
+    VkCommandBuffer makeCommands(VkCommandBufferLevel level);
+    /// A primary command buffer.
     VkCommandBuffer begin();
     /// Ends, submits and waits.
     void submit(VkCommandBuffer commands);

@@ -1,12 +1,12 @@
 // VK_EXT_validation_cache: caches remember modules that were found valid, in data that outlives them.
 #include <algorithm>
 
-#include "tests/vulkan/test_device.h"
+#include "tests/vulkan/test_pipeline.h"
 
 namespace vernier::test {
 namespace {
 
-class ValidationCacheTest : public VulkanTest {
+class ValidationCacheTest : public DrawTest {
   protected:
     using Data = std::vector<uint8_t>;
     static constexpr size_t kHeader = 8 + VK_UUID_SIZE;
@@ -15,7 +15,7 @@ class ValidationCacheTest : public VulkanTest {
     void SetUp() override {
         // The layer's caches are its own.
         VERNIER_SKIP_WHEN_VALIDATED();
-        VulkanTest::SetUp();
+        DrawTest::SetUp();
         get_ = command<PFN_vkGetValidationCacheDataEXT>("vkGetValidationCacheDataEXT");
     }
 
@@ -39,7 +39,8 @@ class ValidationCacheTest : public VulkanTest {
         EXPECT_EQ(size, data.size());
         return data;
     }
-    VkResult createModule(std::vector<uint32_t> words, VkValidationCacheEXT cache) {
+    VkResult createModule(const std::vector<uint32_t>& words, VkValidationCacheEXT cache,
+                          VkShaderModule* made = nullptr) {
         auto use = make<VkShaderModuleValidationCacheCreateInfoEXT>(
             VK_STRUCTURE_TYPE_SHADER_MODULE_VALIDATION_CACHE_CREATE_INFO_EXT);
         use.validationCache = cache;
@@ -48,7 +49,8 @@ class ValidationCacheTest : public VulkanTest {
         info.pCode = words.data();
         VkShaderModule module = VK_NULL_HANDLE;
         const VkResult result = vkCreateShaderModule(device, &info, nullptr, &module);
-        if (result == VK_SUCCESS) vkDestroyShaderModule(device, module, nullptr);
+        if (result == VK_SUCCESS) defer([this, module] { vkDestroyShaderModule(device, module, nullptr); });
+        if (made != nullptr) *made = module;
         return result;
     }
     static std::vector<uint32_t> code(const std::string& value) {
@@ -74,6 +76,23 @@ TEST_F(ValidationCacheTest, modulesAreRememberedOnce) {
     EXPECT_EQ(dataOf(cache), one);
     EXPECT_EQ(createModule(code("2"), cache), VK_SUCCESS);
     EXPECT_EQ(dataOf(cache).size() - one.size(), one.size() - kHeader);
+}
+
+TEST_F(ValidationCacheTest, knownModulesDraw) {
+    constexpr VkExtent2D kExtent{8, 8};
+    const TestImage color = makeImage(VK_FORMAT_R8G8B8A8_UNORM, kExtent, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
+    const Pass pass = makePass(color);
+    const std::vector<uint32_t> words =
+        compileGlsl(VK_SHADER_STAGE_FRAGMENT_BIT,
+                    "#version 450\nlayout(location = 0) out vec4 o;\nvoid main() { o = vec4(1, 0, 0, 1); }");
+    const VkValidationCacheEXT cache = makeCache();
+    EXPECT_EQ(createModule(words, cache), VK_SUCCESS);
+    PipelineDesc desc;
+    desc.extent = kExtent;
+    desc.vertex = fullScreen();
+    ASSERT_EQ(createModule(words, cache, &desc.fragment), VK_SUCCESS);
+    drawTriangle(pass, makePipeline(pass.pass, desc));
+    EXPECT_EQ(pixelAt(readImage(color, VK_IMAGE_ASPECT_COLOR_BIT, 4), color, 4, 4), 0xFF0000FFu);
 }
 
 // What is not valid is refused, with a cache that knows it not, and one that knows its like.
